@@ -1,0 +1,45 @@
+"""Visually grounded task planning.
+
+A classical planner proposes actions; questions about their preconditions and effects go to a
+vision-language model; a monitor decides to go on, to repeat or to replan; every step is written
+into an episode. Method: Zhang et al. 2023, "Grounding Classical Task Planners via Vision-Language
+Models".
+
+Names are imported when they are first used, so that `import tpvqa` stays quick.
+"""
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+_PUBLIC = {
+    "Action": "tpvqa.pddl",
+    "Answer": "tpvqa.vlm",
+    "Atom": "tpvqa.pddl",
+    "Literal": "tpvqa.pddl",
+    "Observation": "tpvqa.observation",
+    "Plan": "tpvqa.planning",
+    "Question": "tpvqa.questions",
+    "Reply": "tpvqa.vlm",
+    "State": "tpvqa.pddl",
+    "Task": "tpvqa.pddl",
+    "TpvqaError": "tpvqa.errors",
+    "load_task": "tpvqa.pddl",
+    "run_episode": "tpvqa.loop",
+}
+
+__all__ = [  # noqa: PLE0604
+    "__version__",
+    *sorted(_PUBLIC),
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _PUBLIC:
+        return getattr(import_module(_PUBLIC[name]), name)
+    raise AttributeError(f"module 'tpvqa' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

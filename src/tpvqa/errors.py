@@ -1,0 +1,84 @@
+"""The whole exception tree. Every message says what is wrong, where, and what to do about it.
+
+TpvqaError
+├── PDDLError              the domain or problem cannot be read
+├── PlannerError           the planner itself could not be run (never "there is no plan")
+├── QuestionsError         a questions file is broken
+├── AnswerError            a VLM could not be asked at all
+├── WorldError             a world cannot do what it is asked to
+├── PictureSetError        the set of pictures is incomplete or damaged
+├── EpisodeError           an episode cannot be read or resumed
+├── UnknownNameError       no plug-in or task of that name
+└── MissingExtraError      an optional package is needed
+"""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+
+
+class TpvqaError(Exception):
+    """Base of all errors that tpvqa raises on purpose."""
+
+
+class PDDLError(TpvqaError):
+    """The domain or problem cannot be read.
+
+    Args:
+        message: What is wrong and what was expected.
+        file: The file it stands in, where known.
+        line: The line, counted from 1, where known.
+    """
+
+    def __init__(self, message: str, *, file: str | Path | None = None, line: int | None = None):
+        self.file, self.line = file, line
+        place = "" if file is None else f"{file}:" + ("" if line is None else f"{line}:") + " "
+        super().__init__(place + message)
+
+
+class PlannerError(TpvqaError):
+    """The planner could not be run. That no plan exists is a result, not this error."""
+
+
+class QuestionsError(TpvqaError):
+    """A questions file is broken; the message starts with file and line."""
+
+    def __init__(self, message: str, *, file: str | Path | None = None, line: int | None = None):
+        self.file, self.line = file, line
+        place = "" if file is None else f"{file}:" + ("" if line is None else f"{line}:") + " "
+        super().__init__(place + message)
+
+
+class AnswerError(TpvqaError):
+    """A VLM could not be asked at all (wrong address, no key). A bad answer is *unknown* instead."""
+
+
+class WorldError(TpvqaError):
+    """A world cannot do what it is asked to."""
+
+
+class PictureSetError(TpvqaError):
+    """The set of pictures is incomplete or damaged."""
+
+
+class EpisodeError(TpvqaError):
+    """An episode cannot be read or resumed."""
+
+
+class UnknownNameError(TpvqaError):
+    """No plug-in, task or view of that name; the message suggests the nearest one."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]):
+        known = sorted(known)
+        near = get_close_matches(name, known, n=1)
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        super().__init__(f"There is no {kind} {name!r}.{hint} Known: {', '.join(known) or 'none'}.")
+
+
+class MissingExtraError(TpvqaError):
+    """An optional package is needed."""
+
+    def __init__(self, package: str, extra: str, purpose: str):
+        super().__init__(
+            f"{purpose} needs the package {package!r}. Install it: pip install 'tpvqa[{extra}]'"
+        )

@@ -1,0 +1,61 @@
+"""Ground conditions as their author wrote them, quantifiers spelled out over the objects."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from tpvqa.pddl.atoms import Literal, State
+
+
+@dataclass(frozen=True, slots=True)
+class Conjunction:
+    """All parts hold. Empty: true."""
+
+    parts: tuple["Condition", ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Disjunction:
+    """At least one part holds. Empty: false."""
+
+    parts: tuple["Condition", ...] = ()
+
+
+Condition = Literal | Conjunction | Disjunction
+
+
+def holds(condition: Condition, state: State) -> bool:
+    """Whether a condition holds in a state (with its derived atoms, see `Task.extend`)."""
+    match condition:
+        case Literal():
+            return condition.holds(state)
+        case Conjunction(parts):
+            return all(holds(part, state) for part in parts)
+        case Disjunction(parts):
+            return any(holds(part, state) for part in parts)
+
+
+def literals(condition: Condition) -> Iterator[Literal]:
+    """All literals of a condition, in the order written."""
+    if isinstance(condition, Literal):
+        yield condition
+    else:
+        for part in condition.parts:
+            yield from literals(part)
+
+
+def supporting(condition: Condition, state: State) -> Iterator[Literal]:
+    """The literals that a condition rests on in a state, in the order written.
+
+    Of a conjunction all; of a disjunction those of the parts that hold in the state, and of all
+    parts where none does.
+    """
+    match condition:
+        case Literal():
+            yield condition
+        case Conjunction(parts):
+            for part in parts:
+                yield from supporting(part, state)
+        case Disjunction(parts):
+            held = [part for part in parts if holds(part, state)]
+            for part in held or parts:
+                yield from supporting(part, state)

@@ -1,0 +1,12 @@
+"""`Task` + `State` → `Plan`. Unsolvable, timed out and crashed are results of their own."""
+
+from tpvqa.planning.protocol import (
+    Crashed,
+    Plan,
+    Planner,
+    PlanningResult,
+    TimedOut,
+    Unsolvable,
+)
+
+__all__ = ["Crashed", "Plan", "Planner", "PlanningResult", "TimedOut", "Unsolvable"]

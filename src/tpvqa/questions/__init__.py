@@ -1,0 +1,6 @@
+"""Facts and actions → questions in words, by templates beside the domain."""
+
+from tpvqa.questions.book import QuestionBook
+from tpvqa.questions.question import Question, Way
+
+__all__ = ["Question", "QuestionBook", "Way"]
