@@ -1,0 +1,175 @@
+"""The true state of a simulated world, and the faults that befall it.
+
+As in the paper's experiment: an action fails with probability 0.25, and a quarter of the failures
+also undo something achieved before. The truth is kept for judging and never shown to a monitor.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tpvqa.chance import chance
+from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.worlds.undo import UndoRule
+
+FAILURE = 0.25
+DISTURBANCE = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What truly came of an action.
+
+    Attributes:
+        succeeded: Whether the action did what its effects say (or they held already).
+        reason: Why it failed; empty where it did not.
+        undone: The achieved fact that a disturbance ended, if one did.
+        undoing: How the world file says that.
+        before: The true state before.
+        after: The true state after.
+    """
+
+    succeeded: bool
+    reason: str
+    undone: Atom | None
+    undoing: str
+    before: State
+    after: State
+
+
+class Simulation:
+    """A true state that actions change, with seeded faults.
+
+    Args:
+        task: Gives the initial state and the actions.
+        rules: What disturbances can undo (see `load_undo_rules`).
+        failure: Probability that an action fails although it is possible.
+        disturbance: Probability that a failure also undoes an achieved fact.
+        spontaneous: Probability that an achieved fact is undone after a success.
+        seed: With `episode`, the action and its attempt, decides every fault.
+        episode: Number of the episode under this seed.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        rules: Sequence[UndoRule] = (),
+        *,
+        failure: float = FAILURE,
+        disturbance: float = DISTURBANCE,
+        spontaneous: float = 0.0,
+        seed: int = 0,
+        episode: int = 0,
+    ):
+        self.task, self.rules = task, tuple(rules)
+        self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
+        self.seed, self.episode = seed, episode
+        self.state: State = task.init
+        self.attempts: Counter[str] = Counter()
+        self.ended: list[Atom] = []
+
+    def undoable(self) -> dict[Atom, list[tuple[str, State]]]:
+        """The achieved facts that a disturbance could end now, with what each would lead to."""
+        found = {}
+        for atom in sorted(self.state - self.task.init):
+            results = [
+                result
+                for rule in self.rules
+                for result in rule.results(atom, self.state, self.ended, self.task)
+            ]
+            if results:
+                found[atom] = results
+        return found
+
+    def execute(self, action: Action) -> Outcome:
+        """Try an action on the true state."""
+        before = self.state
+        attempt = self.attempts[action.pddl()]
+        self.attempts[action.pddl()] += 1
+        draw = chance(self.seed, self.episode, "fault", action.pddl(), attempt)
+        fails, disturbs = draw.random() < self.failure, draw.random()
+        possible = self.task.applicable(before, action)
+        intended = self.task.apply(before, action)
+        undone, undoing, reason = None, "", ""
+        if self.achieved(action):
+            succeeded = True
+        elif not possible:
+            succeeded, reason = False, "a precondition did not hold"
+            if disturbs < self.disturbance:
+                undone, undoing = self._disturb(draw.random(), draw.random())
+        elif fails:
+            succeeded, reason = False, "the action failed"
+            if disturbs < self.disturbance:
+                undone, undoing = self._disturb(draw.random(), draw.random())
+        else:
+            succeeded = True
+            self._become(intended)
+            if disturbs < self.spontaneous:
+                undone, undoing = self._disturb(draw.random(), draw.random())
+        return Outcome(succeeded, reason, undone, undoing, before, self.state)
+
+    def achieved(self, action: Action) -> bool:
+        """Whether all effects of an action hold already, so that it has nothing left to do."""
+        return self.task.apply(self.state, action) == self.state
+
+    def _become(self, after: State) -> None:
+        self.ended += sorted(self.state - after)
+        self.state = after
+
+    def _disturb(self, which: float, how: float) -> tuple[Atom | None, str]:
+        undoable = self.undoable()
+        if not undoable:
+            return None, ""
+        atom = list(undoable)[int(which * len(undoable))]
+        say, after = undoable[atom][int(how * len(undoable[atom]))]
+        self._become(after)
+        return atom, say
+
+    def snapshot(self) -> dict[str, Any]:
+        """The whole state as plain JSON values."""
+        return {
+            "state": [atom.pddl() for atom in sorted(self.state)],
+            "attempts": dict(self.attempts),
+            "ended": [atom.pddl() for atom in self.ended],
+        }
+
+    def restore(self, snapshot: Mapping[str, Any]) -> None:
+        """Put back what `snapshot` gave."""
+        self.state = frozenset(map(Atom.parse, snapshot["state"]))
+        self.attempts = Counter(snapshot["attempts"])
+        self.ended = list(map(Atom.parse, snapshot["ended"]))
+
+
+class SimulatedTruth:
+    """The truth of a simulation: a `TruthSource` for judges and noise models.
+
+    Args:
+        simulation: Where the true state lies.
+        visible: Tells whether the last observation shows a fact; by default all are shown.
+    """
+
+    def __init__(self, simulation: Simulation, visible: Callable[[Atom], bool] | None = None):
+        self._simulation = simulation
+        self._visible = visible
+
+    @property
+    def state(self) -> State:
+        """The true state, derived atoms included."""
+        return self._simulation.task.extend(self._simulation.state)
+
+    def holds(self, atom: Atom) -> bool:
+        """Whether a fact is true now."""
+        return atom in self.state
+
+    def visible(self, atom: Atom) -> bool:
+        """Whether the last observation shows if it is true."""
+        return True if self._visible is None else self._visible(atom)
+
+    def possible(self, action: Action) -> bool:
+        """Whether all preconditions of an action hold now."""
+        return self._simulation.task.applicable(self._simulation.state, action)
+
+    def successful(self, action: Action) -> bool:
+        """Whether all effects of an action hold now."""
+        return self._simulation.achieved(action)

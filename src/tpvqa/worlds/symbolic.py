@@ -1,0 +1,57 @@
+"""A world that is told, not seen: for experiments without pictures and for users' own domains."""
+
+from collections.abc import Mapping, Sequence
+from threading import Event
+from typing import Any
+
+from tpvqa.errors import UnknownNameError
+from tpvqa.observation import Observation
+from tpvqa.pddl import Action
+from tpvqa.worlds.protocol import Execution, Report
+from tpvqa.worlds.simulation import Outcome, SimulatedTruth, Simulation
+
+
+class SymbolicWorld:
+    """A simulation without pictures; its observations are empty, so only noise models answer.
+
+    Args:
+        simulation: The true state and its faults.
+    """
+
+    def __init__(self, simulation: Simulation):
+        self.simulation = simulation
+        self.truth = SimulatedTruth(simulation)
+        self.last_outcome: Outcome | None = None
+        self._look = 0
+
+    def views(self) -> Sequence[str]:
+        """One view."""
+        return ("front",)
+
+    def observe(self, view: str | None = None) -> Observation:
+        """A new look, without pictures."""
+        if view not in (None, "front"):
+            raise UnknownNameError("view", str(view), self.views())
+        look, self._look = self._look, self._look + 1
+        return Observation(look=look, time=float(look))
+
+    def execute(
+        self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
+    ) -> Execution:
+        """Try the action at once; the skill notices nothing."""
+        if cancel is not None and cancel.is_set():
+            return Execution(Report.CANCELLED, 0.0)
+        self.last_outcome = self.simulation.execute(action)
+        return Execution(Report.DONE, 0.0)
+
+    def snapshot(self) -> Mapping[str, Any]:
+        """The true state and the number of looks."""
+        return {"look": self._look, "simulation": self.simulation.snapshot()}
+
+    def restore(self, snapshot: Mapping[str, Any]) -> None:
+        """Put back what `snapshot` gave."""
+        self._look = snapshot["look"]
+        self.simulation.restore(snapshot["simulation"])
+
+    def close(self) -> None:
+        """Nothing to let go of."""
