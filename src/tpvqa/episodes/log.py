@@ -1,0 +1,139 @@
+"""The episode on disk: `episode.jsonl`, one event a line, and the pictures in `frames/`."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from time import monotonic
+
+from pydantic import ValidationError
+
+from tpvqa.episodes.events import EVENT, Event, Started
+from tpvqa.errors import EpisodeError
+from tpvqa.observation import Frame
+
+LOG = "episode.jsonl"
+FRAMES = "frames"
+
+
+class EpisodeWriter:
+    """Appends events, each on disk before `append` returns.
+
+    Args:
+        folder: The episode's folder. It is made; it must not hold an episode already, unless
+            `resume` is given.
+        resume: Number of whole events that the folder's log holds; what follows them (a line
+            torn by a kill) is cut off.
+        durable: Whether to wait for the disk. Off only for experiments of many episodes.
+
+    Raises:
+        EpisodeError: The folder holds another episode, or cannot be written.
+    """
+
+    def __init__(self, folder: Path, *, resume: int = 0, durable: bool = True):
+        self.folder, self._durable, self._count = Path(folder), durable, resume
+        self._began = monotonic()
+        path = self.folder / LOG
+        try:
+            if path.exists() and not resume:
+                raise EpisodeError(
+                    f"{self.folder} holds an episode already; name another folder with --out, "
+                    f"or go on with it: tpvqa resume {self.folder}"
+                )
+            (self.folder / FRAMES).mkdir(parents=True, exist_ok=True)
+            if resume:
+                whole = path.read_bytes().split(b"\n")[:resume]
+                with path.open("r+b") as file:
+                    file.truncate(sum(len(line) + 1 for line in whole))
+            self._file = path.open("ab")
+        except OSError as error:
+            raise EpisodeError(
+                f"{self.folder}: cannot be written ({error.strerror}); name another folder "
+                "with --out"
+            ) from error
+
+    def append(self, event: Event) -> Event:
+        """Write an event; returned with its number and its time since the beginning."""
+        event = event.model_copy(
+            update={"number": self._count, "time": round(monotonic() - self._began, 4)}
+        )
+        self._file.write(EVENT.dump_json(event, exclude_none=True) + b"\n")
+        self._file.flush()
+        if self._durable:
+            os.fsync(self._file.fileno())
+        self._count += 1
+        return event
+
+    def save_frame(self, frame: Frame) -> str:
+        """Save a camera image; its path within the episode's folder."""
+        name = f"{FRAMES}/{frame.id}{frame.suffix}"
+        path = self.folder / name
+        temporary = path.with_suffix(".part")
+        with temporary.open("wb") as file:
+            file.write(frame.data)
+            if self._durable:
+                file.flush()
+                os.fsync(file.fileno())
+        temporary.replace(path)
+        return name
+
+    def close(self) -> None:
+        """Close the log. Can be called twice."""
+        self._file.close()
+
+
+class MemoryWriter:
+    """Keeps the events in memory: for experiments of many episodes, and for tests."""
+
+    def __init__(self) -> None:
+        self.events: list[Event] = []
+
+    def append(self, event: Event) -> Event:
+        """Keep an event."""
+        event = event.model_copy(update={"number": len(self.events)})
+        self.events.append(event)
+        return event
+
+    def save_frame(self, frame: Frame) -> str:
+        """Keep nothing of the picture but its name."""
+        return f"{FRAMES}/{frame.id}{frame.suffix}"
+
+    def close(self) -> None:
+        """Nothing to close."""
+
+
+def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise EpisodeError(
+            f"{path.parent} holds no episode: {LOG} cannot be read ({error.strerror})"
+        ) from error
+    whole, _, _torn = data.rpartition(b"\n")
+    for number, line in enumerate(whole.split(b"\n") if whole else [], 1):
+        yield number, line
+
+
+def read_episode(folder: Path | str) -> list[Event]:
+    """All whole events of an episode, also of one that was killed.
+
+    Args:
+        folder: The episode's folder, or its `episode.jsonl`.
+
+    Raises:
+        EpisodeError: There is no episode, or a line in its middle is damaged.
+    """
+    path = Path(folder)
+    path = path if path.name == LOG else path / LOG
+    events: list[Event] = []
+    for number, line in _lines(path):
+        try:
+            events.append(EVENT.validate_json(line))
+        except ValidationError as error:
+            problem = error.errors()[0]
+            place = ".".join(map(str, problem["loc"]))
+            raise EpisodeError(
+                f"{path}:{number}: not an event of this version ({place}: {problem['msg']})"
+            ) from error
+    if not events or not isinstance(events[0], Started):
+        raise EpisodeError(f"{path}: the episode has no beginning; it was killed before it started")
+    return events

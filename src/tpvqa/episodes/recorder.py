@@ -1,0 +1,242 @@
+"""Performs what a trial asks for and logs it; while a log is being resumed, plays it back.
+
+A resumed trial runs the same code as an unbroken one. As long as the log holds events, their
+results are taken from it; then the world and the VLM are put back into the states that the log
+kept, and the trial goes on.
+"""
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from threading import Event as Flag
+from typing import Any, Protocol, TypeVar
+
+from tpvqa.episodes import records
+from tpvqa.episodes.events import (
+    Acted,
+    Acting,
+    Answered,
+    Asked,
+    Event,
+    FrameRecord,
+    Observed,
+    PlanMade,
+)
+from tpvqa.errors import EpisodeError
+from tpvqa.observation import Observation
+from tpvqa.pddl import Action, State, Task
+from tpvqa.planning import Planner, PlanningResult
+from tpvqa.questions import Question, QuestionBook
+from tpvqa.vlm import VLM, Answer, Reply
+from tpvqa.worlds import Execution, Report, Restorable, World
+
+E = TypeVar("E", bound=Event)
+
+
+class Writer(Protocol):
+    """Where events go."""
+
+    def append(self, event: Event) -> Event:
+        """Write an event."""
+
+    def save_frame(self, frame: Any) -> str:
+        """Save a picture; its path within the episode."""
+
+
+@dataclass
+class Parts:
+    """What a trial is made of."""
+
+    task: Task
+    book: QuestionBook
+    planner: Planner
+    world: World
+    vlm: VLM
+
+
+class Recorder:
+    """Performs and logs.
+
+    Args:
+        parts: Planner, world and VLM.
+        writer: Where events go.
+        recorded: Events of the episode that is being resumed.
+        folder: Where its pictures lie.
+        listeners: Told of every event, recorded ones too.
+    """
+
+    def __init__(
+        self,
+        parts: Parts,
+        writer: Writer,
+        *,
+        recorded: Sequence[Event] = (),
+        folder: Path | None = None,
+        listeners: Sequence[Callable[[Event], None]] = (),
+    ):
+        self.parts, self._writer, self._folder = parts, writer, folder
+        self._recorded, self._listeners = deque(recorded), tuple(listeners)
+        self._snapshots: dict[str, Mapping[str, Any]] = {}
+        self._replaying = bool(recorded)
+        self._stale = False
+        self._observation: Observation | None = None
+        self.questions = self.looks = self.actions = 0
+
+    def emit(self, event: E) -> E:
+        """Log an event, or take the recorded one in its place."""
+        recorded = self._next(type(event))
+        return self._tell(self._writer.append(event) if recorded is None else recorded)  # type: ignore[return-value]
+
+    def plan(self, state: State, *, timeout: float | None) -> PlanningResult:
+        """A plan from a state."""
+        record = self._next(PlanMade)
+        if record is not None:
+            self._tell(record)
+            return records.plan_from(record, self.parts.task)
+        result = self.parts.planner.plan(self.parts.task, state, timeout=timeout)
+        self._tell(self._writer.append(records.plan_record(result, state, self.parts.book)))
+        return result
+
+    def look(self, view: str | None) -> Observation:
+        """A new look at the world."""
+        self.looks += 1
+        record = self._next(Observed)
+        if record is not None:
+            self._tell(record)
+            self._observation = records.observation_from(record, self._folder)
+            return self._observation
+        seen = self.parts.world.observe(view)
+        self._stale = False
+        frames = tuple(
+            FrameRecord(
+                view=frame.view,
+                file=self._writer.save_frame(replace(frame, id=f"{seen.look:04d}-{frame.view}")),
+                media_type=frame.media_type,
+                source=frame.source,
+            )
+            for frame in seen.frames.values()
+        )
+        self._tell(
+            self._writer.append(
+                Observed(
+                    look=seen.look,
+                    view=view,
+                    world_time=seen.time,
+                    frames=frames,
+                    detail=dict(seen.detail),
+                    snapshot=_snapshot(self.parts.world),
+                )
+            )
+        )
+        self._observation = seen
+        return seen
+
+    def ask(self, questions: Sequence[Question], *, person: bool = False) -> list[Answer]:
+        """Answers to questions about the latest look."""
+        if self._observation is None:
+            self.look(None)
+        assert self._observation is not None
+        self.questions += len(questions)
+        self.emit(
+            Asked(
+                look=self._observation.look,
+                questions=tuple(map(records.question_record, questions)),
+                person=person,
+            )
+        )
+        record = self._next(Answered)
+        if record is None:
+            if self._stale:
+                self.look(None)
+            answers = (
+                [Answer(question, Reply.UNKNOWN, text="nobody is there") for question in questions]
+                if person
+                else self.parts.vlm.ask(self._observation, questions)
+            )
+            if len(answers) != len(questions):
+                raise EpisodeError(
+                    f"the VLM {self.parts.vlm.name} gave {len(answers)} answers "
+                    f"to {len(questions)} questions"
+                )
+            record = records.answered_record(answers).model_copy(
+                update={"snapshot": _snapshot(self.parts.vlm)}
+            )
+            record = self._writer.append(record)  # type: ignore[assignment]
+        self._tell(record)
+        return records.answers_from(record, questions)
+
+    def act(
+        self, action: Action, *, step: int, attempt: int, deadline: float | None, cancel: Flag
+    ) -> Execution:
+        """Execute an action; that it is about to be executed is on disk before."""
+        self.actions += 1
+        said = records.action_record(action, self.parts.book)
+        was_replaying = self._replaying
+        self.emit(Acting(step=step, action=said, attempt=attempt))
+        broken = was_replaying and not self._recorded
+        record = self._next(Acted)
+        if record is None:
+            world = self.parts.world
+            if broken and not isinstance(world, Restorable):
+                # A robot was killed in the middle of a skill: what came of it is for a new look.
+                execution = Execution(Report.FAILED, 0.0, "interrupted")
+            else:
+                execution = world.execute(action, deadline=deadline, cancel=cancel)
+            record = self._writer.append(  # type: ignore[assignment]
+                Acted(
+                    report=execution.report,
+                    seconds=execution.seconds,
+                    message=execution.message,
+                    truth=_truth(world),
+                    snapshot=_snapshot(world),
+                )
+            )
+        assert isinstance(record, Acted)
+        self._tell(record)
+        return Execution(record.report, record.seconds, record.message)
+
+    def _next(self, kind: type[E]) -> E | None:
+        """The next recorded event, which must be of a kind; None once all are played back."""
+        if self._recorded:
+            event = self._recorded.popleft()
+            if not isinstance(event, kind):
+                raise EpisodeError(
+                    f"event {event.number} of the log is {event.kind!r} where this version "
+                    f"would write {kind.__name__!r}: it cannot be resumed, only shown"
+                )
+            snapshot = getattr(event, "snapshot", None)
+            if snapshot is not None:
+                self._snapshots["vlm" if isinstance(event, Answered) else "world"] = snapshot
+            return event
+        if self._replaying:
+            self._replaying = False
+            self._stale = not isinstance(self.parts.world, Restorable)
+            for part, snapshot in self._snapshots.items():
+                target = getattr(self.parts, part)
+                if isinstance(target, Restorable):
+                    target.restore(snapshot)
+        return None
+
+    def _tell(self, event: E) -> E:
+        for listener in self._listeners:
+            listener(event)
+        return event
+
+
+def _snapshot(part: object) -> dict[str, Any] | None:
+    return dict(part.snapshot()) if isinstance(part, Restorable) else None
+
+
+def _truth(world: World) -> dict[str, Any] | None:
+    outcome = getattr(world, "last_outcome", None)
+    if outcome is None:
+        return None
+    return {
+        "succeeded": outcome.succeeded,
+        "reason": outcome.reason,
+        "undone": None if outcome.undone is None else outcome.undone.pddl(),
+        "undoing": outcome.undoing,
+        "added": records.atoms(outcome.after - outcome.before),
+        "removed": records.atoms(outcome.before - outcome.after),
+    }

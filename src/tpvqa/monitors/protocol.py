@@ -1,0 +1,59 @@
+"""The seam that every monitor implements."""
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
+
+from tpvqa.monitors.requests import Request
+from tpvqa.monitors.verdict import Verdict
+from tpvqa.pddl import Action, State, Task
+from tpvqa.planning import Plan
+from tpvqa.questions import QuestionBook
+
+Check = Generator[Request, Any, Verdict]
+"""A check: yields requests, is sent what came of each, returns a verdict."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """Where a trial stands.
+
+    Attributes:
+        task: The task.
+        book: Turns facts and actions into questions.
+        plan: The plan that is being followed.
+        index: The step of the plan, from 0.
+        state: What is believed to be true, before the action.
+        attempt: How often this step's action has been repeated so far.
+    """
+
+    task: Task
+    book: QuestionBook
+    plan: Plan
+    index: int
+    state: State
+    attempt: int = 0
+
+    @property
+    def action(self) -> Action:
+        """The action of this step."""
+        return self.plan.actions[self.index]
+
+
+@runtime_checkable
+class Monitor(Protocol):
+    """Decides, before and after every action, whether to go on, repeat or replan.
+
+    A monitor does no input or output: it yields requests, and the loop performs and logs them.
+    One instance watches one trial and may remember what it has seen.
+    """
+
+    @property
+    def name(self) -> str:
+        """What the log calls it."""
+
+    def before(self, step: Step) -> Check:
+        """Check before the action is executed."""
+
+    def after(self, step: Step) -> Check:
+        """Check after the action was executed."""

@@ -1,0 +1,37 @@
+"""What a monitor asks the loop to do for it. The loop performs and logs every request."""
+
+from dataclasses import dataclass
+
+from tpvqa.pddl import State
+from tpvqa.questions import Question
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A new look at the world; answered with the `Observation`."""
+
+    view: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Ask:
+    """Questions about the latest look; answered with a list of `Answer`, in order."""
+
+    questions: tuple[Question, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PlanFrom:
+    """A plan from a state; answered with a `PlanningResult`."""
+
+    state: State
+
+
+@dataclass(frozen=True, slots=True)
+class AskPerson:
+    """A question to a person; answered with an `Answer`, *unknown* where nobody is there."""
+
+    question: Question
+
+
+Request = Look | Ask | PlanFrom | AskPerson

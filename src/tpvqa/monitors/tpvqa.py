@@ -1,0 +1,154 @@
+"""The paper's monitor: ask all preconditions before an action, all effects after it, and count."""
+
+from collections.abc import Generator, Sequence
+from typing import Any
+
+from tpvqa.monitors.majority import Majority
+from tpvqa.monitors.memory import FactMemory
+from tpvqa.monitors.protocol import Check, Step
+from tpvqa.monitors.requests import Ask, Look, Request
+from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.pddl import Atom, Literal, State
+from tpvqa.questions import Question, Way
+from tpvqa.vlm import Answer, Reply
+
+
+class TPVQA:
+    """Zhang et al. 2023, section "Method".
+
+    Before an action all its preconditions are asked. Where the majority denies them, the denied
+    facts are taken out of the state and a new plan is made from there. After it all its effects
+    are asked, negative ones too; where the majority denies them, the action is repeated.
+
+    Args:
+        majority: When answers deny an action.
+        looks: How often to look again where every answer abstains, before stopping.
+        alternatives: Whether to ask where else a thing is, once a fact about it is denied.
+    """
+
+    name = "tpvqa"
+
+    def __init__(
+        self,
+        *,
+        majority: Majority | str = Majority.TIE_DENIES,
+        looks: int = 3,
+        alternatives: bool = True,
+    ):
+        self.majority, self.looks, self.alternatives = Majority(majority), looks, alternatives
+        self._memory: FactMemory | None = None
+
+    def before(self, step: Step) -> Check:
+        """Check the preconditions: go on, or replan from the corrected state."""
+        questions = step.book.preconditions(step.action, step.state)
+        denied, answers = yield from self._ask(questions)
+        if denied is None:
+            return _give_up(questions)
+        if not denied:
+            return Verdict(Decision.GO_ON, _tally("preconditions", answers))
+        corrected = yield from self._correct(step, answers)
+        if corrected == step.state:
+            # A fact with nothing before it stays: one more look, then the robot acts.
+            denied, answers = yield from self._ask(questions)
+            corrected = (yield from self._correct(step, answers)) if denied else step.state
+        if corrected == step.state:
+            return Verdict(
+                Decision.GO_ON,
+                f"{_tally('preconditions', answers)}; looked twice, nothing else to believe",
+            )
+        self._remember(step).record(step.state, corrected)
+        reason = f"{_tally('preconditions', answers)}; {_change(step.state, corrected)}"
+        return Verdict(Decision.REPLAN, reason, corrected)
+
+    def after(self, step: Step) -> Check:
+        """Check the effects: go on, or repeat the action."""
+        questions = step.book.effects(step.action, step.state)
+        denied, answers = yield from self._ask(questions)
+        if denied is None:
+            return _give_up(questions)
+        if denied:
+            return Verdict(Decision.REPEAT, _tally("effects", answers))
+        state = step.task.apply(step.state, step.action)
+        self._remember(step).record(step.state, state)
+        return Verdict(Decision.GO_ON, _tally("effects", answers), state)
+
+    def _ask(
+        self, questions: Sequence[Question]
+    ) -> Generator[Request, Any, tuple[bool | None, list[Answer]]]:
+        """Look and ask, again while every answer abstains; None where that does not help."""
+        if not questions:
+            return False, []
+        answers: list[Answer] = []
+        for _ in range(1 + self.looks):
+            yield Look()
+            answers = yield Ask(tuple(questions))
+            denied = self.majority.denies(answers)
+            if denied is not None:
+                return denied, answers
+        return None, answers
+
+    def _correct(
+        self, step: Step, answers: Sequence[Answer]
+    ) -> Generator[Request, Any, State]:
+        """Take the denied facts out, believing an alternative where exactly one is affirmed."""
+        memory = self._remember(step)
+        denied = [
+            Literal(answer.question.atom, answer.question.expected)
+            for answer in answers
+            if answer.agrees is False and answer.question.atom is not None
+        ]
+        seen: list[Atom] = []
+        if self.alternatives:
+            for literal in denied:
+                seen += yield from self._look_elsewhere(step, literal)
+        return memory.take_out(step.state, denied, seen=seen)
+
+    def _look_elsewhere(
+        self, step: Step, denied: Literal
+    ) -> Generator[Request, Any, list[Atom]]:
+        """Which alternatives of a denied fact the VLM affirms, if it affirms exactly one."""
+        if not denied.positive:
+            return []
+        asked_already = step.book.fact(denied, way=Way.ALTERNATIVE).text
+        atoms_by_text: dict[str, list[Atom]] = {}
+        questions: dict[str, Question] = {}
+        for atom in self._remember(step).alternatives(denied.atom):
+            literal = Literal(atom)
+            # Where a "no" would say nothing (near another thing), a "yes" decides nothing.
+            if step.book.asked(literal) and step.book.asked(literal.negate()):
+                question = step.book.fact(literal, way=Way.ALTERNATIVE)
+                if question.text != asked_already:
+                    questions.setdefault(question.text, question)
+                    atoms_by_text.setdefault(question.text, []).append(atom)
+        if not questions:
+            return []
+        answers: list[Answer] = yield Ask(tuple(questions.values()))
+        affirmed = [answer.question.text for answer in answers if answer.reply is Reply.YES]
+        return atoms_by_text[affirmed[0]] if len(affirmed) == 1 else []
+
+    def _remember(self, step: Step) -> FactMemory:
+        if self._memory is None:
+            self._memory = FactMemory(step.task)
+        return self._memory
+
+
+def _tally(what: str, answers: Sequence[Answer]) -> str:
+    votes = [answer for answer in answers if answer.agrees is not None]
+    if not votes:
+        return f"no {what} to ask about"
+    denied = [answer.question.text for answer in votes if answer.agrees is False]
+    count = f"{len(votes) - len(denied)} of {len(votes)} {what} hold"
+    return count if not denied else f"{count}; denied: {' '.join(denied)}"
+
+
+def _change(before: State, after: State) -> str:
+    gone = ", ".join(map(str, sorted(before - after)))
+    new = ", ".join(map(str, sorted(after - before)))
+    return f"believing {new or 'nothing'} instead of {gone or 'nothing'}"
+
+
+def _give_up(questions: Sequence[Question]) -> Verdict:
+    return Verdict(
+        Decision.GIVE_UP,
+        f"no answer to {len(questions)} question(s), also after looking again: stopped safely",
+    )
