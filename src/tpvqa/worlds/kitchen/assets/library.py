@@ -1,0 +1,85 @@
+"""The library of things: every kind in many variants, some of them kept from training.
+
+    model = draw("plate", rng, split="train")
+    xml = "<asset>" + "".join(model.mjcf_assets()) + "</asset>…<body>" + model.mjcf_inside("plate_")
+    MjModel.from_xml_string(xml, assets=model.files)
+
+A scene lists the assets and files of each distinct `Model.name` once. A family of variants
+belongs to one split for good, so what is held out has shapes, and not only colours, that
+training never sees.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Literal
+
+from numpy.random import Generator
+
+from tpvqa.chance import chance_array
+from tpvqa.errors import UnknownNameError
+from tpvqa.worlds.kitchen.assets.families import FAMILIES
+from tpvqa.worlds.kitchen.assets.family import Family
+from tpvqa.worlds.kitchen.assets.model import Model
+
+Split = Literal["train", "held_out", "all"]
+
+
+def kinds() -> tuple[str, ...]:
+    """All kinds of things, in the library's order."""
+    return tuple(dict.fromkeys(family.kind for family in FAMILIES))
+
+
+def families(kind: str, *, split: Split = "all") -> tuple[Family, ...]:
+    """The ways of making a thing of this kind.
+
+    Raises:
+        UnknownNameError: There is no such kind.
+    """
+    found = tuple(family for family in FAMILIES if family.kind == kind)
+    if not found:
+        raise UnknownNameError("kind of thing", kind, kinds())
+    return tuple(f for f in found if split == "all" or f.held_out == (split == "held_out"))
+
+
+def models(kind: str, *, split: Split = "all") -> Sequence[Model]:
+    """A fixed list of variants: the scanned ones and a few of each procedural family.
+
+    Raises:
+        UnknownNameError: There is no such kind.
+    """
+    return [
+        _fixed(family, number)
+        for family in families(kind, split=split)
+        for number in range(family.fixed)
+    ]
+
+
+def draw(kind: str, rng: Generator, *, split: Split) -> Model:
+    """A random variant, a function of the generator's state.
+
+    Raises:
+        UnknownNameError: There is no such kind, or none of it in this split.
+    """
+    choice = families(kind, split=split)
+    if not choice:
+        raise UnknownNameError(f"{split} kind of thing", kind, kinds())
+    total = sum(family.weight for family in choice)
+    at = float(rng.random()) * total
+    for family in choice:
+        at -= family.weight
+        if at < 0:
+            break
+    number = int(rng.integers(2**40))
+    return _made(family, chance_array(number, 0, "asset", family.name), f"{number:010x}")
+
+
+@lru_cache(maxsize=256)
+def _fixed(family: Family, number: int) -> Model:
+    return _made(family, chance_array(number, 0, "fixed asset", family.name), f"{number}")
+
+
+def _made(family: Family, rng: Generator, number: str) -> Model:
+    model = family.make(rng)
+    named = replace(model, kind=family.kind, family=family.name, held_out=family.held_out)
+    return named.named(f"{family.name}-{number}")
