@@ -9,6 +9,7 @@ TpvqaError
 ├── PictureSetError        the set of pictures is incomplete or damaged
 ├── EpisodeError           an episode cannot be read or resumed
 ├── UnknownNameError       no plug-in or task of that name
+├── PluginError            a plug-in cannot be imported or does not take its arguments
 └── MissingExtraError      an optional package is needed
 """
 
@@ -73,6 +74,10 @@ class UnknownNameError(TpvqaError):
         near = get_close_matches(name, known, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
         super().__init__(f"There is no {kind} {name!r}.{hint} Known: {', '.join(known) or 'none'}.")
+
+
+class PluginError(TpvqaError):
+    """A plug-in cannot be imported, or does not take the arguments of its specification."""
 
 
 class MissingExtraError(TpvqaError):

@@ -1,0 +1,161 @@
+"""Planners, VLMs, worlds and monitors by name, also those of other packages.
+
+A package offers one by an entry point in the group of its kind, `tpvqa.planners`, `tpvqa.vlms`,
+`tpvqa.worlds` or `tpvqa.monitors`. Nothing is imported before it is asked for by name.
+
+A *specification* is what users write: a name, or a name and what follows its first colon, such
+as "oracle:0.8:0.5" or "openai:llama3:8b". The convention for what stands behind an entry point:
+
+- A class (or function) that takes arguments has a class method
+  `from_spec(arguments: str, **context)`. It is given the text after the first colon, "" where
+  there is none, and of the context only what it names in its signature (or all, where it takes
+  `**context`). It raises `PluginError` for arguments that it cannot read.
+- One without `from_spec` is called with what it names of the context, and takes no arguments.
+"""
+
+import inspect
+import re
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires
+from typing import Any
+
+from tpvqa.errors import MissingExtraError, PluginError, TpvqaError, UnknownNameError
+
+
+class Kind(StrEnum):
+    """What can be plugged in, as messages call it."""
+
+    PLANNER = "planner"
+    VLM = "VLM"
+    WORLD = "world"
+    MONITOR = "monitor"
+
+    @property
+    def group(self) -> str:
+        """The group of entry points."""
+        return f"tpvqa.{self.value.lower()}s"
+
+
+def names(kind: Kind) -> list[str]:
+    """The names that can be asked for, sorted."""
+    return sorted({point.name for point in entry_points(group=kind.group)})
+
+
+def load(kind: Kind, name: str) -> Callable[..., Any]:
+    """Import what stands behind a name.
+
+    Raises:
+        UnknownNameError: Nothing of that name; the message suggests the nearest one.
+        MissingExtraError: A package is missing that one of tpvqa's extras installs.
+        PluginError: The plug-in cannot be imported, or two packages offer the name.
+    """
+    found = {point.value: point for point in entry_points(group=kind.group) if point.name == name}
+    if not found:
+        raise UnknownNameError(kind.value, name, names(kind))
+    if len(found) > 1:
+        packages = " and ".join(sorted(_package(point) for point in found.values()))
+        raise PluginError(
+            f"The {kind.value} {name!r} is offered by {packages}. Uninstall one of them."
+        )
+    (point,) = found.values()
+    try:
+        target = point.load()
+    except TpvqaError:
+        raise
+    except Exception as error:
+        raise _cannot_import(kind, point, error) from error
+    if not callable(target):
+        raise PluginError(
+            f"The {kind.value} {name!r} of {_package(point)} is {point.value}, which is neither "
+            "a class nor a function."
+        )
+    return target  # type: ignore[no-any-return]
+
+
+def make(kind: Kind, spec: str, **context: Any) -> Any:
+    """Make the plug-in that a specification names.
+
+    Args:
+        kind: What is wanted.
+        spec: NAME or NAME:ARGUMENTS.
+        **context: What a plug-in may ask for by naming it in its signature.
+
+    Raises:
+        UnknownNameError: Nothing of that name.
+        MissingExtraError: An optional package is needed.
+        PluginError: The plug-in cannot be imported or does not take these arguments.
+    """
+    name, arguments = split(spec)
+    return construct(kind, name, load(kind, name), arguments, context)
+
+
+def split(spec: str) -> tuple[str, str]:
+    """The name of a specification and what follows its first colon."""
+    name, _, arguments = spec.partition(":")
+    return name.strip(), arguments.strip()
+
+
+def construct(
+    kind: Kind, name: str, target: Callable[..., Any], arguments: str, context: Mapping[str, Any]
+) -> Any:
+    """Call what `load` gave by the convention that this module describes.
+
+    Raises:
+        PluginError: It does not take these arguments, or needs what the context does not have.
+    """
+    from_spec = getattr(target, "from_spec", None)
+    if from_spec is None and arguments:
+        raise PluginError(
+            f"The {kind.value} {name!r} takes no arguments, but {arguments!r} was given. "
+            f"Write {name!r} alone."
+        )
+    function, given = (target, ()) if from_spec is None else (from_spec, (arguments,))
+    signature = inspect.signature(function)
+    parameters = signature.parameters.values()
+    takes_all = any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters)
+    wanted = {
+        key: value for key, value in context.items() if takes_all or key in signature.parameters
+    }
+    try:
+        signature.bind(*given, **wanted)
+    except TypeError as error:
+        raise PluginError(
+            f"The {kind.value} {name!r} cannot be made here: {error}. "
+            f"It can have: {', '.join(sorted(context)) or 'nothing'}."
+        ) from None
+    return function(*given, **wanted)
+
+
+def _package(point: EntryPoint) -> str:
+    return point.dist.name if point.dist is not None else point.value
+
+
+def _cannot_import(kind: Kind, point: EntryPoint, error: Exception) -> Exception:
+    missing = (getattr(error, "name", None) or "").partition(".")[0]
+    if isinstance(error, ModuleNotFoundError) and missing and not point.value.startswith(missing):
+        extra = extra_that_installs(missing)
+        if extra is not None:
+            return MissingExtraError(missing, extra, f"The {kind.value} {point.name!r}")
+    return PluginError(
+        f"The {kind.value} {point.name!r} of the package {_package(point)} cannot be imported: "
+        f"{error}. Install that package again, with what it needs."
+    )
+
+
+def extra_that_installs(module: str) -> str | None:
+    """The extra of tpvqa that installs a package, by tpvqa's own metadata; None for none."""
+    try:
+        requirements = requires("tpvqa") or []
+    except PackageNotFoundError:
+        return None
+    for requirement in requirements:
+        package = re.match(r"[A-Za-z0-9._-]+", requirement)
+        extra = re.search(r"extra\s*==\s*['\"]([^'\"]+)['\"]", requirement)
+        if package and extra and _same(package[0], module):
+            return extra[1]
+    return None
+
+
+def _same(package: str, module: str) -> bool:
+    return re.sub(r"[-_.]+", "-", package).lower() == re.sub(r"[-_.]+", "-", module).lower()

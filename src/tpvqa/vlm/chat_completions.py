@@ -1,0 +1,201 @@
+"""The wire: what is sent to a chat completions server, and what its reply says."""
+
+import base64
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pydantic import BaseModel, Field, ValidationError
+
+from tpvqa.observation import Frame
+from tpvqa.vlm.answer import Reply
+from tpvqa.vlm.yes_no import Token, answer_token, mass, read_words, still_thinking
+
+INSTRUCTION = "Answer with one word, yes or no."
+"""Said after the question, so that the options are not the first thing the model hears: naming
+them pushes judges towards the negative one."""
+
+_ROOM_TO_THINK = 2048
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """What a server and model turned out to understand.
+
+    Attributes:
+        logprobs: How many alternatives of each token to ask for; 0 asks for none.
+        limit: The parameter that limits the length, None for no limit.
+        tokens: That limit. Short answers suffice, but reasoning counts too.
+        temperature: Whether a temperature may be given.
+    """
+
+    logprobs: int = 20
+    limit: str | None = "max_tokens"
+    tokens: int = 12
+    temperature: bool = True
+
+    def parameters(self) -> dict[str, Any]:
+        """The optional parameters of a request."""
+        parameters: dict[str, Any] = {}
+        if self.logprobs:
+            parameters |= {"logprobs": True, "top_logprobs": self.logprobs}
+        if self.limit:
+            parameters[self.limit] = self.tokens
+        if self.temperature:
+            parameters["temperature"] = 0
+        return parameters
+
+    def after_refusal(self, complaint: str) -> "Dialect | None":
+        """The dialect to try next after a request was refused; None where nothing is left.
+
+        Args:
+            complaint: What the server said, with the name of the parameter where it gave one.
+        """
+        complaint = complaint.lower()
+        if self.logprobs and re.search(r"log_?prob", complaint):
+            at_most = re.search(
+                r"(?:<=|at most|up to|maximum[^\d]*|less than or equal to)\s*(\d+)", complaint
+            )
+            fewer = int(at_most[1]) if at_most else 0
+            return replace(self, logprobs=fewer if 0 < fewer < self.logprobs else 0)
+        if self.limit and re.search(r"max_(completion_)?tokens|output.token", complaint):
+            other = {"max_tokens": "max_completion_tokens", "max_completion_tokens": None}
+            return replace(self, limit=other[self.limit])
+        if self.temperature and "temperature" in complaint:
+            return replace(self, temperature=False)
+        return None
+
+    def bare(self) -> "Dialect":
+        """Nothing optional at all."""
+        return Dialect(logprobs=0, limit=None, temperature=False)
+
+    def with_room_to_think(self) -> "Dialect | None":
+        """More tokens, for models that reason first; None where that was tried."""
+        if self.limit is None or self.tokens >= _ROOM_TO_THINK:
+            return None
+        return replace(self, tokens=_ROOM_TO_THINK)
+
+
+def messages(frames: Sequence[Frame], question: str, instruction: str) -> list[dict[str, Any]]:
+    """One user message: the pictures, then the question, then how to answer."""
+    content: list[dict[str, Any]] = [
+        {"type": "image_url", "image_url": {"url": data_url(frame)}} for frame in frames
+    ]
+    text = f"{question} {instruction}".strip()
+    if len(frames) > 1:
+        text = f"These {len(frames)} pictures show the same moment from several views. {text}"
+    content.append({"type": "text", "text": text})
+    return [{"role": "user", "content": content}]
+
+
+def data_url(frame: Frame) -> str:
+    """A picture inside an address, as the API takes it."""
+    return f"data:{frame.media_type};base64,{base64.b64encode(frame.data).decode('ascii')}"
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What a reply says.
+
+    Attributes:
+        reply: Yes, no, or *unknown* for whatever is neither clearly.
+        source: "logprobs" or "word".
+        text: The model's words, or why there are none.
+        p_yes: P(yes | yes or no); None where it comes from the bare word or is unknown.
+        leftover: Probability of neither, where known.
+        cut_short: The reply ended at its length limit before a word of the answer.
+    """
+
+    reply: Reply
+    source: str = "word"
+    text: str = ""
+    p_yes: float | None = None
+    leftover: float | None = None
+    cut_short: bool = False
+
+
+class _Alternative(BaseModel):
+    token: str
+    logprob: float
+
+
+class _Token(_Alternative):
+    top_logprobs: list[_Alternative] | None = None
+
+
+class _Logprobs(BaseModel):
+    content: list[_Token] | None = None
+
+
+class _Message(BaseModel):
+    content: str | None = None
+    refusal: str | None = None
+
+
+class _Choice(BaseModel):
+    message: _Message
+    finish_reason: str | None = None
+    # Its shape is checked apart: broken probabilities must not cost a clear word.
+    logprobs: Any = None
+
+
+class _Completion(BaseModel):
+    choices: list[_Choice] = Field(min_length=1)
+
+
+def read_completion(body: str | bytes) -> Reading:
+    """Read the body of a reply. Whatever cannot be read is *unknown*, with the reason."""
+    try:
+        choice = _Completion.model_validate_json(body).choices[0]
+    except (ValidationError, ValueError, RecursionError):
+        shown = body if isinstance(body, str) else body.decode("utf-8", "replace")
+        return Reading(Reply.UNKNOWN, text=f"garbled reply: {shown[:200]}")
+    said = choice.message.content or ""
+    if not said.strip():
+        if choice.message.refusal:
+            return Reading(Reply.UNKNOWN, text=f"refused: {choice.message.refusal[:200]}")
+        cut = choice.finish_reason == "length"
+        return Reading(Reply.UNKNOWN, text="cut short" if cut else "empty reply", cut_short=cut)
+    tokens = _tokens(choice.logprobs)
+    word = read_words(said)
+    token = answer_token(tokens)
+    if token is None or word is Reply.UNKNOWN:
+        cut = choice.finish_reason == "length" and still_thinking(said)
+        return Reading(word, text=said, cut_short=cut)
+    found = mass(token.alternatives.items())
+    p_yes = found.p_yes
+    if p_yes is None or p_yes == 0.5 or found.leftover > 0.5:
+        return Reading(Reply.UNKNOWN, "logprobs", said, leftover=found.leftover)
+    reply = Reply.YES if p_yes > 0.5 else Reply.NO
+    return Reading(reply, "logprobs", said, p_yes=p_yes, leftover=found.leftover)
+
+
+def _tokens(logprobs: Any) -> list[Token]:
+    try:
+        content = _Logprobs.model_validate(logprobs).content or []
+    except ValidationError:
+        return []
+    return [
+        Token(
+            text=token.token,
+            alternatives={token.token: token.logprob}
+            | {other.token: other.logprob for other in token.top_logprobs or []},
+        )
+        for token in content
+    ]
+
+
+def complaint(body: object) -> Mapping[str, str]:
+    """The parts of an error's body that say what is wrong: message, param, code."""
+    if isinstance(body, (str, bytes)):
+        try:
+            body = json.loads(body)
+        except ValueError:
+            return {"message": str(body)[:500]}
+    inner = body.get("error", body) if isinstance(body, Mapping) else body
+    if not isinstance(inner, Mapping):
+        return {"message": str(inner)[:500]}
+    parts = {key: inner.get(key) for key in ("message", "param", "code", "type", "detail")}
+    return {key: str(value)[:500] for key, value in parts.items() if value is not None}
