@@ -71,7 +71,7 @@ def run_episode(
     except KeyboardInterrupt:
         because, trial.message = "cancelled", "interrupted by the user"
     goal = _goal_holds(parts)
-    return recorder.emit(
+    return recorder.end(
         Ended(
             because=because,
             message=trial.message,

@@ -4,7 +4,7 @@ import sys
 
 import typer
 
-from tpvqa.cli import plan, questions
+from tpvqa.cli import plan, questions, run
 from tpvqa.errors import TpvqaError
 
 app = typer.Typer(
@@ -16,6 +16,7 @@ app = typer.Typer(
 )
 plan.register(app)
 questions.register(app)
+run.register(app)
 
 
 def main() -> None:

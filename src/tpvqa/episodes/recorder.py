@@ -88,6 +88,10 @@ class Recorder:
         recorded = self._next(type(event))
         return self._tell(self._writer.append(event) if recorded is None else recorded)  # type: ignore[return-value]
 
+    def end(self, event: E) -> E:
+        """Log the last event, whatever was still to be played back."""
+        return self._tell(self._writer.append(event))  # type: ignore[return-value]
+
     def plan(self, state: State, *, timeout: float | None) -> PlanningResult:
         """A plan from a state."""
         record = self._next(PlanMade)

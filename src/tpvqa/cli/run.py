@@ -1,0 +1,199 @@
+"""`tpvqa run`, `resume`, `show` and `report`."""
+
+import json
+import sys
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from tpvqa.episodes import Ended
+
+_EXIT = "Exit codes: 0 goal reached, 1 not reached, 2 bad input, 130 interrupted."
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands."""
+    app.command(epilog=_EXIT)(run)
+    app.command(epilog=_EXIT)(resume)
+    app.command()(show)
+    app.command()(report)
+
+
+def run(
+    task: Annotated[str | None, typer.Argument(help="A shipped task, see `tpvqa tasks`.")] = None,
+    *,
+    world: Annotated[
+        str | None,
+        typer.Option(help="images, kitchen or symbolic (the default for your own domain)."),
+    ] = None,
+    monitor: Annotated[str, typer.Option(help="tpvqa or none.")] = "tpvqa",
+    vlm: Annotated[
+        str,
+        typer.Option(help="embedded, openai:MODEL, or a noise model: oracle[:ACCURACY[:RHO]]."),
+    ] = "embedded",
+    seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
+    episode: Annotated[int, typer.Option(help="Number of the episode under the seed.")] = 0,
+    out: Annotated[Path | None, typer.Option(help="Folder for the episode.")] = None,
+    domain: Annotated[Path | None, typer.Option(help="Your own domain.")] = None,
+    problem: Annotated[Path | None, typer.Option(help="Your own problem.")] = None,
+    questions: Annotated[Path | None, typer.Option(help="Questions for your domain.")] = None,
+    world_file: Annotated[
+        Path | None, typer.Option(help="What disturbances undo in your domain.")
+    ] = None,
+    base_url: Annotated[str | None, typer.Option(help="Address of an OpenAI-like server.")] = None,
+    majority: Annotated[
+        str, typer.Option(help="tie (at least half deny) or strict (more than half).")
+    ] = "tie",
+    simulator: Annotated[
+        str, typer.Option(help="images world: state, or paper (the paper's to the letter).")
+    ] = "state",
+    failure: Annotated[float, typer.Option(help="P(an action fails).", min=0, max=1)] = 0.25,
+    disturbance: Annotated[
+        float, typer.Option(help="P(a failure undoes something achieved).", min=0, max=1)
+    ] = 0.25,
+    spontaneous: Annotated[
+        float, typer.Option(help="P(something is undone after a success).", min=0, max=1)
+    ] = 0.0,
+    max_repeats: Annotated[int, typer.Option(help="Repeats of an action in a row.", min=0)] = 10,
+    max_replans: Annotated[int, typer.Option(help="Replans in the trial.", min=0)] = 10,
+    max_actions: Annotated[int, typer.Option(help="Actions in the trial.", min=1)] = 60,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the result as JSON; the trial goes to stderr.")
+    ] = False,
+) -> None:
+    """Run one trial: plan, look, ask, act, and repeat or replan where the pictures say so."""
+    from tpvqa.episodes import EpisodeWriter, Limits
+    from tpvqa.errors import TpvqaError
+    from tpvqa.trial import Trial, TrialConfig
+
+    if task is not None and (domain or problem):
+        raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
+    if not (monitor.strip() and vlm.strip()):
+        raise TpvqaError("--monitor and --vlm must not be empty.")
+    own = task is None
+    options: dict[str, object] = {"majority": majority, "simulator": simulator}
+    if base_url is not None:
+        options["base_url"] = base_url
+    config = TrialConfig(
+        task=task,
+        domain=None if domain is None else str(domain.resolve()),
+        problem=None if problem is None else str(problem.resolve()),
+        questions=None if questions is None else str(questions.resolve()),
+        world_file=None if world_file is None else str(world_file.resolve()),
+        monitor=monitor,
+        vlm="oracle" if own and vlm == "embedded" and world is None else vlm,
+        world=world or ("symbolic" if own else "images"),
+        seed=seed,
+        episode=episode,
+        failure=failure,
+        disturbance=disturbance,
+        spontaneous=spontaneous,
+        limits=Limits(repeats=max_repeats, replans=max_replans, actions=max_actions),
+        options=options,
+    )
+    with Trial(config) as trial:
+        for notice in trial.book.notices:
+            print(f"note: {notice}", file=sys.stderr)
+        folder = out or _new_folder(trial.task.name, seed, episode)
+        writer = EpisodeWriter(folder)
+        try:
+            with _view(as_json=as_json) as view:
+                ended = trial.run(writer, folder=folder, listeners=[view])
+        finally:
+            writer.close()
+    _finish(ended, folder, as_json=as_json)
+
+
+def resume(
+    episode: Annotated[Path, typer.Argument(help="Folder of an unfinished episode.")],
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Go on with an episode that was interrupted or killed, to the end it would have had."""
+    from tpvqa.trial import resume as go_on
+
+    with _view(as_json=as_json) as view:
+        ended = go_on(episode, listeners=[view])
+    _finish(ended, episode, as_json=as_json)
+
+
+def show(
+    episode: Annotated[Path, typer.Argument(help="Folder of an episode.")],
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the events as JSON.")] = False,
+) -> None:
+    """Print an episode again."""
+    from rich.console import Console
+
+    from tpvqa.cli.terminal import EpisodeView
+    from tpvqa.episodes import EVENT, read_episode
+
+    events = read_episode(episode)
+    if as_json:
+        print(json.dumps([EVENT.dump_python(event, mode="json") for event in events], indent=1))
+        return
+    view = EpisodeView(Console(), live=False)
+    for event in events:
+        view(event)
+
+
+def report(
+    episode: Annotated[Path, typer.Argument(help="Folder of an episode.")],
+    *,
+    out: Annotated[
+        Path | None, typer.Option(help="File to write; by default report.html in the episode.")
+    ] = None,
+) -> None:
+    """Write one self-contained HTML page about an episode."""
+    from tpvqa.episodes.report import write_report
+
+    print(write_report(episode, out))
+
+
+def _new_folder(task: str, seed: int, episode: int) -> Path:
+    stem = f"{task}-seed{seed}" + (f"-{episode}" if episode else "")
+    folder, number = Path("episodes") / stem, 2
+    while folder.exists():
+        folder, number = Path("episodes") / f"{stem}-run{number}", number + 1
+    return folder
+
+
+def _view(*, as_json: bool):  # type: ignore[no-untyped-def]
+    from rich.console import Console
+
+    from tpvqa.cli.terminal import EpisodeView
+
+    console = Console(stderr=as_json)
+    return nullcontext(_silent) if as_json and not console.is_terminal else EpisodeView(console)
+
+
+def _silent(_event: object) -> None:
+    """Show nothing."""
+
+
+def _finish(ended: "Ended", folder: Path, *, as_json: bool) -> None:
+    if as_json:
+        print(
+            json.dumps(
+                {
+                    "completed": ended.completed,
+                    "ended_because": ended.because,
+                    "message": ended.message,
+                    "actions": ended.actions,
+                    "questions": ended.questions,
+                    "looks": ended.looks,
+                    "repeats": ended.repeats,
+                    "replans": ended.replans,
+                    "episode": str(folder),
+                }
+            )
+        )
+    else:
+        print(f"episode: {folder}  (tpvqa show {folder} · tpvqa report {folder})")
+    if ended.because == "cancelled":
+        raise typer.Exit(130)
+    reached = ended.believed_goal if ended.completed is None else ended.completed
+    raise typer.Exit(0 if reached else 1)

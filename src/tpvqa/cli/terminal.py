@@ -1,0 +1,180 @@
+"""An episode in the terminal: while it runs, and printed again."""
+
+from rich.console import Console, Group, RenderableType
+from rich.live import Live
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from tpvqa.episodes.events import (
+    Acted,
+    Acting,
+    AnswerRecord,
+    Answered,
+    Asked,
+    Believed,
+    Decided,
+    Ended,
+    Event,
+    Observed,
+    PlanMade,
+    QuestionRecord,
+    Started,
+)
+from tpvqa.monitors import Decision
+from tpvqa.vlm import Reply
+
+_REPLY_STYLE = {
+    Reply.YES: "green",
+    Reply.NO: "red",
+    Reply.UNKNOWN: "dim",
+    Reply.CANNOT_SEE: "dim",
+}
+_DECISION_STYLE = {
+    Decision.GO_ON: "green",
+    Decision.REPEAT: "yellow",
+    Decision.REPLAN: "magenta",
+    Decision.DONE: "green",
+    Decision.GIVE_UP: "red",
+}
+_BAR = 10
+
+
+class EpisodeView:
+    """Prints events as lines; in a terminal also keeps the plan in view below them.
+
+    Args:
+        console: Where to print.
+        truth: Whether to print what a simulated world knows about an action's outcome.
+        live: Whether to keep the plan in view; by default in a terminal only.
+    """
+
+    def __init__(self, console: Console, *, truth: bool = True, live: bool | None = None):
+        self._console, self._truth = console, truth
+        self._plan: PlanMade | None = None
+        self._step, self._attempt, self._done = 0, 0, False
+        self._asked: tuple[QuestionRecord, ...] = ()
+        wanted = console.is_terminal if live is None else live
+        self._live = Live(console=console, auto_refresh=False, transient=True) if wanted else None
+
+    def __enter__(self) -> "EpisodeView":
+        if self._live is not None:
+            self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def __call__(self, event: Event) -> None:
+        """Show an event."""
+        match event:
+            case Started():
+                self._line(
+                    f"[bold]{escape(event.task)}[/]  [dim]world[/] {escape(event.world)}  "
+                    f"[dim]monitor[/] {escape(event.monitor)}  [dim]VLM[/] {escape(event.vlm)}  "
+                    f"[dim]seed[/] {event.seed}"
+                )
+            case PlanMade():
+                self._show_plan(event)
+            case Observed():
+                names = ", ".join(frame.file for frame in event.frames) or "no picture"
+                self._line(f"  [dim]look {event.look}: {escape(names)}[/]")
+            case Asked():
+                self._asked = event.questions
+            case Answered():
+                for question, answer in zip(self._asked, event.answers, strict=True):
+                    self._line(_answer_line(question, answer))
+            case Believed():
+                gone = " ".join(event.removed) or "nothing"
+                new = " ".join(event.added) or "nothing"
+                self._line(f"  [dim]now believed: {escape(new)}; no longer: {escape(gone)}[/]")
+            case Decided():
+                self._step = event.step
+                style = _DECISION_STYLE[event.decision]
+                self._line(
+                    f"  [{style}]→ {event.decision}[/] [dim]({event.when} the action)[/] "
+                    f"{escape(event.reason)}"
+                )
+            case Acting():
+                self._step, self._attempt = event.step, event.attempt
+                again = f" [yellow](attempt {event.attempt + 1})[/]" if event.attempt else ""
+                self._line(
+                    f"[bold]{event.step + 1}. {escape(event.action.said)}[/]{again}"
+                )
+            case Acted():
+                self._show_outcome(event)
+            case Ended():
+                self._done = event.believed_goal
+                self._show_end(event)
+        if self._live is not None:
+            self._live.update(self._plan_panel(), refresh=True)
+
+    def _line(self, text: str) -> None:
+        self._console.print(text, highlight=False, soft_wrap=True)
+
+    def _show_plan(self, event: PlanMade) -> None:
+        replanned = self._plan is not None
+        if event.result != "plan":
+            self._line(f"[red]no plan: {event.result}[/] {escape(event.reason)}")
+            return
+        self._plan, self._step, self._attempt = event, 0, 0
+        steps = " · ".join(action.said for action in event.plan) or "nothing left to do"
+        word = "new plan" if replanned else "plan"
+        self._line(
+            f"[cyan]{word}[/] {escape(steps)} [dim]({event.planner}, {event.seconds * 1e3:.0f} ms)[/]"
+        )
+
+    def _show_outcome(self, event: Acted) -> None:
+        if event.message:
+            self._line(f"  [dim]the robot reports {event.report}: {escape(event.message)}[/]")
+        if not self._truth or event.truth is None:
+            return
+        parts = [] if event.truth["succeeded"] else [f"in truth {event.truth['reason']}"]
+        if event.truth["undone"]:
+            parts.append(f"{event.truth['undone']} ended: {event.truth['undoing']}")
+        if parts:
+            self._line(f"  [dim italic]{escape('; '.join(parts))}[/]")
+
+    def _show_end(self, event: Ended) -> None:
+        counts = (
+            f"{event.actions} actions, {event.questions} questions, {event.repeats} repeats, "
+            f"{event.replans} replans"
+        )
+        if event.completed:
+            headline = "[bold green]goal reached[/]"
+        elif event.completed is None:
+            style = "green" if event.believed_goal else "red"
+            headline = f"[bold {style}]ended: {event.because}[/]"
+        else:
+            why = "the goal is believed but does not hold" if event.believed_goal else event.because
+            headline = f"[bold red]goal not reached[/] ({escape(why)})"
+        message = f" [dim]{escape(event.message)}[/]" if event.message else ""
+        self._line(f"{headline}: {counts}{message}")
+
+    def _plan_panel(self) -> RenderableType:
+        if self._plan is None or self._plan.result != "plan":
+            return Text("")
+        table = Table.grid(padding=(0, 1))
+        for number, action in enumerate(self._plan.plan):
+            if self._done or number < self._step:
+                mark, style = "✓", "green"
+            elif number == self._step:
+                mark, style = "▶", "bold"
+            else:
+                mark, style = " ", "dim"
+            table.add_row(Text(mark, style), Text(f"{number + 1}. {action.said}", style))
+        return Group(Text("─" * min(40, self._console.width), "dim"), table)
+
+
+def _answer_line(question: QuestionRecord, answer: AnswerRecord) -> str:
+    style = _REPLY_STYLE[answer.reply]
+    agrees = {Reply.YES: question.expected, Reply.NO: not question.expected}.get(answer.reply)
+    mark = {True: "[green]✓[/]", False: "[red]✗[/]", None: "[dim]·[/]"}[agrees]
+    if answer.p_yes is None:
+        chance = ""
+    else:
+        filled = round(answer.p_yes * _BAR)
+        chance = f" [{style}]{'▰' * filled}[/][dim]{'▱' * (_BAR - filled)}[/] {answer.p_yes:.2f}"
+    why = f" [dim]{escape(answer.text)}[/]" if answer.reply is Reply.UNKNOWN else ""
+    return f"  {mark} {escape(question.text)} [{style}]{answer.reply}[/]{chance}{why}"

@@ -1,0 +1,156 @@
+"""The events of an episode told as chapters: plans, and actions with their checks."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from tpvqa.episodes.events import (
+    Acted,
+    Acting,
+    ActionRecord,
+    AnswerRecord,
+    Answered,
+    Asked,
+    Believed,
+    Decided,
+    Ended,
+    Event,
+    FrameRecord,
+    Observed,
+    PlanMade,
+    QuestionRecord,
+    Started,
+)
+from tpvqa.errors import EpisodeError
+from tpvqa.vlm import Reply
+
+
+@dataclass
+class Asking:
+    """One question with its answer."""
+
+    question: QuestionRecord
+    answer: AnswerRecord | None = None
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether the answer agrees with what is expected; None where there is none."""
+        if self.answer is None or self.answer.reply not in (Reply.YES, Reply.NO):
+            return None
+        return (self.answer.reply is Reply.YES) == self.question.expected
+
+
+@dataclass
+class Check:
+    """One look, or none, with what was asked about it."""
+
+    look: int | None = None
+    frames: tuple[FrameRecord, ...] = ()
+    askings: list[Asking] = field(default_factory=list)
+
+
+@dataclass
+class Phase:
+    """The checks before or after an action, and what was decided."""
+
+    checks: list[Check] = field(default_factory=list)
+    decided: Decided | None = None
+    believed: Believed | None = None
+
+
+@dataclass
+class Chapter:
+    """One action: its check before, what came of it, its check after. Or a plan."""
+
+    plan: PlanMade | None = None
+    before: Phase = field(default_factory=Phase)
+    acting: Acting | None = None
+    acted: Acted | None = None
+    after: Phase = field(default_factory=Phase)
+    step: int | None = None
+    action: ActionRecord | None = None
+
+    @property
+    def phases(self) -> list[tuple[str, Phase]]:
+        """The phases that have something to tell, with their names."""
+        named = [("before", self.before), ("after", self.after)]
+        return [(name, phase) for name, phase in named if phase.checks or phase.decided]
+
+
+@dataclass
+class Story:
+    """An episode as a reader wants it."""
+
+    started: Started
+    chapters: list[Chapter]
+    ended: Ended | None
+
+    @property
+    def actions(self) -> list[Chapter]:
+        """The chapters in which something was done or decided about an action."""
+        return [chapter for chapter in self.chapters if chapter.plan is None]
+
+
+def tell(events: Sequence[Event]) -> Story:
+    """Put events in order of chapters; an unfinished episode is told as far as it goes.
+
+    Raises:
+        EpisodeError: The events do not begin with the beginning.
+    """
+    if not events or not isinstance(events[0], Started):
+        raise EpisodeError("the episode has no beginning")
+    story = Story(events[0], [], None)
+    plan: PlanMade | None = None
+    current: Chapter | None = None
+    phase: Phase | None = None
+
+    def chapter() -> Chapter:
+        nonlocal current, phase
+        if current is None:
+            current = Chapter()
+            phase = current.before
+            story.chapters.append(current)
+        return current
+
+    for event in events[1:]:
+        match event:
+            case PlanMade():
+                plan = event
+                story.chapters.append(Chapter(plan=event))
+                current = None
+            case Observed():
+                chapter()
+                assert phase is not None
+                phase.checks.append(Check(event.look, event.frames))
+            case Asked():
+                chapter()
+                assert phase is not None
+                if not phase.checks:
+                    phase.checks.append(Check())
+                phase.checks[-1].askings += [Asking(question) for question in event.questions]
+            case Answered():
+                assert phase is not None
+                askings = phase.checks[-1].askings[-len(event.answers) :]
+                for asking, answer in zip(askings, event.answers, strict=True):
+                    asking.answer = answer
+            case Decided():
+                here = chapter()
+                assert phase is not None
+                phase.decided = event
+                here.step = event.step
+                if plan is not None and event.step < len(plan.plan):
+                    here.action = plan.plan[event.step]
+                # A verdict that sends the trial elsewhere ends the chapter.
+                if event.when == "after" or event.decision != "go on":
+                    current = None
+            case Believed():
+                last = story.chapters[-1]
+                (last.after if last.after.decided else last.before).believed = event
+            case Acting():
+                here = chapter()
+                here.acting, here.action, here.step = event, event.action, event.step
+                phase = here.after
+            case Acted():
+                chapter().acted = event
+            case Ended():
+                story.ended = event
+    return story

@@ -1,0 +1,291 @@
+"""From names to a trial: puts together what `run_episode` needs, and runs or resumes it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import Event as Flag
+from types import TracebackType
+from typing import Any
+
+from tpvqa import __version__
+from tpvqa.episodes import Ended, Event, Limits, Parts, Started, read_episode
+from tpvqa.episodes.log import EpisodeWriter
+from tpvqa.episodes.recorder import Writer
+from tpvqa.episodes.records import atoms
+from tpvqa.errors import EpisodeError, TpvqaError
+from tpvqa.loop import run_episode
+from tpvqa.monitors import Monitor
+from tpvqa.pddl import Task, load_task
+from tpvqa.planning import Planner
+from tpvqa.plugins import Kind, make
+from tpvqa.questions import QuestionBook
+from tpvqa.tasks import find_task
+from tpvqa.vlm import VLM
+from tpvqa.worlds import World
+from tpvqa.worlds.simulation import DISTURBANCE, FAILURE, Simulation
+from tpvqa.worlds.undo import load_undo_rules
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrialConfig:
+    """What a trial is, in names and numbers.
+
+    Attributes:
+        task: A shipped task; or None with `domain` and `problem` given.
+        domain: The user's own domain file.
+        problem: The user's own problem file.
+        questions: The user's questions file; without one every question is a fallback.
+        world_file: What disturbances can undo, for simulated worlds.
+        monitor: Specification of the monitor.
+        vlm: Specification of the VLM; unused by monitors that never ask.
+        world: Specification of the world.
+        planner: Specification of the planner.
+        seed: Decides, with `episode`, every random number.
+        episode: Number of the episode under this seed.
+        failure: Probability that a possible action fails.
+        disturbance: Probability that a failure undoes an achieved fact.
+        spontaneous: Probability that an achieved fact is undone after a success.
+        limits: When to end without success.
+        planning_timeout: Seconds for one call of the planner.
+        action_deadline: Seconds for one action.
+        options: Further keyword arguments for the plug-ins (`base_url`, `majority`, …).
+    """
+
+    task: str | None = None
+    domain: str | None = None
+    problem: str | None = None
+    questions: str | None = None
+    world_file: str | None = None
+    monitor: str = "tpvqa"
+    vlm: str = "embedded"
+    world: str = "images"
+    planner: str = "fast-downward"
+    seed: int = 0
+    episode: int = 0
+    failure: float = FAILURE
+    disturbance: float = DISTURBANCE
+    spontaneous: float = 0.0
+    limits: Limits = field(default_factory=Limits)
+    planning_timeout: float = 30.0
+    action_deadline: float | None = None
+    options: dict[str, Any] = field(default_factory=dict)
+
+
+class Trial:
+    """A trial that is ready to run. Use it as a context manager: it ends what it started.
+
+    Args:
+        config: What the trial is.
+        task: The task, where it has been loaded already.
+        planner: A planner to share between trials; not closed here.
+        vlm: A VLM to share between trials.
+    """
+
+    def __init__(
+        self,
+        config: TrialConfig,
+        *,
+        task: Task | None = None,
+        planner: Planner | None = None,
+        vlm: VLM | None = None,
+    ):
+        self.config = config
+        self._closing: list[Callable[[], None]] = []
+        try:
+            self._prepare(task, planner, vlm)
+        except BaseException:
+            self.close()
+            raise
+
+    def _prepare(self, task: Task | None, planner: Planner | None, vlm: VLM | None) -> None:
+        config = self.config
+        files = None if config.task is None else find_task(config.task)
+        if files is None and (config.domain is None or config.problem is None):
+            raise TpvqaError("Name a shipped task, or give both --domain and --problem.")
+        self.domain = Path(config.domain if files is None else files.domain)  # type: ignore[arg-type]
+        self.problem = Path(config.problem if files is None else files.problem)  # type: ignore[arg-type]
+        self.questions = config.questions or (files.questions if files else None)
+        self.world_file = config.world_file or (files.world if files else None)
+        self.task = task or load_task(self.domain, self.problem)
+        self.book = QuestionBook.load(self.questions, self.task)
+        if planner is None:
+            planner = make(Kind.PLANNER, config.planner)
+            self._closing.append(planner.close)
+        self.simulation = Simulation(
+            self.task,
+            load_undo_rules(self.world_file, self.task),
+            failure=config.failure,
+            disturbance=config.disturbance,
+            spontaneous=config.spontaneous,
+            seed=config.seed,
+            episode=config.episode,
+        )
+        context = {
+            **config.options,
+            "task": self.task,
+            "book": self.book,
+            "planner": planner,
+            "simulation": self.simulation,
+            "seed": config.seed,
+            "episode": config.episode,
+        }
+        self.world: World = make(Kind.WORLD, config.world, **context)
+        self._closing.append(self.world.close)
+        truth = getattr(self.world, "truth", None)
+        if truth is not None:
+            context["truth"] = truth
+        self.monitor: Monitor = make(Kind.MONITOR, config.monitor, **context)
+        self.vlm: VLM = vlm or make(Kind.VLM, config.vlm, **context)
+        self.parts = Parts(self.task, self.book, planner, self.world, self.vlm)
+
+    def started(self) -> Started:
+        """The first event of the trial's episode."""
+        config = self.config
+        return Started(
+            version=__version__,
+            task=self.task.name,
+            domain_file=str(self.domain),
+            problem_file=str(self.problem),
+            questions_file=None if self.questions is None else str(self.questions),
+            world_file=None if self.world_file is None else str(self.world_file),
+            domain=self.domain.read_text(encoding="utf-8"),
+            problem=self.problem.read_text(encoding="utf-8"),
+            initial=atoms(self.task.init),
+            goal=", ".join(self.book.fact(literal).text for literal in self._goal_literals()),
+            monitor=config.monitor,
+            vlm=config.vlm,
+            world=config.world,
+            planner=self.parts.planner.name,
+            seed=config.seed,
+            episode=config.episode,
+            limits=config.limits,
+            settings={
+                "shipped_task": config.task,
+                "failure": config.failure,
+                "disturbance": config.disturbance,
+                "spontaneous": config.spontaneous,
+                "planning_timeout": config.planning_timeout,
+                "action_deadline": config.action_deadline,
+                "options": config.options,
+            },
+        )
+
+    def run(
+        self,
+        writer: Writer,
+        *,
+        started: Started | None = None,
+        recorded: Sequence[Event] = (),
+        folder: Path | None = None,
+        listeners: Sequence[Callable[[Event], None]] = (),
+        cancel: Flag | None = None,
+    ) -> Ended:
+        """Run it to its end, or go on from recorded events."""
+        return run_episode(
+            self.parts,
+            self.monitor,
+            writer,
+            started or self.started(),
+            recorded=recorded,
+            folder=folder,
+            listeners=listeners,
+            planning_timeout=self.config.planning_timeout,
+            action_deadline=self.config.action_deadline,
+            cancel=cancel,
+        )
+
+    def _goal_literals(self) -> list[Any]:
+        from tpvqa.pddl import literals
+
+        return list(literals(self.task.goal))
+
+    def close(self) -> None:
+        """End planner and world. Can be called twice."""
+        while self._closing:
+            self._closing.pop()()
+
+    def __enter__(self) -> "Trial":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def config_of(started: Started) -> TrialConfig:
+    """The configuration that an episode was started with.
+
+    Raises:
+        EpisodeError: Its domain or problem is no longer what it was.
+    """
+    settings = started.settings
+    shipped = settings["shipped_task"]
+    files = None if shipped is None else find_task(shipped)
+    domain = started.domain_file if files is None else str(files.domain)
+    problem = started.problem_file if files is None else str(files.problem)
+    for path, text in ((domain, started.domain), (problem, started.problem)):
+        try:
+            same = Path(path).read_text(encoding="utf-8") == text
+        except OSError as error:
+            raise EpisodeError(f"{path}: cannot be read ({error.strerror})") from error
+        if not same:
+            raise EpisodeError(
+                f"{path} has changed since the episode began: it cannot be resumed, only shown"
+            )
+    return TrialConfig(
+        task=shipped,
+        domain=None if shipped else domain,
+        problem=None if shipped else problem,
+        questions=None if shipped else started.questions_file,
+        world_file=None if shipped else started.world_file,
+        monitor=started.monitor,
+        vlm=started.vlm,
+        world=started.world,
+        seed=started.seed,
+        episode=started.episode,
+        failure=settings["failure"],
+        disturbance=settings["disturbance"],
+        spontaneous=settings["spontaneous"],
+        limits=started.limits,
+        planning_timeout=settings["planning_timeout"],
+        action_deadline=settings["action_deadline"],
+        options=settings["options"],
+    )
+
+
+def resume(
+    folder: Path | str,
+    *,
+    listeners: Sequence[Callable[[Event], None]] = (),
+    cancel: Flag | None = None,
+) -> Ended:
+    """Go on with an unfinished episode, with the same random numbers, to the same end.
+
+    Raises:
+        EpisodeError: There is nothing to go on with, or it has ended already.
+    """
+    events = read_episode(folder)
+    started, last = events[0], events[-1]
+    assert isinstance(started, Started)
+    if isinstance(last, Ended) and last.because != "cancelled":
+        raise EpisodeError(f"{folder}: the episode has ended ({last.because}); show it instead")
+    if isinstance(last, Ended):
+        events.pop()
+    folder = Path(folder)
+    with Trial(config_of(started)) as trial:
+        writer = EpisodeWriter(folder, resume=len(events))
+        try:
+            return trial.run(
+                writer,
+                started=started,
+                recorded=events,
+                folder=folder,
+                listeners=listeners,
+                cancel=cancel,
+            )
+        finally:
+            writer.close()
