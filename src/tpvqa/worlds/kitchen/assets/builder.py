@@ -1,5 +1,6 @@
 """Putting a model together, part by part."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from tpvqa.worlds.kitchen.assets.mesh import Mesh, encode
@@ -157,7 +158,10 @@ class Builder:
         extent: Vec,
         mass: float,
         *,
-        grasp: Grasp | None = None,
+        grasps: tuple[Grasp, ...] = (),
+        colour: tuple[float, float, float] = (0.5, 0.5, 0.5),
+        dish: Sequence[tuple[float, float]] = (),
+        half: Model | None = None,
         creator: str = "",
         licence: str = "Apache-2.0",
         pack: str = "",
@@ -176,7 +180,10 @@ class Builder:
             files=dict(self.files),
             joints=tuple(self.joints),
             surfaces=tuple(self.surfaces),
-            grasp=grasp,
+            grasps=grasps,
+            colour=(float(colour[0]), float(colour[1]), float(colour[2])),
+            dish=tuple((float(r), float(z)) for r, z in dish),
+            half=half,
             creator=creator,
             licence=licence,
             pack=pack,

@@ -103,8 +103,14 @@ def _plate(
         "plate",
         (2 * radius, 2 * radius, depth),
         rng.uniform(0.3, 0.6),
-        grasp=Grasp(
-            offset=(radius - 0.018, 0, depth - 0.006), axis=(0, 0, 1), approach=(-1, 0, 0),
-            width=0.008,
-        ),
+        grasps=(rim_grasp(radius, depth),),
+        colour=colour,
+        dish=[(float(r), float(z)) for r, z in profile[:7:-1]],
+    )
+
+
+def rim_grasp(radius: float, depth: float) -> Grasp:
+    """From the -y side, one finger above and one below the rim."""
+    return Grasp(
+        offset=(0, 0.018 - radius, depth - 0.006), axis=(0, 0, 1), approach=(0, 1, 0), width=0.008
     )

@@ -81,5 +81,13 @@ def _fixed(family: Family, number: int) -> Model:
 
 def _made(family: Family, rng: Generator, number: str) -> Model:
     model = family.make(rng)
-    named = replace(model, kind=family.kind, family=family.name, held_out=family.held_out)
-    return named.named(f"{family.name}-{number}")
+    return _placed(model, family).named(f"{family.name}-{number}")
+
+
+def _placed(model: Model, family: Family) -> Model:
+    half = model.half and replace(
+        model.half, kind="apple_half", family=family.name, held_out=family.held_out
+    )
+    return replace(
+        model, kind=family.kind, family=family.name, held_out=family.held_out, half=half
+    )

@@ -156,11 +156,13 @@ class Model:
         files: Bytes of the meshes and textures by name, for `MjModel.from_xml_string(assets=…)`.
         joints: Bodies that move.
         surfaces: Where things can stand.
-        grasp: How it is held, for things that can be picked up.
+        grasps: Ways of holding it, the preferred one first; none for what stays where it is.
         creator: Who made it; empty for this project's own shapes.
         licence: Short name of the licence.
         pack: The collection that it comes from.
-        skin: For apples: the name of the fruit whose halves match.
+        colour: The colour that it mainly has.
+        dish: For plates, the upper side as (radius, height) points from the middle outwards.
+        half: For an apple, one of its two equal halves, lying on its back with the flesh up.
     """
 
     kind: str
@@ -175,10 +177,24 @@ class Model:
     files: Mapping[str, bytes] = field(repr=False)
     joints: tuple[Joint, ...] = ()
     surfaces: tuple[Surface, ...] = ()
-    grasp: Grasp | None = None
+    grasps: tuple[Grasp, ...] = ()
     creator: str = ""
     licence: str = "Apache-2.0"
     pack: str = ""
+    colour: tuple[float, float, float] = (0.5, 0.5, 0.5)
+    dish: tuple[tuple[float, float], ...] = ()
+    half: "Model | None" = field(default=None, repr=False)
+
+    @property
+    def grasp(self) -> Grasp:
+        """The preferred way of holding it.
+
+        Raises:
+            ValueError: It cannot be picked up.
+        """
+        if not self.grasps:
+            raise ValueError(f"{self.name} cannot be picked up")
+        return self.grasps[0]
 
     def material(self, paint: str) -> str:
         """The name under which a paint is known to MuJoCo."""
@@ -296,6 +312,7 @@ class Model:
             ),
             parts=tuple(replace(p, mesh=new[p.mesh] if p.mesh else None) for p in self.parts),
             files={new[old]: data for old, data in self.files.items()},
+            half=self.half.named(f"{name}-half") if self.half else None,
         )
 
 
