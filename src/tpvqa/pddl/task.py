@@ -1,43 +1,264 @@
 """The task: what the planner plans with and the monitor asks about."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, fields, replace
+from difflib import get_close_matches
 from functools import cached_property
+from hashlib import blake2b
 from pathlib import Path
+from typing import Any
 
-from tpvqa.pddl.atoms import Atom, Literal, State
-from tpvqa.pddl.conditions import Condition
+from tpvqa.errors import PDDLError
+from tpvqa.pddl.atoms import Atom, State
+from tpvqa.pddl.conditions import Condition, holds
+from tpvqa.pddl.derivation import Derivation
+from tpvqa.pddl.ground import Action, Effect, MutexGroup
+from tpvqa.pddl.schema import ActionSchema, AxiomSchema, ground_action
+
+__all__ = ["Action", "Effect", "MutexGroup", "Task"]
 
 
-@dataclass(frozen=True, slots=True)
-class Effect:
-    """A literal that becomes true, if its condition held before."""
+@dataclass(frozen=True, eq=False)
+class Task:
+    """A planning task as its author wrote it, with what grounding it revealed.
 
-    condition: Condition
-    literal: Literal
-
-
-@dataclass(frozen=True, slots=True)
-class Action:
-    """A ground action as its author wrote it."""
+    Attributes:
+        name: The problem's name.
+        domain_name: The domain's name.
+        objects: The type of each object, constants of the domain included.
+        types: The parent of each type; None for `object` and other roots.
+        predicates: The types of each predicate's arguments; `a|b` for `(either a b)`.
+        init: The initial state, static facts included, derived ones not.
+        goal: The goal.
+        fluents: The predicates that actions change.
+        derived: The predicates that follow from axioms.
+        schemas: The actions with their variables.
+        axioms: The axioms.
+        mutex_groups: Groups of atoms of which at most one, or exactly one, holds in every state
+            that can be reached from the initial one.
+        objects_by_type: The objects of each type, those of its subtypes included.
+        functions: The values that action costs refer to.
+        domain_path: Where the domain was read from; None where it was not a file.
+        problem_path: Where the problem was read from.
+        domain_text: The text of the domain.
+        problem_text: The text of the problem.
+    """
 
     name: str
-    arguments: tuple[str, ...]
-    precondition: Condition
-    effects: tuple[Effect, ...]
-    cost: int = 1
+    domain_name: str
+    objects: Mapping[str, str]
+    types: Mapping[str, str | None]
+    predicates: Mapping[str, tuple[str, ...]]
+    init: State
+    goal: Condition
+    fluents: frozenset[str]
+    derived: frozenset[str]
+    schemas: tuple[ActionSchema, ...] = field(repr=False)
+    axioms: tuple[AxiomSchema, ...] = field(repr=False)
+    mutex_groups: tuple[MutexGroup, ...] = field(repr=False)
+    objects_by_type: Mapping[str, tuple[str, ...]] = field(repr=False)
+    functions: Mapping[tuple[str, ...], int] = field(repr=False)
+    reachable_atoms: frozenset[Atom] = field(repr=False)
+    reachable_actions: tuple[tuple[str, ...], ...] = field(repr=False)
+    domain_path: Path | None = field(repr=False)
+    problem_path: Path | None = field(repr=False)
+    domain_text: str = field(repr=False)
+    problem_text: str = field(repr=False)
 
-    def __str__(self) -> str:
-        return f"{self.name}({', '.join(self.arguments)})"
+    @cached_property
+    def key(self) -> str:
+        """Names the domain and the problem, whatever the initial state."""
+        digest = blake2b(digest_size=16)
+        for text in (self.domain_text, self.problem_text):
+            digest.update(text.encode() + b"\0")
+        return digest.hexdigest()
 
-    def pddl(self) -> str:
-        """As a plan file writes it, e.g. `(pick_up plate table left)`."""
-        return f"({' '.join((self.name, *self.arguments))})"
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Task) and (self.key, self.init) == (other.key, other.init)
+
+    def __hash__(self) -> int:
+        return hash((self.key, self.init))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {part.name: getattr(self, part.name) for part in fields(self)}
+
+    @cached_property
+    def _schemas_by_name(self) -> dict[str, ActionSchema]:
+        return {schema.name: schema for schema in self.schemas}
+
+    @cached_property
+    def _actions(self) -> dict[tuple[str, ...], Action]:
+        return {}
+
+    def action(self, name: str, arguments: Iterable[str] = ()) -> Action:
+        """The ground action of a name and arguments, as its author wrote it.
+
+        Raises:
+            PDDLError: There is no such action or object, or number or types do not fit.
+        """
+        words = (name.lower(), *(argument.lower() for argument in arguments))
+        action = self._actions.get(words)
+        if action is None:
+            schema = self._checked(words)
+            action = ground_action(schema, words[1:], self.objects_by_type, self.functions)
+            self._actions[words] = action
+        return action
+
+    def _checked(self, words: tuple[str, ...]) -> ActionSchema:
+        name, *arguments = words
+        schema = self._schemas_by_name.get(name)
+        if schema is None:
+            raise PDDLError(
+                f"the domain {self.domain_name} has no action {name!r}"
+                + _hint(name, self._schemas_by_name),
+                file=self.domain_path,
+            )
+        wanted = ", ".join(f"{part.name} - {part.type}" for part in schema.parameters)
+        if len(arguments) != len(schema.parameters):
+            raise PDDLError(
+                f"the action {name} takes {len(schema.parameters)} arguments ({wanted}), "
+                f"got {len(arguments)}: {' '.join(arguments) or 'none'}",
+                file=self.domain_path,
+            )
+        for argument, parameter in zip(arguments, schema.parameters, strict=True):
+            if argument not in self.objects:
+                raise PDDLError(
+                    f"there is no object {argument!r}" + _hint(argument, self.objects),
+                    file=self.problem_path,
+                )
+            if argument not in self.objects_by_type.get(parameter.type, ()):
+                raise PDDLError(
+                    f"{argument} is a {self.objects[argument]}, but {parameter.name} of the action "
+                    f"{name} must be a {parameter.type}",
+                    file=self.domain_path,
+                )
+        cost = schema.cost
+        if not isinstance(cost, int):
+            binding = {
+                p.name: argument for p, argument in zip(schema.parameters, arguments, strict=True)
+            }
+            function = tuple(binding.get(word, word) for word in cost)
+            if function not in self.functions:
+                raise PDDLError(
+                    f"the cost of {name}({', '.join(arguments)}) is ({' '.join(function)}), "
+                    "to which the initial state gives no value",
+                    file=self.problem_path,
+                )
+        return schema
+
+    def ground_actions(self) -> tuple[Action, ...]:
+        """All actions that are reachable from the initial state where delete effects are ignored."""
+        return self._ground_actions
+
+    @cached_property
+    def _ground_actions(self) -> tuple[Action, ...]:
+        return tuple(self.action(words[0], words[1:]) for words in self.reachable_actions)
+
+    def atoms(self) -> frozenset[Atom]:
+        """The atoms that change or are derived, and are reachable as `ground_actions` are."""
+        return self.reachable_atoms
+
+    @cached_property
+    def static(self) -> State:
+        """The facts of the initial state that no action changes."""
+        return frozenset(atom for atom in self.init if atom.predicate not in self.fluents)
+
+    @cached_property
+    def _derivations(self) -> dict[State, Derivation]:
+        return {}
+
+    def extend(self, state: State) -> State:
+        """The state with its derived atoms."""
+        if not self.axioms:
+            return state
+        static = frozenset(atom for atom in state if atom.predicate not in self.fluents)
+        derivation = self._derivations.get(static)
+        if derivation is None:
+            constant = frozenset(self.predicates) - self.fluents - self.derived
+            derivation = Derivation(self.axioms, self.objects_by_type, static, constant)
+            self._derivations.clear()
+            self._derivations[static] = derivation
+        return derivation.extend(state)
+
+    def applicable(self, state: State, action: Action) -> bool:
+        """Whether an action's precondition holds in a state."""
+        return holds(action.precondition, self.extend(state))
+
+    def apply(self, state: State, action: Action) -> State:
+        """The state after an action; whether it is applicable is not asked.
+
+        Conditions of effects are those of the state before; what is both added and deleted holds.
+        """
+        before = self.extend(state)
+        added, deleted = set(), set()
+        for effect in action.effects:
+            if holds(effect.condition, before):
+                (added if effect.literal.positive else deleted).add(effect.literal.atom)
+        return (state - deleted) | added
+
+    def goal_holds(self, state: State) -> bool:
+        """Whether the goal holds in a state."""
+        return holds(self.goal, self.extend(state))
+
+    @cached_property
+    def _groups_by_atom(self) -> dict[Atom, tuple[MutexGroup, ...]]:
+        index: dict[Atom, list[MutexGroup]] = {}
+        for group in self.mutex_groups:
+            for atom in group.atoms:
+                index.setdefault(atom, []).append(group)
+        return {atom: tuple(groups) for atom, groups in index.items()}
+
+    def groups_of(self, atom: Atom) -> tuple[MutexGroup, ...]:
+        """The mutex groups that an atom belongs to."""
+        return self._groups_by_atom.get(atom, ())
+
+    def check_state(self, state: State) -> None:
+        """See that a state speaks of this task's predicates and objects.
+
+        Raises:
+            PDDLError: It does not.
+        """
+        for atom in state:
+            self.check_atom(atom)
+
+    def check_atom(self, atom: Atom) -> None:
+        """See that an atom speaks of this task's predicates and objects.
+
+        Raises:
+            PDDLError: It does not.
+        """
+        wanted = self.predicates.get(atom.predicate)
+        if wanted is None:
+            raise PDDLError(
+                f"{atom.pddl()}: there is no predicate {atom.predicate!r}"
+                + _hint(atom.predicate, self.predicates)
+            )
+        if len(wanted) != len(atom.arguments):
+            raise PDDLError(
+                f"{atom.pddl()}: {atom.predicate} takes {len(wanted)} arguments "
+                f"({', '.join(wanted) or 'none'}), got {len(atom.arguments)}"
+            )
+        for argument in atom.arguments:
+            if argument not in self.objects:
+                raise PDDLError(
+                    f"{atom.pddl()}: there is no object {argument!r}"
+                    + _hint(argument, self.objects)
+                )
+
+    def with_init(self, state: State) -> "Task":
+        """The same task from another initial state, with the mutex groups that hold from there.
+
+        Raises:
+            PDDLError: The state speaks of unknown predicates or objects.
+            PlannerError: The worker could not ground it.
+        """
+        from tpvqa.pddl.loading import grounded_parts
+
+        self.check_state(state)
+        return replace(self, **grounded_parts(self, state))
 
 
-@dataclass(frozen=True, slots=True)
-class MutexGroup:
-    """Atoms of which at most one holds, or exactly one."""
-
-    atoms: frozenset[Atom]
-    exactly_one: bool
+def _hint(word: str, known: Iterable[str]) -> str:
+    names = sorted(known)
+    near = get_close_matches(word, names, n=1)
+    return f"; did you mean {near[0]!r}?" if near else f"; expected one of: {', '.join(names)}"

@@ -1,0 +1,226 @@
+"""PDDL files → `Task`. The text is read once, here; the worker parses and grounds it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tpvqa.errors import PDDLError, PlannerError
+from tpvqa.pddl.atoms import Atom, State
+from tpvqa.pddl.ground import MutexGroup
+from tpvqa.pddl.processes import WorkerTimedOut, ask_worker
+from tpvqa.pddl.schema import (
+    ActionSchema,
+    AxiomSchema,
+    ConditionSchema,
+    EffectSchema,
+    Junction,
+    LiteralSchema,
+    Parameter,
+    Quantified,
+    ground_condition,
+)
+from tpvqa.pddl.task import Task
+
+
+def load_task(
+    name_or_domain: str | Path, problem: str | Path | None = None, *, timeout: float | None = 300.0
+) -> Task:
+    """Read a task.
+
+    Args:
+        name_or_domain: The name of a shipped task, or the path of a domain.
+        problem: The path of the problem, where the first argument is a path.
+        timeout: Seconds that reading and grounding may take; None for no limit.
+
+    Raises:
+        UnknownNameError: There is no shipped task of that name.
+        PDDLError: A file is missing or cannot be read as PDDL.
+        PlannerError: Grounding took too long or failed.
+
+    Example:
+        >>> load_task("clean_dishes").goal
+        Literal(atom=Atom(predicate='clean', arguments=('plate',)), positive=True)
+    """
+    if problem is None:
+        from tpvqa.tasks import find_task
+
+        files = find_task(str(name_or_domain))
+        domain_path, problem_path = files.domain, files.problem
+    else:
+        domain_path, problem_path = Path(name_or_domain), Path(problem)
+    return task_from_text(
+        _text(domain_path, "domain"),
+        _text(problem_path, "problem"),
+        domain_path=domain_path,
+        problem_path=problem_path,
+        timeout=timeout,
+    )
+
+
+def task_from_text(
+    domain: str,
+    problem: str,
+    *,
+    domain_path: Path | None = None,
+    problem_path: Path | None = None,
+    timeout: float | None = 300.0,
+) -> Task:
+    """Read a task from PDDL text; the paths are only what errors name.
+
+    Raises:
+        PDDLError: The text cannot be read as PDDL.
+        PlannerError: Grounding took too long or failed.
+    """
+    from hashlib import blake2b
+
+    digest = blake2b(digest_size=16)
+    for text in (domain, problem):
+        digest.update(text.encode() + b"\0")
+    description = _described(
+        digest.hexdigest(), domain, problem, None, (domain_path, problem_path), timeout
+    )
+    objects_by_type = {
+        kind: tuple(things) for kind, things in description["objects_by_type"].items()
+    }
+    return Task(
+        name=description["name"],
+        domain_name=description["domain_name"],
+        objects={name: kind for name, kind in description["objects"]},
+        types={name: parent for name, parent in description["types"]},
+        predicates={name: tuple(types) for name, types in description["predicates"]},
+        goal=ground_condition(_condition(description["goal"]), {}, objects_by_type),
+        fluents=frozenset(description["fluents"]),
+        derived=frozenset(description["derived"]),
+        schemas=tuple(_action(part) for part in description["actions"]),
+        axioms=tuple(
+            AxiomSchema(
+                part["predicate"], _parameters(part["parameters"]), _condition(part["condition"])
+            )
+            for part in description["axioms"]
+        ),
+        objects_by_type=objects_by_type,
+        functions={tuple(words): value for words, value in description["functions"]},
+        domain_path=domain_path,
+        problem_path=problem_path,
+        domain_text=domain,
+        problem_text=problem,
+        **_grounded(description),
+    )
+
+
+def grounded_parts(task: Task, state: State) -> dict[str, Any]:
+    """The fields of a task that depend on its initial state, for another one."""
+    description = _described(
+        task.key,
+        task.domain_text,
+        task.problem_text,
+        state,
+        (task.domain_path, task.problem_path),
+        300.0,
+    )
+    return _grounded(description)
+
+
+def _described(
+    key: str,
+    domain: str,
+    problem: str,
+    state: State | None,
+    paths: tuple[Path | None, Path | None],
+    timeout: float | None,
+) -> dict[str, Any]:
+    initial = None if state is None else to_lists(state)
+    try:
+        reply = ask_worker(
+            {"do": "describe", "init": initial},
+            key=key,
+            domain=domain,
+            problem=problem,
+            seconds=timeout,
+        )
+    except WorkerTimedOut:
+        raise PlannerError(
+            f"grounding the task took more than {timeout:g} s; give it more time "
+            "(timeout=…), or make the problem smaller"
+        ) from None
+    if "error" in reply:
+        message, part, line = reply["error"]
+        path = paths[part == "problem"]
+        raise PDDLError(message, file=path or f"({part})", line=line)
+    if "outcome" in reply:
+        raise PlannerError(f"the task cannot be grounded: {reply['outcome']['reason']}")
+    description: dict[str, Any] = reply["task"]
+    return description
+
+
+def to_lists(state: State) -> list[list[str]]:
+    """The atoms of a state as the worker takes them."""
+    return [[atom.predicate, *atom.arguments] for atom in state]
+
+
+def _text(path: Path, part: str) -> str:
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise PDDLError(f"there is no such {part} file", file=path) from None
+    except IsADirectoryError:
+        raise PDDLError(f"this is a folder; expected a {part} file", file=path) from None
+    except OSError as error:
+        raise PDDLError(
+            f"the {part} file cannot be read: {error.strerror or error}", file=path
+        ) from None
+    # Comments may hold anything; Latin-1 reads what is not UTF-8.
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _grounded(description: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "init": frozenset(map(_atom, description["init"])),
+        "reachable_atoms": frozenset(map(_atom, description["atoms"])),
+        "reachable_actions": tuple(map(tuple, description["ground_actions"])),
+        "mutex_groups": tuple(
+            MutexGroup(frozenset(map(_atom, atoms)), exactly_one)
+            for atoms, exactly_one in description["mutex_groups"]
+        ),
+    }
+
+
+def _atom(words: Sequence[str]) -> Atom:
+    return Atom(words[0], tuple(words[1:]))
+
+
+def _parameters(pairs: list[list[str]]) -> tuple[Parameter, ...]:
+    return tuple(Parameter(name, kind) for name, kind in pairs)
+
+
+def _condition(written: list[Any]) -> ConditionSchema:
+    tag, *rest = written
+    if tag == "literal":
+        return _literal(written)
+    if tag in ("and", "or"):
+        return Junction(tag == "and", tuple(map(_condition, rest)))
+    return Quantified(tag == "forall", _parameters(rest[0]), _condition(rest[1]))
+
+
+def _literal(written: list[Any]) -> LiteralSchema:
+    _, positive, predicate, *arguments = written
+    return LiteralSchema(predicate, tuple(arguments), positive)
+
+
+def _action(part: dict[str, Any]) -> ActionSchema:
+    cost = part["cost"]
+    return ActionSchema(
+        part["name"],
+        _parameters(part["parameters"]),
+        _condition(part["precondition"]),
+        tuple(
+            EffectSchema(_parameters(parameters), _condition(condition), _literal(literal))
+            for parameters, condition, literal in part["effects"]
+        ),
+        cost if isinstance(cost, int) else tuple(cost),
+    )
+
+

@@ -1,0 +1,276 @@
+"""The worker processes: started when needed, lent to one caller at a time, never left behind."""
+
+import atexit
+import contextlib
+import json
+import os
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from tpvqa.errors import PlannerError
+
+SILENCE = 10.0
+"""Seconds without a heartbeat after which a busy worker counts as hung."""
+
+
+class WorkerDied(Exception):  # noqa: N818
+    """The worker ended or hung in the middle of a call."""
+
+
+class WorkerTimedOut(Exception):  # noqa: N818
+    """The worker was still at work when the caller's time was over."""
+
+
+class Worker:
+    """One worker process and the pipes to it. Used by one thread at a time."""
+
+    def __init__(self) -> None:
+        command = [sys.executable, "-P", "-m", "tpvqa.pddl.worker"]
+        if threading.current_thread() is threading.main_thread():
+            # The signal comes when the *thread* that started the worker ends; only the main one
+            # lives as long as the process.
+            command.append("--die-with-parent")
+        self._process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            cwd="/",
+            env=_environment(),
+            start_new_session=True,
+        )
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._requests = self._process.stdin.fileno()
+        self._replies = self._process.stdout.fileno()
+        os.set_blocking(self._requests, False)
+        self._rest = b""
+        self._number = 0
+        self.known: set[str] = set()
+
+    @property
+    def pid(self) -> int:
+        """The process id."""
+        return self._process.pid
+
+    @property
+    def alive(self) -> bool:
+        """Whether the process still runs."""
+        return self._process.poll() is None
+
+    def call(self, request: Mapping[str, Any], *, end: float | None) -> dict[str, Any]:
+        """Send a request and wait for its reply.
+
+        Args:
+            request: What to do.
+            end: When the caller's time is over, by `time.monotonic`.
+
+        Raises:
+            WorkerDied: The worker ended, or was silent for longer than `SILENCE`.
+            WorkerTimedOut: The time is over.
+        """
+        self._number += 1
+        self._send(json.dumps({"id": self._number, **request}).encode() + b"\n")
+        while True:
+            reply: dict[str, Any] = json.loads(self._line(end))
+            if reply.get("id") == self._number:
+                return reply
+
+    def _send(self, data: bytes) -> None:
+        view = memoryview(data)
+        poll = select.poll()
+        poll.register(self._requests, select.POLLOUT)
+        while view:
+            if not poll.poll(SILENCE * 1000):
+                raise WorkerDied("it took no request")
+            try:
+                view = view[os.write(self._requests, view) :]
+            except BrokenPipeError:
+                raise WorkerDied("it ended") from None
+
+    def _line(self, end: float | None) -> bytes:
+        parts = [self._rest]
+        poll = select.poll()
+        poll.register(self._replies, select.POLLIN)
+        while b"\n" not in parts[-1]:
+            wait = SILENCE
+            if end is not None:
+                wait = min(wait, end - time.monotonic())
+            if wait <= 0:
+                raise WorkerTimedOut
+            if not poll.poll(wait * 1000):
+                if wait == SILENCE:
+                    raise WorkerDied(f"it gave no sign of life for {SILENCE:g} s")
+                continue
+            data = os.read(self._replies, 1 << 20)
+            if not data:
+                raise WorkerDied("it ended")
+            parts.append(data)
+        line, self._rest = b"".join(parts).split(b"\n", 1)
+        return line
+
+    def kill(self) -> None:
+        """End the process and whatever it started, at once."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
+        self.forget()
+
+    def forget(self) -> None:
+        """Close the pipes; the worker leaves when it notices."""
+        for stream in (self._process.stdin, self._process.stdout):
+            if stream is not None:
+                stream.close()
+
+
+def _environment() -> dict[str, str]:
+    """The caller's environment, and the folders that the three packages lie in.
+
+    Raises:
+        PlannerError: One of them is not installed.
+    """
+    folders = []
+    for package in ("tpvqa", "fast_downward", "up_fast_downward"):
+        spec = find_spec(package)
+        locations = list(spec.submodule_search_locations or ()) if spec else []
+        if not locations:
+            raise PlannerError(
+                "Fast Downward is not installed; install it: pip install up-fast-downward"
+            )
+        folders.append(str(Path(locations[0]).resolve().parent))
+    paths = [*dict.fromkeys(folders), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+
+
+class Workers:
+    """Lends workers. Every caller has one of its own, so a long search holds up no other.
+
+    Args:
+        keep: So many idle workers stay for the next calls.
+    """
+
+    def __init__(self, *, keep: int = 4):
+        self._keep = keep
+        self._lock = threading.Lock()
+        self._idle: list[Worker] = []
+        self._lent: set[Worker] = set()
+
+    @contextlib.contextmanager
+    def lend(self, key: str) -> Iterator[Worker]:
+        """A worker for one call, preferably one that already knows the task.
+
+        A worker whose call ended with an exception is killed, as what it is doing is not known.
+        """
+        worker = self._take(key)
+        try:
+            yield worker
+        except BaseException:
+            with self._lock:
+                self._lent.discard(worker)
+            worker.kill()
+            raise
+        self._give_back(worker)
+
+    def _take(self, key: str) -> Worker:
+        with self._lock:
+            knowing = [worker for worker in self._idle if key in worker.known]
+            worker = (knowing or self._idle or [None])[-1]
+            if worker is not None:
+                self._idle.remove(worker)
+        if worker is None or not worker.alive:
+            if worker is not None:
+                worker.kill()
+            worker = Worker()
+        with self._lock:
+            self._lent.add(worker)
+        return worker
+
+    def _give_back(self, worker: Worker) -> None:
+        with self._lock:
+            self._lent.discard(worker)
+            if len(self._idle) < self._keep:
+                self._idle.append(worker)
+                return
+        worker.kill()
+
+    def close(self) -> None:
+        """End the idle workers; those at work end when the process does. New calls start anew."""
+        with self._lock:
+            idle, self._idle = self._idle, []
+        for worker in idle:
+            worker.kill()
+
+    def end(self) -> None:
+        """End all workers, at the end of the process."""
+        with self._lock:
+            workers = [*self._idle, *self._lent]
+            self._idle, self._lent = [], set()
+        for worker in workers:
+            worker.kill()
+
+    def forget(self) -> None:
+        """In a forked child: the parent's workers are not ours."""
+        self._lock = threading.Lock()
+        for worker in (*self._idle, *self._lent):
+            worker.forget()
+        self._idle, self._lent = [], set()
+
+
+WORKERS = Workers()
+"""The workers of this process, shared by reading and planning: who reads a task grounds it too."""
+
+atexit.register(WORKERS.end)
+os.register_at_fork(after_in_child=WORKERS.forget)
+
+
+def ask_worker(
+    request: Mapping[str, Any],
+    *,
+    key: str,
+    domain: str,
+    problem: str,
+    seconds: float | None,
+) -> dict[str, Any]:
+    """Send a request about a task to a worker; a worker that dies is replaced, once.
+
+    Args:
+        request: What to do.
+        key: Names the task.
+        domain: The text of the domain, for a worker that does not know the task.
+        problem: The text of the problem.
+        seconds: The time limit; None for none.
+
+    Returns:
+        The worker's reply.
+
+    Raises:
+        PlannerError: The worker died or hung twice.
+        WorkerTimedOut: The time is over.
+    """
+    end = None if seconds is None else time.monotonic() + seconds
+    reasons: list[str] = []
+    while len(reasons) < 2:
+        try:
+            with WORKERS.lend(key) as worker:
+                full = {**request, "key": key, "domain": domain, "problem": problem}
+                short = {**request, "key": key}
+                reply = worker.call(short if key in worker.known else full, end=end)
+                if reply.get("unknown"):
+                    reply = worker.call(full, end=end)
+                if "error" not in reply:
+                    worker.known.add(key)
+                return reply
+        except WorkerDied as death:
+            reasons.append(str(death))
+    raise PlannerError(
+        f"the planning process failed twice: {'; then '.join(reasons)}. If this happens again, "
+        "check that there is enough free memory and that up-fast-downward is installed"
+    )
