@@ -8,8 +8,8 @@
                  :disjunctive-preconditions :universal-preconditions :action-costs)
   (:types
     thing hand - object
-    surface container appliance tool food ground - thing
-    table counter sink dish - surface
+    surface container appliance tool food - thing
+    table counter sink ground dish - surface
     fridge - container
     tv - appliance
     fruit bread - food
