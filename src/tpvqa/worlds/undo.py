@@ -51,7 +51,7 @@ class Pattern:
             return None
         bound = dict(binding)
         for term, kind, value in zip(self.terms, self.types, atom.arguments, strict=True):
-            if kind is not None and not task.is_a(value, kind):
+            if kind is not None and value not in task.objects_by_type.get(kind, ()):
                 return None
             if not term.startswith("?"):
                 if term != value:

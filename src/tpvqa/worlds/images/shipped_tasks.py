@@ -1,0 +1,24 @@
+"""What the shipped tasks of the household can lead to."""
+
+from tpvqa.pddl import load_task
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.tasks import find_task
+from tpvqa.worlds.images.reachable import Reachable, reachable
+from tpvqa.worlds.undo import load_undo_rules
+
+TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
+"""The paper's, which the pictures are made for."""
+
+
+def all_reachable() -> list[Reachable]:
+    """Enumerate the visible states of all tasks; takes some seconds."""
+    found = []
+    planner = FastDownward()
+    try:
+        for name in TASKS:
+            files = find_task(name)
+            task = load_task(files.domain, files.problem)
+            found.append(reachable(task, load_undo_rules(files.world, task), planner, name))
+    finally:
+        planner.close()
+    return found
