@@ -1,0 +1,218 @@
+"""The questions of a task: facts and actions put into words."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from tpvqa.pddl import Action, Condition, Disjunction, Literal, State, Task, holds
+from tpvqa.questions import fallback
+from tpvqa.questions.question import Question, Way
+from tpvqa.questions.template import Template
+from tpvqa.questions.wordings import Wordings, parameters_of, read_wordings
+
+
+class QuestionBook:
+    """Asks about the facts and actions of one task.
+
+    Words come from the domain's questions file; for whatever it does not give, from the names in
+    the PDDL. Each such fallback is one sentence in `notices`.
+
+    Args:
+        task: The task.
+        wordings: What the questions file says; nothing by default.
+
+    Attributes:
+        notices: What a user should know about the words: fallbacks, questions that cannot be
+            told apart.
+    """
+
+    def __init__(self, task: Task, wordings: Wordings | None = None) -> None:
+        wordings = wordings or Wordings()
+        self.task = task
+        self.notices: list[str] = list(wordings.notices)
+        self._wordings = wordings
+        self._predicates, self._actions = parameters_of(task)
+        self._questions = dict(wordings.predicates)
+        self._say, self._done = dict(wordings.say), dict(wordings.done)
+        self._fall_back()
+
+    @staticmethod
+    def load(path: str | Path | None, task: Task) -> "QuestionBook":
+        """Read a questions file.
+
+        Args:
+            path: The YAML file; None for fallbacks alone.
+            task: The task that it is about.
+
+        Raises:
+            QuestionsError: The file cannot be read or does not fit the domain; the message
+                starts with file and line.
+        """
+        return QuestionBook(task, None if path is None else read_wordings(Path(path), task))
+
+    # Facts
+
+    def fact(
+        self, literal: Literal, *, way: Way = Way.PRECONDITION, action: Action | None = None
+    ) -> Question:
+        """The question about a fact; a negative literal expects the answer *no*."""
+        atom = literal.atom
+        values = dict(zip(self._predicates[atom.predicate], atom.arguments, strict=True))
+        text = self._fill(self._questions[atom.predicate], values)
+        return Question(text, way, atom=atom, action=action, expected=literal.positive)
+
+    def asked(self, literal: Literal, action_name: str | None = None) -> bool:
+        """Whether a literal is asked about (at an action), as a camera can show it."""
+        return self.why_not(literal, action_name) is None
+
+    def why_not(self, literal: Literal, action_name: str | None = None) -> str | None:
+        """Why a literal is never asked about; None where it is asked."""
+        for pattern in self._wordings.never_asked:
+            if pattern.matches(literal, action_name, self._is_a):
+                return pattern.because or "the questions file says so"
+        return None
+
+    def preconditions(self, action: Action, state: State) -> tuple[Question, ...]:
+        """The questions about what an action's precondition rests on in the believed state.
+
+        Of a disjunction these are the parts that hold; none of them where one part holds that
+        rests on nothing askable, as the precondition then does not hang on the others.
+        """
+        resting = self._rests_on(action.precondition, self.task.extend(state), action.name)
+        return self._ask(resting, Way.PRECONDITION, action)
+
+    def effects(self, action: Action, state: State) -> tuple[Question, ...]:
+        """The questions about all effects of an action, negative ones too.
+
+        Args:
+            action: The action.
+            state: The believed state before it, which decides about conditional effects.
+        """
+        before = self.task.extend(state)
+        happening = [effect.literal for effect in action.effects if holds(effect.condition, before)]
+        added = {literal.atom for literal in happening if literal.positive}
+        # What is both deleted and added holds afterwards.
+        left = (each for each in happening if each.positive or each.atom not in added)
+        return self._ask(
+            (each for each in left if self.asked(each, action.name)), Way.EFFECT, action
+        )
+
+    # Whole actions
+
+    def possible(self, action: Action) -> Question:
+        """ "Is it possible to place the bread on the plate here?" """
+        return self._about(action, Way.POSSIBLE)
+
+    def successful(self, action: Action) -> Question:
+        """ "Was place the bread on the plate successful?", as the paper words it."""
+        return self._about(action, Way.SUCCESSFUL)
+
+    def did(self, action: Action) -> Question:
+        """ "Did the robot successfully place the bread on the plate?" """
+        return self._about(action, Way.DID)
+
+    def say(self, action: Action) -> str:
+        """The action as a command: "place the bread on the plate"."""
+        return self._fill(self._say[action.name], self._values(action))
+
+    def done(self, action: Action) -> str:
+        """The action once it is done: "placed the bread on the plate"."""
+        return self._fill(self._done[action.name], self._values(action))
+
+    # Objects
+
+    def name(self, obj: str) -> str:
+        """What an object is called: "toy eggplant" for toy_eggplant."""
+        return self._attribute(obj, "name")
+
+    def _attribute(self, obj: str, attribute: str) -> str:
+        wordings = self._wordings
+        for own in self._own_attributes(obj):
+            if attribute in own:
+                return own[attribute].render(lambda _: self.name(obj))
+        if attribute in wordings.attributes:
+            return wordings.attributes[attribute].render(lambda _: self.name(obj))
+        return fallback.words_of(obj) if attribute == "name" else ""
+
+    def _own_attributes(self, obj: str) -> Iterator[dict[str, Template]]:
+        """The object's attributes, then those of its type and of each wider one."""
+        yield dict(self._wordings.of_objects.get(obj, {}))
+        kind: str | None = self.task.objects.get(obj)
+        seen: set[str] = set()
+        while kind is not None and kind not in seen:
+            yield dict(self._wordings.of_types.get(kind, {}))
+            seen.add(kind)
+            kind = self.task.types.get(kind)
+
+    def _is_a(self, obj: str, kind: str) -> bool:
+        return obj in self.task.objects_by_type.get(kind, ())
+
+    def _values(self, action: Action) -> dict[str, str]:
+        return dict(zip(self._actions[action.name], action.arguments, strict=True))
+
+    def _fill(self, template: Template, values: dict[str, str]) -> str:
+        return template.render(
+            lambda place: self._attribute(values[place.parameter], place.attribute)
+        )
+
+    def _about(self, action: Action, way: Way) -> Question:
+        said = self.say(action)
+        text = self._wordings.ways[way].render(
+            lambda place: said if place.attribute == "name" else ""
+        )
+        return Question(text, way, action=action)
+
+    def _rests_on(self, condition: Condition, state: State, action: str) -> list[Literal]:
+        if isinstance(condition, Literal):
+            return [condition] if self.asked(condition, action) else []
+        parts: Sequence[Condition] = condition.parts
+        if isinstance(condition, Disjunction):
+            held = [part for part in parts if holds(part, state)]
+            resting = [self._rests_on(part, state, action) for part in held or parts]
+            if held and not all(resting):
+                return []
+        else:
+            resting = [self._rests_on(part, state, action) for part in parts]
+        return [literal for part in resting for literal in part]
+
+    def _ask(self, literals: Iterable[Literal], way: Way, action: Action) -> tuple[Question, ...]:
+        """One question for each wording, none where the same words would expect both answers."""
+        questions: dict[str, Question] = {}
+        contradictory: set[str] = set()
+        for literal in literals:
+            question = self.fact(literal, way=way, action=action)
+            first = questions.setdefault(question.text, question)
+            if first.expected != question.expected:
+                contradictory.add(question.text)
+                self._notice(
+                    f"{action.name}: {first.atom} and {question.atom} are asked in the same words "
+                    f"({question.text!r}) and expect opposite answers, so neither is asked."
+                )
+        return tuple(each for text, each in questions.items() if text not in contradictory)
+
+    # Fallbacks
+
+    def _fall_back(self) -> None:
+        never = {pattern.predicate for pattern in self._wordings.never_asked if pattern.everywhere}
+        for name, parameters in self._predicates.items():
+            if name in self._questions:
+                continue
+            text = fallback.question_about(name, parameters)
+            self._questions[name] = Template.parse(text)
+            if name not in never:
+                self._notice(f"No question is given for the predicate {name}; asked as {text!r}.")
+        for name, parameters in self._actions.items():
+            said = name in self._say
+            if not said:
+                self._say[name] = Template.parse(fallback.say(name, parameters))
+                self._notice(f"The action {name} has no words; said as {str(self._say[name])!r}.")
+            if name not in self._done:
+                self._done[name] = Template.parse(fallback.past(str(self._say[name])))
+                if said:
+                    self._notice(
+                        f"The action {name} has no words for when it is done; said as "
+                        f"{str(self._done[name])!r}."
+                    )
+
+    def _notice(self, sentence: str) -> None:
+        if sentence not in self.notices:
+            self.notices.append(sentence)

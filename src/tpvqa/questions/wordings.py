@@ -1,0 +1,229 @@
+"""The questions file: reading it, and seeing that it fits the domain."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from tpvqa.pddl import Task
+from tpvqa.questions.never import NeverAsked
+from tpvqa.questions.question import Way
+from tpvqa.questions.template import Template
+from tpvqa.questions.yaml_places import Place, did_you_mean, read_yaml
+
+WAYS: Mapping[Way, str] = {
+    Way.POSSIBLE: "Is it possible to {action} here?",
+    Way.SUCCESSFUL: "Was {action} successful?",
+    Way.DID: "Did the robot successfully {action}?",
+}
+"""How a whole action is asked about, in the words of the paper and of the works it cites."""
+
+_OWN_ATTRIBUTES = ("name", "article")  # that every object has
+
+
+@dataclass(frozen=True, slots=True)
+class Wordings:
+    """What a questions file says; whatever it does not say is missing here.
+
+    Attributes:
+        predicates: The question about each predicate.
+        say: How each action is said, as a command.
+        done: How each action is said once it is done.
+        attributes: The default of each attribute of objects.
+        of_types: Attributes by type.
+        of_objects: Attributes by object.
+        never_asked: What no camera shows.
+        ways: How a whole action is asked about.
+        notices: What the reader of the file should know.
+    """
+
+    predicates: Mapping[str, Template] = field(default_factory=dict)
+    say: Mapping[str, Template] = field(default_factory=dict)
+    done: Mapping[str, Template] = field(default_factory=dict)
+    attributes: Mapping[str, Template] = field(default_factory=dict)
+    of_types: Mapping[str, Mapping[str, Template]] = field(default_factory=dict)
+    of_objects: Mapping[str, Mapping[str, Template]] = field(default_factory=dict)
+    never_asked: Sequence[NeverAsked] = ()
+    ways: Mapping[Way, Template] = field(
+        default_factory=lambda: {way: Template.parse(text) for way, text in WAYS.items()}
+    )
+    notices: Sequence[str] = ()
+
+
+def parameters_of(task: Task) -> tuple[Mapping[str, list[str]], Mapping[str, list[str]]]:
+    """The parameters of each predicate and of each action, without their question marks."""
+    predicates = {
+        name: [variable.lstrip("?") for variable in variables]
+        for name, variables in task.predicate_variables.items()
+    }
+    actions = {
+        schema.name: [parameter.name.lstrip("?") for parameter in schema.parameters]
+        for schema in task.schemas
+    }
+    return predicates, actions
+
+
+def read_wordings(path: Path, task: Task) -> Wordings:
+    """Read a questions file.
+
+    Raises:
+        QuestionsError: It cannot be read, or does not fit the domain; with file and line.
+    """
+    root = read_yaml(path)
+    if root is None:
+        return Wordings()
+    sections = root.sections(
+        "predicates", "actions", "attributes", "types", "objects", "never_asked", "ways"
+    )
+    predicates, actions = parameters_of(task)
+    attributes = _attributes(sections.get("attributes"), [], of_objects=True)
+    known = [*_OWN_ATTRIBUTES, *attributes]
+    say: dict[str, Template] = {}
+    done: dict[str, Template] = {}
+    for name, value in _named(sections.get("actions"), actions, "action"):
+        parts = value.sections("say", "done")
+        for target, key in ((say, "say"), (done, "done")):
+            if key in parts:
+                target[name] = _template(parts[key], actions[name], known)
+    of_objects, notices = {}, []
+    for name, place, value in _entries(sections.get("objects")):
+        if name in task.objects:
+            of_objects[name] = _own(value, known)
+        else:
+            suggestion = did_you_mean(name, list(task.objects)).rstrip()
+            notices.append(
+                f"{place.file}:{place.line}: this problem has no object {name!r}{suggestion}"
+            )
+    return Wordings(
+        predicates={
+            name: _template(value, predicates[name], known)
+            for name, value in _named(sections.get("predicates"), predicates, "predicate")
+        },
+        say=say,
+        done=done,
+        attributes=attributes,
+        of_types={
+            name: _own(value, known)
+            for name, value in _named(sections.get("types"), task.types, "type")
+        },
+        of_objects=of_objects,
+        never_asked=[_never(item, task) for item in _items(sections.get("never_asked"))],
+        ways=_ways(sections.get("ways")),
+        notices=notices,
+    )
+
+
+def _entries(place: Place | None) -> list[tuple[str, Place, Place]]:
+    return [] if place is None else place.entries()
+
+
+def _items(place: Place | None) -> list[Place]:
+    return [] if place is None else list(place.items())
+
+
+def _named(place: Place | None, known: Collection[str], kind: str) -> Iterable[tuple[str, Place]]:
+    """The entries of a section whose keys are names of the domain."""
+    for name, key, value in _entries(place):
+        if name not in known:
+            raise key.wrong(f"the domain has no {kind} {name!r}{did_you_mean(name, list(known))}")
+        yield name, value
+
+
+def _template(place: Place, parameters: Sequence[str], attributes: Sequence[str]) -> Template:
+    try:
+        template = Template.parse(place.text())
+    except ValueError as error:
+        raise place.wrong(str(error)) from None
+    for placeholder in template.placeholders():
+        if placeholder.parameter not in parameters:
+            known = ", ".join(f"{{{name}}}" for name in parameters) or "none"
+            raise place.wrong(
+                f"{placeholder} stands for none of the parameters{_hint(placeholder, parameters)} "
+                f"The placeholders here: {known}."
+            )
+        if placeholder.attribute not in attributes:
+            raise place.wrong(
+                f"{placeholder}: objects have no attribute {placeholder.attribute!r}"
+                f"{did_you_mean(placeholder.attribute, list(attributes))} Give its default "
+                f"under 'attributes'. Known: {', '.join(attributes)}."
+            )
+    return template
+
+
+def _hint(placeholder: object, parameters: Sequence[str]) -> str:
+    return did_you_mean(str(placeholder), [f"{{{name}}}" for name in parameters])
+
+
+def _attributes(
+    place: Place | None, known: Sequence[str], *, of_objects: bool = False
+) -> dict[str, Template]:
+    found: dict[str, Template] = {}
+    for name, key, value in _entries(place):
+        if of_objects and name == "name":
+            raise key.wrong(
+                "'name' is each object's own: its PDDL name in words, unless 'objects' or 'types' "
+                "gives another"
+            )
+        if not of_objects and name not in known:
+            raise key.wrong(
+                f"objects have no attribute {name!r}{did_you_mean(name, list(known))} Give its "
+                f"default under 'attributes'. Known: {', '.join(known)}."
+            )
+        found[name] = _template(value, [] if name == "name" else ["name"], ["name"])
+    return found
+
+
+def _own(place: Place, known: Sequence[str]) -> dict[str, Template]:
+    """The attributes of an object or type; a text alone is its name."""
+    if place.is_text():
+        return {"name": _template(place, [], [])}
+    return _attributes(place, known)
+
+
+def _ways(place: Place | None) -> dict[Way, Template]:
+    ways = {way: Template.parse(text) for way, text in WAYS.items()}
+    if place is None:
+        return ways
+    for name, value in place.sections(*(way.value for way in WAYS)).items():
+        ways[Way(name)] = _template(value, ["action"], ["name"])
+    return ways
+
+
+def _never(place: Place, task: Task) -> NeverAsked:
+    parts = place.sections("fact", "in", "because")
+    if "fact" not in parts:
+        raise place.wrong("an entry needs 'fact', e.g. fact: \"(free ?h)\"")
+    fact = parts["fact"]
+    try:
+        pattern = NeverAsked.parse(fact.text())
+    except ValueError as error:
+        raise fact.wrong(str(error)) from None
+    if pattern.predicate not in task.predicates:
+        raise fact.wrong(
+            f"the domain has no predicate {pattern.predicate!r}"
+            f"{did_you_mean(pattern.predicate, list(task.predicates))}"
+        )
+    arity = len(task.predicates[pattern.predicate])
+    if len(pattern.terms) != arity:
+        raise fact.wrong(
+            f"{pattern.predicate} takes {arity} objects, this has {len(pattern.terms)}"
+        )
+    for kind in pattern.types:
+        if kind is not None and kind not in task.types:
+            raise fact.wrong(
+                f"the domain has no type {kind!r}{did_you_mean(kind, list(task.types))}"
+            )
+    for term in pattern.terms:
+        if not term.startswith("?") and term not in task.objects:
+            raise fact.wrong(
+                f"this problem has no object {term!r}{did_you_mean(term, list(task.objects))} "
+                "A variable starts with a question mark."
+            )
+    names = [schema.name for schema in task.schemas]
+    actions = []
+    for item in parts["in"].texts() if "in" in parts else []:
+        name = item.text().lower()
+        if name not in names:
+            raise item.wrong(f"the domain has no action {name!r}{did_you_mean(name, names)}")
+        actions.append(name)
+    because = parts["because"].text() if "because" in parts else ""
+    return replace(pattern, actions=frozenset(actions), because=because)
