@@ -51,7 +51,7 @@ class QuestionsError(TpvqaError):
 
 
 class AnswerError(TpvqaError):
-    """A VLM could not be asked at all (wrong address, no key). A bad answer is *unknown* instead."""
+    """A VLM could not be asked at all (no key, say). A bad answer is *unknown* instead."""
 
 
 class WorldError(TpvqaError):

@@ -195,7 +195,9 @@ def _replan(recorder: Recorder, trial: _Trial, timeout: float | None) -> EndedBe
 
 def _believe(recorder: Recorder, trial: _Trial, state: State | None) -> None:
     if state is not None and state != trial.state:
-        recorder.emit(Believed(added=atoms(state - trial.state), removed=atoms(trial.state - state)))
+        recorder.emit(
+            Believed(added=atoms(state - trial.state), removed=atoms(trial.state - state))
+        )
         trial.state = state
 
 

@@ -9,8 +9,8 @@ from rich.text import Text
 from tpvqa.episodes.events import (
     Acted,
     Acting,
-    AnswerRecord,
     Answered,
+    AnswerRecord,
     Asked,
     Believed,
     Decided,
@@ -99,9 +99,7 @@ class EpisodeView:
             case Acting():
                 self._step, self._attempt = event.step, event.attempt
                 again = f" [yellow](attempt {event.attempt + 1})[/]" if event.attempt else ""
-                self._line(
-                    f"[bold]{event.step + 1}. {escape(event.action.said)}[/]{again}"
-                )
+                self._line(f"[bold]{event.step + 1}. {escape(event.action.said)}[/]{again}")
             case Acted():
                 self._show_outcome(event)
             case Ended():
@@ -122,7 +120,8 @@ class EpisodeView:
         steps = " · ".join(action.said for action in event.plan) or "nothing left to do"
         word = "new plan" if replanned else "plan"
         self._line(
-            f"[cyan]{word}[/] {escape(steps)} [dim]({event.planner}, {event.seconds * 1e3:.0f} ms)[/]"
+            f"[cyan]{word}[/] {escape(steps)} "
+            f"[dim]({event.planner}, {event.seconds * 1e3:.0f} ms)[/]"
         )
 
     def _show_outcome(self, event: Acted) -> None:

@@ -217,16 +217,7 @@ class Ended(_Event):
 
 
 Event = (
-    Started
-    | PlanMade
-    | Observed
-    | Asked
-    | Answered
-    | Believed
-    | Decided
-    | Acting
-    | Acted
-    | Ended
+    Started | PlanMade | Observed | Asked | Answered | Believed | Decided | Acting | Acted | Ended
 )
 
 EVENT: TypeAdapter[Event] = TypeAdapter(Annotated[Event, Field(discriminator="kind")])

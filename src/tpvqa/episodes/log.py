@@ -109,8 +109,7 @@ def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
             f"{path.parent} holds no episode: {LOG} cannot be read ({error.strerror})"
         ) from error
     whole, _, _torn = data.rpartition(b"\n")
-    for number, line in enumerate(whole.split(b"\n") if whole else [], 1):
-        yield number, line
+    return enumerate(whole.split(b"\n") if whole else [], 1)
 
 
 def read_episode(folder: Path | str) -> list[Event]:

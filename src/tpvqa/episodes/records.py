@@ -5,8 +5,8 @@ from pathlib import Path
 
 from tpvqa.episodes.events import (
     ActionRecord,
-    AnswerRecord,
     Answered,
+    AnswerRecord,
     FrameRecord,
     Observed,
     PlanMade,
@@ -32,18 +32,20 @@ def action_record(action: Action, book: QuestionBook) -> ActionRecord:
 
 def plan_record(result: PlanningResult, state: State, book: QuestionBook) -> PlanMade:
     """A planner's result."""
-    common = {"state": atoms(state), "planner": result.planner, "seconds": result.seconds}
+    record = PlanMade(
+        state=atoms(state), result="plan", planner=result.planner, seconds=result.seconds
+    )
     match result:
         case Plan():
             plan = tuple(action_record(action, book) for action in result.actions)
-            return PlanMade(result="plan", plan=plan, cost=result.cost, **common)
+            return record.model_copy(update={"plan": plan, "cost": result.cost})
         case Unsolvable():
-            return PlanMade(result="unsolvable", reason=result.reason, **common)
+            return record.model_copy(update={"result": "unsolvable", "reason": result.reason})
         case TimedOut():
             reason = f"no plan within {result.limit:g} s"
-            return PlanMade(result="timed out", reason=reason, **common)
+            return record.model_copy(update={"result": "timed out", "reason": reason})
         case Crashed():
-            return PlanMade(result="crashed", reason=result.reason, **common)
+            return record.model_copy(update={"result": "crashed", "reason": result.reason})
 
 
 def plan_from(record: PlanMade, task: Task) -> PlanningResult:

@@ -7,6 +7,7 @@ taken out and no answer says which other one holds, the fact that held before is
 """
 
 from collections.abc import Collection, Iterable
+from functools import cached_property
 
 from tpvqa.pddl import Atom, Literal, MutexGroup, State, Task
 
@@ -19,11 +20,22 @@ class FactMemory:
     """
 
     def __init__(self, task: Task):
+        self._task = task
         self._groups = [group for group in task.mutex_groups if group.exactly_one]
         self._all_groups = task.mutex_groups
         self._initial = task.init
         self._ended: list[Atom] = []
         self._changed: set[Atom] = set()
+
+    @cached_property
+    def _possible(self) -> frozenset[Atom]:
+        """What held at first, or what some action brings about."""
+        return self._initial | {
+            effect.literal.atom
+            for action in self._task.ground_actions()
+            for effect in action.effects
+            if effect.literal.positive
+        }
 
     def record(self, before: State, after: State) -> None:
         """Note a change of belief."""
@@ -31,11 +43,9 @@ class FactMemory:
         self._changed |= before ^ after
 
     def alternatives(self, atom: Atom) -> list[Atom]:
-        """The other members of its exactly-one groups, in a fixed order."""
-        others = {
-            other for group in self._groups if atom in group.atoms for other in group.atoms
-        } - {atom}
-        return sorted(others)
+        """The other members of its exactly-one groups that can come true, in a fixed order."""
+        others = {other for group in self._groups if atom in group.atoms for other in group.atoms}
+        return sorted(others & self._possible - {atom})
 
     def take_out(
         self, state: State, denied: Iterable[Literal], *, seen: Collection[Atom] = ()

@@ -16,7 +16,5 @@ class NoMonitor:
 
     def after(self, step: Step) -> Check:
         """Believe the effects."""
-        return Verdict(
-            Decision.GO_ON, "no perception", step.task.apply(step.state, step.action)
-        )
+        return Verdict(Decision.GO_ON, "no perception", step.task.apply(step.state, step.action))
         yield

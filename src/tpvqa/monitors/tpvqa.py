@@ -87,9 +87,7 @@ class TPVQA:
                 return denied, answers
         return None, answers
 
-    def _correct(
-        self, step: Step, answers: Sequence[Answer]
-    ) -> Generator[Request, Any, State]:
+    def _correct(self, step: Step, answers: Sequence[Answer]) -> Generator[Request, Any, State]:
         """Take the denied facts out, believing an alternative where exactly one is affirmed."""
         memory = self._remember(step)
         denied = [
@@ -103,9 +101,7 @@ class TPVQA:
                 seen += yield from self._look_elsewhere(step, literal)
         return memory.take_out(step.state, denied, seen=seen)
 
-    def _look_elsewhere(
-        self, step: Step, denied: Literal
-    ) -> Generator[Request, Any, list[Atom]]:
+    def _look_elsewhere(self, step: Step, denied: Literal) -> Generator[Request, Any, list[Atom]]:
         """Which alternatives of a denied fact the VLM affirms, if it affirms exactly one."""
         if not denied.positive:
             return []

@@ -1,0 +1,191 @@
+"""The paper's monitor at its seam: requests out, answers in, verdict out."""
+
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.doubles import knowing, perform, replies
+from tpvqa.monitors import Decision, Step
+from tpvqa.monitors.majority import Majority
+from tpvqa.monitors.tpvqa import TPVQA
+from tpvqa.pddl import Atom, State, Task, load_task
+from tpvqa.planning import Plan
+from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.tasks import find_task
+from tpvqa.vlm import Answer, Reply
+
+IN_HAND = "Is the plate in a robot's hand?"
+SINK = "Is there a sink in the image?"
+CLEAN = "Is the plate clean?"
+
+
+@pytest.fixture(scope="module")
+def task() -> Task:
+    return load_task("clean_dishes")
+
+
+@pytest.fixture(scope="module")
+def book(task: Task) -> QuestionBook:
+    return QuestionBook.load(find_task("clean_dishes").questions, task)
+
+
+@pytest.fixture
+def at(task: Task, book: QuestionBook) -> Callable[..., Step]:
+    names = [
+        ("find", ("plate", "tv")),
+        ("pick_up", ("plate", "table", "left")),
+        ("find", ("sink", "plate")),
+        ("wash", ("plate", "sink", "left")),
+    ]
+    plan = Plan(tuple(task.action(*name) for name in names), 4, "by hand", 0.0)
+
+    def step(index: int, monitor: TPVQA | None = None) -> Step:
+        """Step `index`, reached by a monitor that saw every earlier step succeed."""
+        state = task.init
+        for number in range(index):
+            here = Step(task, book, plan, number, state)
+            if monitor is None:
+                state = task.apply(state, plan.actions[number])
+            else:
+                verdict, _, _ = perform(monitor.after(here), lambda q: _agree(q))
+                assert verdict.state is not None
+                state = verdict.state
+        return Step(task, book, plan, index, state)
+
+    return step
+
+
+def _agree(question: Question) -> Reply:
+    return Reply.YES if question.expected else Reply.NO
+
+
+def test_all_preconditions_are_asked_and_a_yes_to_each_goes_on(at: Callable[..., Step]) -> None:
+    verdict, looks, asked = perform(TPVQA().before(at(3)), _agree)
+    assert asked == [IN_HAND, SINK]
+    assert (verdict.decision, looks) == (Decision.GO_ON, 1)
+
+
+def test_the_papers_example_one_of_two_denied_replans_with_the_plate_on_the_table(
+    at: Callable[..., Step],
+) -> None:
+    monitor = TPVQA()
+    step = at(3, monitor)
+    verdict, _, _ = perform(monitor.before(step), replies({SINK: Reply.YES}, Reply.NO))
+    assert verdict.decision is Decision.REPLAN
+    assert verdict.state is not None
+    assert step.state - verdict.state == {Atom("in_hand", ("plate", "left"))}
+    assert verdict.state - step.state == {
+        Atom("on", ("plate", "table")),
+        Atom("free", ("left",)),
+    }
+    assert IN_HAND in verdict.reason
+
+
+def test_a_strict_majority_goes_on_at_a_tie(at: Callable[..., Step]) -> None:
+    monitor = TPVQA(majority="strict")
+    verdict, _, _ = perform(monitor.before(at(3, monitor)), replies({SINK: Reply.YES}, Reply.NO))
+    assert verdict.decision is Decision.GO_ON
+
+
+def test_where_else_a_thing_is_seen_is_believed(at: Callable[..., Step]) -> None:
+    monitor = TPVQA()
+    seen = knowing("(near sink)", "(on plate floor)")
+    verdict, _, asked = perform(monitor.before(at(3, monitor)), seen)
+    assert "Is the plate on the floor?" in asked
+    assert verdict.state is not None
+    assert Atom("on", ("plate", "floor")) in verdict.state
+
+
+def test_two_affirmed_alternatives_decide_nothing(at: Callable[..., Step]) -> None:
+    monitor = TPVQA()
+    seen = knowing("(near sink)", "(on plate floor)", "(on plate counter)")
+    verdict, _, _ = perform(monitor.before(at(3, monitor)), seen)
+    assert verdict.state is not None
+    assert Atom("on", ("plate", "table")) in verdict.state
+
+
+def test_an_initial_fact_is_looked_at_once_more_and_then_the_robot_acts(
+    at: Callable[..., Step],
+) -> None:
+    verdict, looks, _ = perform(TPVQA().before(at(0)), replies({}, Reply.NO))
+    assert (verdict.decision, looks) == (Decision.GO_ON, 2)
+    assert verdict.state is None
+
+
+def test_all_effects_are_asked_negative_ones_too_and_denied_ones_repeat(
+    at: Callable[..., Step],
+) -> None:
+    verdict, _, asked = perform(TPVQA().after(at(1)), knowing("(on plate table)"))
+    assert asked == [IN_HAND, "Is the plate on the table?"]
+    assert verdict.decision is Decision.REPEAT
+    verdict, _, _ = perform(TPVQA().after(at(1)), knowing("(in_hand plate left)"))
+    assert verdict.decision is Decision.GO_ON
+
+
+@pytest.mark.parametrize("reply", [Reply.UNKNOWN, Reply.CANNOT_SEE])
+def test_where_all_abstain_it_looks_again_and_then_stops_safely(
+    at: Callable[..., Step], reply: Reply
+) -> None:
+    for check in (TPVQA(looks=2).before(at(3)), TPVQA(looks=2).after(at(3))):
+        verdict, looks, _ = perform(check, replies({}, reply))
+        assert (verdict.decision, looks) == (Decision.GIVE_UP, 3)
+
+
+def test_an_answer_after_looking_again_counts(at: Callable[..., Step]) -> None:
+    verdict, looks, _ = perform(TPVQA().after(at(3)), replies({}, Reply.UNKNOWN), _agree)
+    assert (verdict.decision, looks) == (Decision.GO_ON, 2)
+
+
+def test_abstentions_do_not_count_as_votes(at: Callable[..., Step]) -> None:
+    verdict, _, _ = perform(
+        TPVQA().before(at(3)), replies({SINK: Reply.CANNOT_SEE, IN_HAND: Reply.YES})
+    )
+    assert verdict.decision is Decision.GO_ON
+
+
+@given(st.lists(st.sampled_from(list(Reply)), max_size=9))
+def test_the_majority_rule(given_replies: list[Reply]) -> None:
+    question = Question("Is it so?", Way.PRECONDITION)
+    answers = [Answer(question, reply) for reply in given_replies]
+    no, yes = given_replies.count(Reply.NO), given_replies.count(Reply.YES)
+    if no + yes == 0:
+        assert Majority.TIE_DENIES.denies(answers) is None
+        assert Majority.STRICT.denies(answers) is None
+    else:
+        assert Majority.TIE_DENIES.denies(answers) is (no >= yes)
+        assert Majority.STRICT.denies(answers) is (no > yes)
+
+
+@given(st.data())
+def test_no_object_is_ever_nowhere(data: st.DataObject) -> None:
+    """Whatever is answered, each exactly-one group keeps exactly one true member."""
+    task = load_task("eat_apple")
+    book = QuestionBook.load(find_task("eat_apple").questions, task)
+    monitor, state = TPVQA(), task.init
+    actions = [
+        task.action("find", ("fridge", "tv")),
+        task.action("open", ("fridge",)),
+        task.action("find", ("apple", "fridge")),
+        task.action("pick_up", ("apple", "fridge", "left")),
+        task.action("find", ("knife", "apple")),
+        task.action("pick_up", ("knife", "counter", "right")),
+        task.action("cut_in_half", ("apple", "knife", "left", "right")),
+    ]
+    plan = Plan(tuple(actions), 7, "by hand", 0.0)
+    draw = st.sampled_from([Reply.YES, Reply.NO, Reply.UNKNOWN])
+    for index in range(len(actions)):
+        step = Step(task, book, plan, index, state)
+        for check in (monitor.before, monitor.after):
+            verdict, _, _ = perform(check(step), lambda question: data.draw(draw))
+            state = _one_each(task, state if verdict.state is None else verdict.state)
+            if verdict.decision is not Decision.GO_ON:
+                return
+
+
+def _one_each(task: Task, state: State) -> State:
+    for group in task.mutex_groups:
+        held = len(state & group.atoms)
+        assert held == 1 if group.exactly_one else held <= 1
+    return state
