@@ -88,6 +88,10 @@ def task_from_text(
         objects={name: kind for name, kind in description["objects"]},
         types={name: parent for name, parent in description["types"]},
         predicates={name: tuple(types) for name, types in description["predicates"]},
+        predicate_variables={
+            name: tuple(variables)
+            for name, variables in description["predicate_variables"].items()
+        },
         goal=ground_condition(_condition(description["goal"]), {}, objects_by_type),
         fluents=frozenset(description["fluents"]),
         derived=frozenset(description["derived"]),

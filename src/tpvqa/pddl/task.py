@@ -28,6 +28,7 @@ class Task:
         objects: The type of each object, constants of the domain included.
         types: The parent of each type; None for `object` and other roots.
         predicates: The types of each predicate's arguments; `a|b` for `(either a b)`.
+        predicate_variables: The variables that each predicate is declared with, e.g. `?x`.
         init: The initial state, static facts included, derived ones not.
         goal: The goal.
         fluents: The predicates that actions change.
@@ -49,6 +50,7 @@ class Task:
     objects: Mapping[str, str]
     types: Mapping[str, str | None]
     predicates: Mapping[str, tuple[str, ...]]
+    predicate_variables: Mapping[str, tuple[str, ...]]
     init: State
     goal: Condition
     fluents: frozenset[str]

@@ -69,6 +69,11 @@ def static_description(task: Any) -> dict[str, Any]:
             for predicate in task.predicates
             if predicate.name != "="
         ],
+        "predicate_variables": {
+            predicate.name: [part.name for part in predicate.arguments]
+            for predicate in task.predicates
+            if predicate.name != "="
+        },
         "fluents": sorted(changed),
         "derived": sorted({axiom.name for axiom in task.axioms}),
         "goal": condition(task.goal),

@@ -99,7 +99,7 @@ class Grounding:
         )
         self._all_groups = groups
         self.mutex_groups = [frozenset(map(key_of, group)) for group in groups if len(group) > 1]
-        self._init = task.init
+        self.initial = task.init
         self._metric = task.use_min_cost_metric
         self._template: Template | None = None
 
@@ -140,7 +140,7 @@ class Grounding:
             mutex_places,
             mutex_ranges,
             translator.build_mutex_key(places, self._all_groups),
-            self._init,
+            self.initial,
             self._goal,
             self.actions,
             self._axioms,

@@ -1,40 +1,126 @@
-"""Which mutex groups hold exactly one atom, proved from the ground actions."""
+"""Mutex groups worth telling about, and the proof of which hold exactly one atom."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 from typing import Any
+
+from fast_downward.translate import invariant_finder, pddl
+from fast_downward.translate.instantiate import get_objects_by_type
 
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
 
+_COUNTED = "?X"  # how the translator writes the argument that a group counts
+
+Group = tuple[frozenset[AtomKey], bool]
+"""The atoms, and whether exactly one of them always holds."""
+
 
 def described_groups(
-    grounding: Grounding, state: frozenset[AtomKey]
+    task: Any, grounding: Grounding, state: frozenset[AtomKey]
 ) -> list[tuple[list[AtomKey], bool]]:
-    """The groups worth knowing, each with whether exactly one of its atoms always holds.
+    """The groups of a task from an initial state.
 
-    Left out are groups that no action adds to (an accident of this initial state, not a law of the
-    domain) and those that lie within another.
+    First come the laws of the domain: invariants that no action can break, whatever is reachable.
+    They name all atoms of fitting types, also those that only a mishap brings about. Then groups
+    that hold because of what is reachable from this state. Groups that no action adds to are left
+    out (an accident of this initial state), and so are those within another.
 
     Args:
-        grounding: The grounding whose groups are meant.
-        state: The fluent atoms of the initial state.
+        task: The translator's normalised task; its initial state is that of the grounding.
+        grounding: The grounding from this state.
+        state: Its fluent atoms.
     """
+    kept: list[Group] = []
+    found = sorted(_laws(task), key=_size) + sorted(_reached(grounding, state), key=_size)
+    for atoms, exactly_one in found:
+        if not any(atoms <= other and (one or not exactly_one) for other, one in kept):
+            kept.append((atoms, exactly_one))
+    return sorted((sorted(atoms), exactly_one) for atoms, exactly_one in kept)
+
+
+def _size(group: Group) -> tuple[int, list[AtomKey]]:
+    return -len(group[0]), sorted(group[0])
+
+
+def _laws(task: Any) -> Iterator[Group]:
+    objects = get_objects_by_type(task.objects, task.types)
+    for invariant in invariant_finder.find_invariants(task, None):
+        exactly_one = all(_balances(action, invariant) for action in task.actions)
+        for parts in invariant_finder.useful_groups([invariant], task.init):
+            atoms = frozenset(key for part in parts for key in _expanded(part, task, objects))
+            if len(atoms) > 1 and any(_adds(action, parts, objects) for action in task.actions):
+                yield atoms, exactly_one
+
+
+def _expanded(part: Any, task: Any, objects: dict[str, list[str]]) -> Iterator[AtomKey]:
+    """The atoms of a part of a group, with every object of a fitting type counted."""
+    predicate = next(entry for entry in task.predicates if entry.name == part.predicate)
+    choices = []
+    for argument, parameter in zip(part.args, predicate.arguments, strict=True):
+        kinds = parameter.type_name
+        kinds = kinds[1:] if isinstance(kinds, list) else [kinds]
+        fitting = dict.fromkeys(name for kind in kinds for name in objects.get(kind, ()))
+        choices.append(list(fitting) if argument == _COUNTED else [argument])
+    for arguments in product(*choices):
+        yield (part.predicate, *arguments)
+
+
+def _adds(action: Any, parts: Sequence[Any], objects: dict[str, list[str]]) -> bool:
+    """Whether an action can add an atom of a group, as far as types tell."""
+    for effect in action.effects:
+        literal = effect.literal
+        for part in parts:
+            if literal.negated or literal.predicate != part.predicate:
+                continue
+            types = {p.name: p.type_name for p in (*action.parameters, *effect.parameters)}
+            if all(
+                wanted in (_COUNTED, argument) or wanted in objects.get(types.get(argument), ())
+                for wanted, argument in zip(part.args, literal.args, strict=True)
+            ):
+                return True
+    return False
+
+
+def _conditions(condition: Any) -> set[Any]:
+    """The literals of a normalised condition."""
+    if isinstance(condition, pddl.Literal):
+        return {condition}
+    return {literal for part in condition.parts for literal in _conditions(part)}
+
+
+def _balances(action: Any, invariant: Any) -> bool:
+    """Whether, wherever an action deletes from a group of an invariant, it adds to it as well."""
+    given = _conditions(action.precondition)
+    adds = [
+        (_group_key(effect.literal, invariant), _conditions(effect.condition))
+        for effect in action.effects
+        if effect.literal.predicate in invariant.predicates
+        and not effect.literal.negated
+        and not effect.parameters
+    ]
+    for effect in action.effects:
+        literal = effect.literal
+        if literal.predicate in invariant.predicates and literal.negated:
+            when = given | _conditions(effect.condition)
+            own = _group_key(literal, invariant)
+            if not any(key == own and needed <= when for key, needed in adds):
+                return False
+    return True
+
+
+def _group_key(literal: Any, invariant: Any) -> tuple[str, ...]:
+    """Which group of an invariant a literal belongs to: its arguments but the counted one."""
+    values = invariant.get_parameters(literal)
+    return tuple(values[number] for number in range(invariant.arity()))
+
+
+def _reached(grounding: Grounding, state: frozenset[AtomKey]) -> Iterator[Group]:
     added = {key_of(fact) for action in grounding.actions for _, fact in action.add_effects}
-    groups = sorted((set(group) for group in grounding.mutex_groups if group & added), key=len)
-    kept: list[frozenset[AtomKey]] = []
-    for group in reversed(groups):
-        if not any(group <= other for other in kept):
-            kept.append(frozenset(group))
-    possible = [
-        action for action in grounding.actions if _possible(action, grounding.mutex_groups)
-    ]
-    result = [
-        (
-            sorted(group),
-            len(group & state) == 1 and all(_keeps(action, group) for action in possible),
-        )
-        for group in kept
-    ]
-    return sorted(result)
+    possible = [action for action in grounding.actions if _possible(action, grounding.mutex_groups)]
+    for group in grounding.mutex_groups:
+        if group & added:
+            exactly_one = len(group & state) == 1
+            yield group, exactly_one and all(_keeps(action, group) for action in possible)
 
 
 def _positive(literals: Iterable[Any]) -> set[AtomKey]:
@@ -44,21 +130,22 @@ def _positive(literals: Iterable[Any]) -> set[AtomKey]:
 def _possible(action: Any, groups: Sequence[frozenset[AtomKey]]) -> bool:
     """Whether its precondition asks for no two atoms that exclude each other."""
     needed = _positive(action.precondition)
-    return all(len(needed & group) <= 1 for group in groups)
+    return len(needed) < 2 or all(len(needed & group) <= 1 for group in groups)
 
 
 def _keeps(action: Any, group: frozenset[AtomKey]) -> bool:
-    """Whether the action leaves one atom of the group true where exactly one was true."""
-    given = set(action.precondition)
-    sure_adds = [
-        set(condition) for condition, fact in action.add_effects if key_of(fact) in group
+    """Whether an action leaves one atom of the group true where exactly one was true."""
+    deletes = [
+        (condition, fact) for condition, fact in action.del_effects if key_of(fact) in group
     ]
-    for condition, fact in action.del_effects:
-        if key_of(fact) not in group:
-            continue
+    if not deletes:
+        return True
+    given = set(action.precondition)
+    adds = [set(condition) for condition, fact in action.add_effects if key_of(fact) in group]
+    for condition, fact in deletes:
         when = given | set(condition)
         if (_positive(when) & group) - {key_of(fact)}:
             continue  # another member is the true one, so nothing is deleted
-        if not any(added <= when for added in sure_adds):
+        if not any(added <= when for added in adds):
             return False
     return True

@@ -65,18 +65,21 @@ class KnownTask:
     def describe(self, initial: list[list[str]] | None) -> dict[str, Any]:
         """Everything about the task, with another initial state if one is given."""
         static, fluent = self._split(self._initial if initial is None else map(tuple, initial))
-        grounding = self._ground(static, fluent) if initial else self._at_home(static, fluent)
-        changing = grounding.atoms
+        here = self._at_home if initial is None else self._ground
+        grounding = here(static, fluent)
+        with _quiet():
+            self._task.init = grounding.initial
+            groups = described_groups(self._task, grounding, fluent)
         return {
             **self.description,
             "init": sorted(static | fluent),
             "atoms": sorted(
-                key for key in changing if not key[0].startswith("new-axiom@")
+                key for key in grounding.atoms if not key[0].startswith("new-axiom@")
             ),
             "ground_actions": sorted(
                 {tuple(action.name.strip("()").split()) for action in grounding.actions}
             ),
-            "mutex_groups": described_groups(grounding, fluent),
+            "mutex_groups": groups,
         }
 
     def plan(
