@@ -102,8 +102,15 @@ def tall_apple(rng: Generator) -> Model:
 
 
 def _apple(
-    rng: Generator, radius: float, height: float, base: Colour, blush: Colour, amount: float,
-    *, lobes: float, leaf: bool = False,
+    rng: Generator,
+    radius: float,
+    height: float,
+    base: Colour,
+    blush: Colour,
+    amount: float,
+    *,
+    lobes: float,
+    leaf: bool = False,
 ) -> Model:
     curve = profile(radius, height, rng.uniform(0.1, 0.26))
     build = Builder()
@@ -111,21 +118,25 @@ def _apple(
     gloss = rng.uniform(0.25, 0.5)
     build.paint("skin", texture=peel, specular=gloss, shininess=0.5)
     build.paint("stem", (0.3, 0.2, 0.1))
-    build.mesh("body", _body(curve, np.linspace(0, 2 * np.pi, 29), lobes), "skin", role="skin",
-               crease=70)
+    build.mesh(
+        "body", _body(curve, np.linspace(0, 2 * np.pi, 29), lobes), "skin", role="skin", crease=70
+    )
     dip = float(curve[-1, 1])
     lean = rng.uniform(-0.006, 0.006)
     path = [[0, 0, dip - 0.002], [lean / 3, 0, dip + 0.007], [lean, 0.001, dip + 0.018]]
     build.mesh("stem", tube(path, [0.0014, 0.0011, 0.0016], steps=5), "stem")
     if leaf:
         build.paint("leaf", near(rng, (0.25, 0.45, 0.14)))
-        build.mesh("leaf", _leaf().turned(2, float(rng.uniform(0, 360))).moved(z=dip + 0.012),
-                   "leaf")
+        build.mesh(
+            "leaf", _leaf().turned(2, float(rng.uniform(0, 360))).moved(z=dip + 0.012), "leaf"
+        )
     build.solid("sphere", (radius * 0.97,), (0, 0, radius * 0.97))
     top = float(curve[:, 1].max())
     z = 0.5 * height
     return build.done(
-        "apple", (2 * radius, 2 * radius, top), rng.uniform(0.12, 0.2),
+        "apple",
+        (2 * radius, 2 * radius, top),
+        rng.uniform(0.12, 0.2),
         grasps=(
             Grasp((0, 0, z), axis=(1, 0, 0), approach=(0, 1, 0), width=1.9 * radius),
             Grasp((0, 0, z), axis=(0, 1, 0), approach=(0, 0, -1), width=1.9 * radius),
@@ -162,7 +173,9 @@ def _half(
         build.mesh(name, flat, name, role=name, crease=70)
     build.solid("cylinder", (0.85 * radius, 0.46 * radius), (0, 0, 0.5 * radius))
     return build.done(
-        "apple_half", (2 * radius, height, radius), 0.08,
+        "apple_half",
+        (2 * radius, height, radius),
+        0.08,
         grasps=(Grasp((0, 0, 0.6 * radius), (1, 0, 0), (0, 0, -1), width=1.8 * radius),),
         colour=(0.95, 0.9, 0.7),
     )
@@ -176,7 +189,8 @@ def _leaf() -> Mesh:
     )
     sheet = surface(grid)
     return Mesh(
-        np.r_[sheet.points, sheet.points - [0, 0, 0.0005]], np.r_[sheet.uv, sheet.uv],
+        np.r_[sheet.points, sheet.points - [0, 0, 0.0005]],
+        np.r_[sheet.uv, sheet.uv],
         np.r_[sheet.faces, sheet.faces[:, ::-1] + len(sheet.points)],
     )
 

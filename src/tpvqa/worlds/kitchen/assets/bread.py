@@ -40,9 +40,7 @@ def _ring(width: float, height: float, *, steps: int, square: float, dome: float
     return np.stack([y, z], axis=1)
 
 
-def crust(
-    rng: Generator, gold: Colour, *, cuts: int, slant: float, flour: float = 0.0
-) -> bytes:
+def crust(rng: Generator, gold: Colour, *, cuts: int, slant: float, flour: float = 0.0) -> bytes:
     """A crust wrapped around a loaf: pale below, dark on top, with cuts showing the crumb."""
     height, width = 128, 192
     around = np.abs(np.linspace(-1, 1, height))[:, None] * np.ones((1, width))
@@ -73,9 +71,7 @@ def _grasps(width: float, height: float) -> tuple[Grasp, ...]:
 
 def _finish(build: Builder, x: float, y: float, z: float, gold: Colour) -> Model:
     build.standing("box", (0.9 * x, 0.85 * y, z))
-    return build.done(
-        "bread", (x, y, z), 0.3 + x * y * z * 150, grasps=_grasps(y, z), colour=gold
-    )
+    return build.done("bread", (x, y, z), 0.3 + x * y * z * 150, grasps=_grasps(y, z), colour=gold)
 
 
 def tin_loaf(rng: Generator) -> Model:
@@ -84,10 +80,11 @@ def tin_loaf(rng: Generator) -> Model:
     gold = one_of(rng, GOLD)
     build = Builder()
     skin = build.paint(
-        "crust", texture=crust(rng, gold, cuts=int(rng.integers(0, 3)), slant=rng.uniform(-0.3, 0.3))
+        "crust",
+        texture=crust(rng, gold, cuts=int(rng.integers(0, 3)), slant=rng.uniform(-0.3, 0.3)),
     )
     at = np.r_[0, 0.012, 0.035, np.linspace(0.08, 0.92, 10), 0.965, 0.988, 1]
-    ring = _ring(y * 0.92, z, steps=28, square=0.42, dome=0.09)
+    ring = _ring(y * 0.92, z, steps=28, square=0.5, dome=0.05)
     taper = _round_ends(at, 14, 0.35)
     taper[[0, -1]] = [[0, 0.4]] * 2
     build.mesh("loaf", _sweep(x, ring, taper, at), skin, crease=60)
@@ -163,7 +160,10 @@ def _long_loaf(rng: Generator, x: float, y: float, z: float, cuts: int) -> Model
     skin = build.paint(
         "crust",
         texture=crust(
-            rng, gold, cuts=cuts, slant=rng.choice([-1, 1]) * rng.uniform(0.1, 0.25),
+            rng,
+            gold,
+            cuts=cuts,
+            slant=rng.choice([-1, 1]) * rng.uniform(0.1, 0.25),
             flour=rng.uniform(0, 1),
         ),
     )
@@ -184,8 +184,10 @@ def sliced_loaf(rng: Generator) -> Model:
     skin = build.paint("crust", near(rng, gold))
     size = 96
     pores = clouds(rng, size, size, rows=12, columns=12, octaves=3)
-    crumb = build.paint("crumb", texture=png(mix(near(rng, CRUMB, 0.03), (0.8, 0.66, 0.42),
-                                                 np.clip(pores - 0.6, 0, 1) * 2)))
+    crumb = build.paint(
+        "crumb",
+        texture=png(mix(near(rng, CRUMB, 0.03), (0.8, 0.66, 0.42), np.clip(pores - 0.6, 0, 1) * 2)),
+    )
     ring = _ring(y * 0.94, z, steps=24, square=0.45, dome=0.1)
     thick = rng.uniform(0.011, 0.016)
     count = int(rng.integers(4, 8))
@@ -248,8 +250,12 @@ def plaited_loaf(rng: Generator) -> Model:
     for k in range(3):
         phase = 2 * np.pi * (turns * t + k / 3)
         path = np.stack(
-            [(t - 0.5) * x * 0.96, np.sin(phase) * 0.27 * y * swell,
-             (0.5 + 0.18 * np.sin(2 * phase)) * z], axis=1
+            [
+                (t - 0.5) * x * 0.96,
+                np.sin(phase) * 0.27 * y * swell,
+                (0.5 + 0.18 * np.sin(2 * phase)) * z,
+            ],
+            axis=1,
         )
         radius = np.maximum(0.24 * y * swell, 0.003)
         strands.append(_strand(path, radius))

@@ -1,6 +1,6 @@
 """The list of all families, kind by kind."""
 
-from tpvqa.worlds.kitchen.assets import apple, bread, crockery
+from tpvqa.worlds.kitchen.assets import apple, bread, crockery, fridge, knives, television
 from tpvqa.worlds.kitchen.assets.family import Family
 
 FAMILIES: tuple[Family, ...] = (
@@ -16,4 +16,17 @@ FAMILIES: tuple[Family, ...] = (
     Family("apple", "apple-tall", apple.tall_apple, held_out=True, fixed=4),
     Family("apple_half", "apple-half-lathe", apple.half, fixed=4),
     Family("apple_half", "apple-half-tall", apple.tall_half, held_out=True),
+    Family("knife", "knife-chef", knives.chef),
+    Family("knife", "knife-paring", knives.paring),
+    Family("knife", "knife-santoku", knives.santoku),
+    Family("knife", "knife-bread", knives.bread_knife),
+    Family("knife", "knife-table", knives.table_knife),
+    Family("knife", "knife-cleaver", knives.cleaver, held_out=True),
+    Family("knife", "knife-steel", knives.steel_knife, held_out=True),
+    Family("tv", "tv-flat", television.flat, fixed=6),
+    Family("tv", "tv-tube", television.tube_set, held_out=True),
+    Family("tv", "tv-easel", television.easel, held_out=True),
+    Family("fridge", "fridge-door", fridge.fridge, fixed=6),
+    Family("fridge", "fridge-side-by-side", fridge.side_by_side, held_out=True),
+    Family("fridge", "fridge-retro", fridge.retro, held_out=True),
 )

@@ -88,6 +88,4 @@ def _placed(model: Model, family: Family) -> Model:
     half = model.half and replace(
         model.half, kind="apple_half", family=family.name, held_out=family.held_out
     )
-    return replace(
-        model, kind=family.kind, family=family.name, held_out=family.held_out, half=half
-    )
+    return replace(model, kind=family.kind, family=family.name, held_out=family.held_out, half=half)

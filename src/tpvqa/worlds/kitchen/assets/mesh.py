@@ -116,9 +116,7 @@ def encode(mesh: Mesh, *, crease: float = 40.0) -> bytes:
     normals = np.empty_like(normal)
     normals[order] = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-20)
     index = faces.reshape(-1)
-    rows = np.concatenate(
-        [index[:, None].astype(np.float64), np.round(normals, 3) + 0.0], axis=1
-    )
+    rows = np.concatenate([index[:, None].astype(np.float64), np.round(normals, 3) + 0.0], axis=1)
     _, unique, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     points, uv = mesh.points[index[unique]], mesh.uv[index[unique]]
     header = np.array([len(unique)] * 3 + [len(faces)], np.int32)

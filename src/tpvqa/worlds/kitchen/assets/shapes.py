@@ -49,9 +49,7 @@ def surface(points: Floats, *, uv: Floats | None = None) -> Mesh:
     return Mesh(points.reshape(-1, 3), uv.reshape(-1, 2), _grid(rows, columns))
 
 
-def box(
-    x: float, y: float, z: float, *, bevel: float = 0.0, uv_scale: float | None = None
-) -> Mesh:
+def box(x: float, y: float, z: float, *, bevel: float = 0.0, uv_scale: float | None = None) -> Mesh:
     """A box of full sizes x, y, z, standing on the origin, with its edges cut off at 45 degrees.
 
     Args:
@@ -71,8 +69,10 @@ def box(
                 p = np.zeros(3)
                 p[axis], p[i], p[j] = sign * half[axis], si * (half[i] - b), sj * (half[j] - b)
                 points.append(p)
-    at = {tuple(np.sign(p) * (np.abs(p) >= half - 1e-12)) + tuple(np.sign(p)): k
-          for k, p in enumerate(points)}
+    at = {
+        tuple(np.sign(p) * (np.abs(p) >= half - 1e-12)) + tuple(np.sign(p)): k
+        for k, p in enumerate(points)
+    }
     corners = np.array(points)
     quads: list[list[int]] = [[4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3] for k in range(6)]
     tris: list[list[int]] = []
@@ -91,8 +91,14 @@ def box(
                         s = [0, 0, 0]
                         s[axis], s[i], s[j] = end, si, sj
                         ends.append((s[0], s[1], s[2]))
-                    quads.append([by_side[(i, ends[0])], by_side[(i, ends[1])],
-                                  by_side[(j, ends[1])], by_side[(j, ends[0])]])
+                    quads.append(
+                        [
+                            by_side[(i, ends[0])],
+                            by_side[(i, ends[1])],
+                            by_side[(j, ends[1])],
+                            by_side[(j, ends[0])],
+                        ]
+                    )
     del at
     out_points, out_uv, faces = [], [], []
     for loop in [*quads, *tris]:
@@ -212,9 +218,7 @@ def quad(x: float, z: float, *, thickness: float = 0.001) -> Mesh:
     front = [[-a, 0, -b], [a, 0, -b], [a, 0, b], [-a, 0, b]]
     back = [[px, thickness, pz] for px, _, pz in front]
     uv = [[0, 0], [1, 0], [1, 1], [0, 1]]
-    return Mesh.of(
-        front + back, [[0, 1, 2], [0, 2, 3], [5, 4, 7], [5, 7, 6]], [*uv, *uv]
-    )
+    return Mesh.of(front + back, [[0, 1, 2], [0, 2, 3], [5, 4, 7], [5, 7, 6]], [*uv, *uv])
 
 
 def disc(radius: float, *, thickness: float = 0.001, steps: int = 32) -> Mesh:
