@@ -11,6 +11,9 @@ as "oracle:0.8:0.5" or "openai:llama3:8b". The convention for what stands behind
   there is none, and of the context only what it names in its signature (or all, where it takes
   `**context`). It raises `PluginError` for arguments that it cannot read.
 - One without `from_spec` is called with what it names of the context, and takes no arguments.
+
+The truth of a simulated world (`truth`, `simulation`) is withheld, whatever a signature names,
+from all but worlds and *noise models*: VLMs whose class says `noise_model = True`.
 """
 
 import inspect
@@ -21,6 +24,8 @@ from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, r
 from typing import Any
 
 from tpvqa.errors import MissingExtraError, PluginError, TpvqaError, UnknownNameError
+
+_TRUTH = frozenset({"truth", "simulation"})
 
 
 class Kind(StrEnum):
@@ -79,24 +84,25 @@ def make(kind: Kind, spec: str, **context: Any) -> Any:
     Args:
         kind: What is wanted.
         spec: NAME or NAME:ARGUMENTS.
-        **context: What a plug-in may ask for by naming it in its signature.
+        **context: What a plug-in may ask for by naming it in its signature, `truth` and
+            `simulation` within the limits above.
 
     Raises:
         UnknownNameError: Nothing of that name.
         MissingExtraError: An optional package is needed.
         PluginError: The plug-in cannot be imported or does not take these arguments.
     """
-    name, arguments = split(spec)
-    return construct(kind, name, load(kind, name), arguments, context)
+    name, arguments = _split(spec)
+    return _construct(kind, name, load(kind, name), arguments, context)
 
 
-def split(spec: str) -> tuple[str, str]:
+def _split(spec: str) -> tuple[str, str]:
     """The name of a specification and what follows its first colon."""
     name, _, arguments = spec.partition(":")
     return name.strip(), arguments.strip()
 
 
-def construct(
+def _construct(
     kind: Kind, name: str, target: Callable[..., Any], arguments: str, context: Mapping[str, Any]
 ) -> Any:
     """Call what `load` gave by the convention that this module describes.
@@ -110,6 +116,14 @@ def construct(
             f"The {kind.value} {name!r} takes no arguments, but {arguments!r} was given. "
             f"Write {name!r} alone."
         )
+    noise_model = kind is Kind.VLM and bool(getattr(target, "noise_model", False))
+    if noise_model and context.get("truth") is None:
+        raise PluginError(
+            f"The VLM {name!r} is a noise model: it answers from the truth of a simulated world, "
+            "and there is none here. Choose one that looks at pictures, e.g. 'embedded'."
+        )
+    if not noise_model and kind is not Kind.WORLD:
+        context = {key: value for key, value in context.items() if key not in _TRUTH}
     function, given = (target, ()) if from_spec is None else (from_spec, (arguments,))
     signature = inspect.signature(function)
     parameters = signature.parameters.values()
@@ -127,14 +141,18 @@ def construct(
     return function(*given, **wanted)
 
 
+def _root(point: EntryPoint) -> str:
+    return point.module.partition(".")[0]
+
+
 def _package(point: EntryPoint) -> str:
     return point.dist.name if point.dist is not None else point.value
 
 
 def _cannot_import(kind: Kind, point: EntryPoint, error: Exception) -> Exception:
     missing = (getattr(error, "name", None) or "").partition(".")[0]
-    if isinstance(error, ModuleNotFoundError) and missing and not point.value.startswith(missing):
-        extra = extra_that_installs(missing)
+    if isinstance(error, ModuleNotFoundError) and missing != _root(point):
+        extra = extra_that_installs(missing) if missing else None
         if extra is not None:
             return MissingExtraError(missing, extra, f"The {kind.value} {point.name!r}")
     return PluginError(
