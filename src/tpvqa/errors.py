@@ -3,6 +3,7 @@
 TpvqaError
 ├── PDDLError              the domain or problem cannot be read
 ├── PlannerError           the planner itself could not be run (never "there is no plan")
+│   └── GroundingTimedOut  reading and grounding took longer than allowed
 ├── QuestionsError         a questions file is broken
 ├── AnswerError            a VLM could not be asked at all
 ├── WorldError             a world cannot do what it is asked to
@@ -39,6 +40,10 @@ class PDDLError(TpvqaError):
 
 class PlannerError(TpvqaError):
     """The planner could not be run. That no plan exists is a result, not this error."""
+
+
+class GroundingTimedOut(PlannerError):  # noqa: N818
+    """Reading and grounding a task took longer than allowed."""
 
 
 class QuestionsError(TpvqaError):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tpvqa.errors import PDDLError, PlannerError
+from tpvqa.errors import GroundingTimedOut, PDDLError, PlannerError
 from tpvqa.pddl.atoms import Atom, State
 from tpvqa.pddl.ground import MutexGroup
 from tpvqa.pddl.processes import WorkerTimedOut, ask_worker
@@ -35,7 +35,8 @@ def load_task(
     Raises:
         UnknownNameError: There is no shipped task of that name.
         PDDLError: A file is missing or cannot be read as PDDL.
-        PlannerError: Grounding took too long or failed.
+        GroundingTimedOut: It took too long.
+        PlannerError: Grounding failed.
 
     Example:
         >>> load_task("clean_dishes").goal
@@ -44,6 +45,8 @@ def load_task(
     if problem is None:
         from tpvqa.tasks import find_task
 
+        if Path(name_or_domain).suffix.lower() == ".pddl":
+            raise PDDLError("a domain alone is no task; name its problem too", file=name_or_domain)
         files = find_task(str(name_or_domain))
         domain_path, problem_path = files.domain, files.problem
     else:
@@ -69,7 +72,8 @@ def task_from_text(
 
     Raises:
         PDDLError: The text cannot be read as PDDL.
-        PlannerError: Grounding took too long or failed.
+        GroundingTimedOut: It took too long.
+        PlannerError: Grounding failed.
     """
     from hashlib import blake2b
 
@@ -85,12 +89,11 @@ def task_from_text(
     return Task(
         name=description["name"],
         domain_name=description["domain_name"],
-        objects={name: kind for name, kind in description["objects"]},
-        types={name: parent for name, parent in description["types"]},
+        objects=dict(description["objects"]),
+        types=dict(description["types"]),
         predicates={name: tuple(types) for name, types in description["predicates"]},
         predicate_variables={
-            name: tuple(variables)
-            for name, variables in description["predicate_variables"].items()
+            name: tuple(variables) for name, variables in description["predicate_variables"].items()
         },
         goal=ground_condition(_condition(description["goal"]), {}, objects_by_type),
         fluents=frozenset(description["fluents"]),
@@ -143,7 +146,7 @@ def _described(
             seconds=timeout,
         )
     except WorkerTimedOut:
-        raise PlannerError(
+        raise GroundingTimedOut(
             f"grounding the task took more than {timeout:g} s; give it more time "
             "(timeout=…), or make the problem smaller"
         ) from None
@@ -226,5 +229,3 @@ def _action(part: dict[str, Any]) -> ActionSchema:
         ),
         cost if isinstance(cost, int) else tuple(cost),
     )
-
-

@@ -182,7 +182,7 @@ class Workers:
     def _take(self, key: str) -> Worker:
         with self._lock:
             knowing = [worker for worker in self._idle if key in worker.known]
-            worker = (knowing or self._idle or [None])[-1]
+            worker = next(reversed(knowing or self._idle), None)
             if worker is not None:
                 self._idle.remove(worker)
         if worker is None or not worker.alive:

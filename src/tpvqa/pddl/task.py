@@ -149,7 +149,7 @@ class Task:
         return schema
 
     def ground_actions(self) -> tuple[Action, ...]:
-        """All actions that are reachable from the initial state where delete effects are ignored."""
+        """All actions reachable from the initial state where nothing is ever undone."""
         return self._ground_actions
 
     @cached_property
@@ -192,7 +192,8 @@ class Task:
         Conditions of effects are those of the state before; what is both added and deleted holds.
         """
         before = self.extend(state)
-        added, deleted = set(), set()
+        added: set[Atom] = set()
+        deleted: set[Atom] = set()
         for effect in action.effects:
             if holds(effect.condition, before):
                 (added if effect.literal.positive else deleted).add(effect.literal.atom)

@@ -74,7 +74,7 @@ def _adds(action: Any, parts: Sequence[Any], objects: dict[str, list[str]]) -> b
                 continue
             types = {p.name: p.type_name for p in (*action.parameters, *effect.parameters)}
             if all(
-                wanted in (_COUNTED, argument) or wanted in objects.get(types.get(argument), ())
+                wanted in (_COUNTED, argument) or wanted in objects.get(types.get(argument, ""), ())
                 for wanted, argument in zip(part.args, literal.args, strict=True)
             ):
                 return True
@@ -135,9 +135,7 @@ def _possible(action: Any, groups: Sequence[frozenset[AtomKey]]) -> bool:
 
 def _keeps(action: Any, group: frozenset[AtomKey]) -> bool:
     """Whether an action leaves one atom of the group true where exactly one was true."""
-    deletes = [
-        (condition, fact) for condition, fact in action.del_effects if key_of(fact) in group
-    ]
+    deletes = [(condition, fact) for condition, fact in action.del_effects if key_of(fact) in group]
     if not deletes:
         return True
     given = set(action.precondition)

@@ -73,9 +73,7 @@ class KnownTask:
         return {
             **self.description,
             "init": sorted(static | fluent),
-            "atoms": sorted(
-                key for key in grounding.atoms if not key[0].startswith("new-axiom@")
-            ),
+            "atoms": sorted(key for key in grounding.atoms if not key[0].startswith("new-axiom@")),
             "ground_actions": sorted(
                 {tuple(action.name.strip("()").split()) for action in grounding.actions}
             ),
@@ -116,9 +114,7 @@ class KnownTask:
         left = None if end is None else max(0.0, end - time.monotonic())
         return searcher.run(template.fill(fluent), search, seconds=left, memory=memory)
 
-    def _split(
-        self, atoms: Iterable[AtomKey]
-    ) -> tuple[frozenset[AtomKey], frozenset[AtomKey]]:
+    def _split(self, atoms: Iterable[AtomKey]) -> tuple[frozenset[AtomKey], frozenset[AtomKey]]:
         """Static and fluent facts; derived ones follow from them and are left out."""
         static, fluent = set(), set()
         for key in atoms:
@@ -156,5 +152,3 @@ class KnownTask:
         _, also_fluent = self._split(also)
         self._away = self._ground(static, fluent, also_fluent)
         return self._away
-
-

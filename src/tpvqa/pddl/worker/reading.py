@@ -26,7 +26,7 @@ class ReadingError(Exception):
         self.message, self.part, self.line = message, part, line
 
 
-class _Located(ParseError):  # type: ignore[misc]
+class _LocatedError(ParseError):  # type: ignore[misc]
     def __init__(self, message: str, layers: list[str], item: object, syntax: str | None):
         super().__init__(message)
         self.message, self.layers, self.item, self.syntax = message, layers, item, syntax
@@ -36,7 +36,7 @@ class _Context(parsing_functions.Context):  # type: ignore[misc]
     """The translator's parsing context, which also remembers the object that is wrong."""
 
     def error(self, message: str, item: object = None, syntax: str | None = None) -> None:
-        raise _Located(message, list(self._traceback), item, syntax)
+        raise _LocatedError(message, list(self._traceback), item, syntax)
 
 
 parsing_functions.Context = _Context
@@ -59,7 +59,7 @@ def read(domain_text: str, problem_text: str) -> Any:
             raise ReadingError(error.message, part, error.line) from None
     try:
         task = parsing_functions.parse_task(blocks["domain"], blocks["problem"])
-    except _Located as error:
+    except _LocatedError as error:
         raise _explained(error) from None
     except (ParseError, ValueError) as error:
         raise ReadingError(str(error), "domain", None) from None
@@ -78,7 +78,7 @@ def read(domain_text: str, problem_text: str) -> Any:
     return task
 
 
-def _explained(error: _Located) -> ReadingError:
+def _explained(error: _LocatedError) -> ReadingError:
     layers = " / ".join(layer.removeprefix("Parsing ") for layer in error.layers[1:4])
     message = " ".join(error.message.replace("Reason: ", "").split()).rstrip(".")
     if error.item is not None and not isinstance(error.item, ParseError):
@@ -103,7 +103,7 @@ def _shown(item: object) -> str:
     return repr(text if len(text) <= 80 else text[:77] + "…")
 
 
-def _similar(error: _Located) -> str | None:
+def _similar(error: _LocatedError) -> str | None:
     if not isinstance(error.item, str):
         return None
     known: set[str] = set()

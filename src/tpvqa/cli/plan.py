@@ -1,0 +1,155 @@
+"""`tpvqa plan` and `tpvqa tasks`."""
+
+import json
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from tpvqa.planning import PlanningResult
+
+UNSOLVABLE, TIMED_OUT, CRASHED = 3, 4, 5
+
+_EXIT = (
+    "Exit codes: 0 a plan was found, 2 bad input, 3 no plan exists, 4 timed out, "
+    "5 the planner crashed (or ran out of memory), 130 interrupted."
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands."""
+    app.command(epilog=_EXIT)(plan)
+    app.command()(tasks)
+
+
+def plan(
+    task: Annotated[
+        str, typer.Argument(help="A shipped task (see `tpvqa tasks`), or a PDDL domain file.")
+    ],
+    problem: Annotated[
+        Path | None, typer.Argument(help="The PDDL problem file, after a domain file.")
+    ] = None,
+    *,
+    from_state: Annotated[
+        Path | None,
+        typer.Option(
+            help="Plan from this state instead: a file with one atom a line, (on plate table), "
+            "or a JSON list of atoms. Facts that no action changes may be left out."
+        ),
+    ] = None,
+    optimal: Annotated[bool, typer.Option("--optimal", help="A plan of least cost.")] = False,
+    timeout: Annotated[
+        float, typer.Option(help="Seconds for reading, grounding and search.", min=0.001)
+    ] = 60.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Plan a task with Fast Downward and print the plan."""
+    from tpvqa.errors import GroundingTimedOut, PlannerError
+    from tpvqa.pddl import load_task
+    from tpvqa.pddl.state_file import read_state
+    from tpvqa.planning import Crashed, TimedOut
+    from tpvqa.planning.fast_downward import FastDownward
+
+    start = time.perf_counter()
+    planner = FastDownward(optimal=optimal)
+    result: PlanningResult
+    try:
+        loaded = load_task(task, problem, timeout=timeout)
+        state = None if from_state is None else read_state(from_state, loaded)
+        left = max(0.0, timeout - (time.perf_counter() - start))
+        result = planner.plan(loaded, state, timeout=left)
+    except GroundingTimedOut:
+        result = TimedOut(timeout, planner.name, time.perf_counter() - start)
+    except PlannerError as error:
+        result = Crashed(str(error), planner.name, time.perf_counter() - start)
+    if isinstance(result, TimedOut):  # the limit that the user gave, not what was left of it
+        result = replace(result, limit=timeout)
+    planner.close()
+    code = _exit_code(result)
+    if as_json:
+        print(json.dumps(_as_json(result), indent=2))
+    else:
+        print(_as_text(result), file=sys.stderr if code else sys.stdout)
+    raise typer.Exit(code)
+
+
+def _exit_code(result: "PlanningResult") -> int:
+    from tpvqa.planning import Plan, TimedOut, Unsolvable
+
+    match result:
+        case Plan():
+            return 0
+        case Unsolvable():
+            return UNSOLVABLE
+        case TimedOut():
+            return TIMED_OUT
+        case _:
+            return CRASHED
+
+
+def _as_json(result: "PlanningResult") -> dict[str, Any]:
+    from tpvqa.planning import Plan, TimedOut, Unsolvable
+
+    who = {"planner": result.planner, "seconds": round(result.seconds, 6)}
+    match result:
+        case Plan(actions, cost):
+            steps = [{"name": step.name, "arguments": list(step.arguments)} for step in actions]
+            return {"plan": steps, "cost": cost, **who}
+        case TimedOut(limit):
+            return {"plan": None, "result": "timed out", "limit": limit, **who}
+        case Unsolvable(reason):
+            return {"plan": None, "result": "unsolvable", "reason": reason, **who}
+        case _:
+            return {"plan": None, "result": "crashed", "reason": result.reason, **who}
+
+
+def _as_text(result: "PlanningResult") -> str:
+    from tpvqa.planning import Plan, TimedOut, Unsolvable
+
+    match result:
+        case Plan(actions, cost):
+            lines = [f"{number:3d}. {step}" for number, step in enumerate(actions, start=1)]
+            lines = lines or ["The goal already holds: there is nothing to do."]
+            took = f"{result.seconds * 1000:.0f} ms"
+            return "\n".join([*lines, f"cost {cost}, {result.planner}, {took}"])
+        case TimedOut(limit):
+            return f"Timed out after {limit:g} s. Give it more time with --timeout."
+        case Unsolvable(reason):
+            return f"There is no plan: {reason}."
+        case _:
+            return f"The planner crashed: {result.reason}."
+
+
+def tasks(
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the list as JSON.")] = False,
+) -> None:
+    """List the shipped tasks with their goals and objects."""
+    from tpvqa.pddl import load_task
+    from tpvqa.pddl.conditions import literals
+    from tpvqa.planning.fast_downward import FastDownward
+    from tpvqa.tasks import shipped_tasks
+
+    loaded = [(files, load_task(files.name)) for files in shipped_tasks()]
+    FastDownward().close()
+    if as_json:
+        entries = [
+            {
+                "name": files.name,
+                "domain": str(files.domain),
+                "problem": str(files.problem),
+                "goal": [str(literal) for literal in literals(task.goal)],
+                "objects": dict(task.objects),
+            }
+            for files, task in loaded
+        ]
+        print(json.dumps(entries, indent=2))
+        return
+    for files, task in loaded:
+        print(f"{files.name}  ({task.domain_name})")
+        print(f"  goal     {', '.join(map(str, literals(task.goal)))}")
+        print(f"  objects  {', '.join(task.objects)}")
