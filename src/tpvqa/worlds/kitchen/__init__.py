@@ -1,0 +1,1 @@
+"""A kitchen, rendered and physical: MuJoCo draws it and moves what falls."""

@@ -1,0 +1,182 @@
+"""Furnishes a layout: draws a model for every thing and writes MuJoCo's scene description."""
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tpvqa.worlds.kitchen.assets import Model, draw, kinds
+from tpvqa.worlds.kitchen.grippers import gripper_body
+from tpvqa.worlds.kitchen.household import HANDS, ITEMS
+from tpvqa.worlds.kitchen.layout import Layout, Split, Stand, draw_layout
+
+DISTRACTORS = 7
+_NOT_LOOSE = {
+    *ITEMS,
+    "apple_half",
+    "dirt",
+    "fridge",
+    "tv",
+    "tv_stand",
+    "sink",
+    "cabinet",
+    "wall_cabinet",
+    "table",
+    "gripper",
+}
+
+
+@dataclass(frozen=True)
+class Furniture:
+    """The chosen models and the scene made of them.
+
+    Attributes:
+        layout: Where the furniture stands.
+        xml: MuJoCo's description of the scene.
+        files: The meshes and textures it names.
+        models: The model of each named thing.
+        loose: Names of the distractors.
+    """
+
+    layout: Layout
+    xml: str = field(repr=False)
+    files: Mapping[str, bytes] = field(repr=False)
+    models: Mapping[str, Model]
+    loose: tuple[str, ...]
+
+
+def furnish(rng: np.random.Generator, split: Split) -> Furniture:
+    """Choose a model for every thing, and put the fixtures into a random room."""
+
+    def pick(kind: str) -> Model:
+        return draw(kind, rng, split=split)
+
+    models = {item: pick(item) for item in ITEMS}
+    models["half"] = models["apple"].half or pick("apple_half")
+    models["dirt"] = pick("dirt")
+    for fixture in ("table", "sink", "fridge", "tv", "tv_stand", "cabinet", "wall_cabinet"):
+        models[fixture] = pick(fixture)
+    clutter = [kind for kind in kinds() if kind not in _NOT_LOOSE]
+    loose = []
+    for k in range(min(DISTRACTORS, 2 * len(clutter))):
+        models[f"loose{k}"] = pick(clutter[int(rng.integers(len(clutter)))])
+        loose.append(f"loose{k}")
+    layout = draw_layout(rng, split, {name: model.extent for name, model in models.items()})
+    files: dict[str, bytes] = {}
+    assets: dict[str, None] = {}
+    for model in models.values():
+        files.update({_flat(name): content for name, content in model.files.items()})
+        assets.update(dict.fromkeys(map(_flat_files, model.mjcf_assets())))
+    bodies = [*_fixtures(layout, models), *_items(models)]
+    bodies += [
+        f'<body name="{name}" pos="0 0 -20">{models[name].mjcf_inside(name + "/")}</body>'
+        for name in loose
+    ]
+    bodies += [gripper_body(hand) for hand in HANDS]
+    xml = _SCENE.format(assets="\n".join(assets), room=_room(layout), bodies="\n".join(bodies))
+    return Furniture(layout=layout, xml=xml, files=files, models=models, loose=tuple(loose))
+
+
+def _flat(name: str) -> str:
+    """A file name without folders, which MuJoCo ignores when it compares names."""
+    return name.replace("/", "~")
+
+
+def _flat_files(element: str) -> str:
+    return re.sub(r'file="([^"]+)"', lambda found: f'file="{_flat(found[1])}"', element)
+
+
+def _placed(name: str, stand: Stand, inside: str) -> str:
+    return (
+        f'<body name="{name}" pos="{stand.x:.4f} {stand.y:.4f} {stand.z:.4f}"'
+        f' quat="{np.cos(stand.yaw / 2):.6f} 0 0 {np.sin(stand.yaw / 2):.6f}">{inside}</body>'
+    )
+
+
+def _fixtures(layout: Layout, models: Mapping[str, Model]) -> Iterable[str]:
+    for k, stand in enumerate(layout.cabinets):
+        yield _placed(f"counter{k}", stand, models["cabinet"].mjcf_inside(f"counter{k}/"))
+    for k, stand in enumerate(layout.wall_cabinets):
+        model = models["wall_cabinet"]
+        yield _placed(f"upper{k}", stand, "\n".join(model.mjcf_geoms(f"upper{k}/")))
+    for name, stand in (("sink", layout.sink), ("fridge", layout.fridge), ("table", layout.table)):
+        yield _placed(name, stand, models[name].mjcf_inside(f"{name}/"))
+    stand, height = layout.tv_stand, models["tv_stand"].extent[2]
+    yield _placed("tv_stand", stand, models["tv_stand"].mjcf_inside("tv_stand/"))
+    up = Stand(stand.x, stand.y, stand.yaw, height)
+    yield _placed("tv", up, models["tv"].mjcf_inside("tv/"))
+
+
+def _items(models: Mapping[str, Model]) -> Iterable[str]:
+    for item in ITEMS:
+        inside = models[item].mjcf_inside(f"{item}/")
+        if item == "plate" and not models[item].parts_with("dirt"):
+            x, y, z = models[item].surface("middle").pos
+            dirt = "\n".join(models["dirt"].mjcf_geoms("dirt/"))
+            inside += f'<body name="dirt" pos="{x} {y} {z + 0.0006}">{dirt}</body>'
+        yield f'<body name="{item}" pos="0 0 -20"><freejoint name="{item}"/>{inside}</body>'
+    for name in ("half_a", "half_b"):
+        geoms = "\n".join(models["half"].mjcf_geoms(f"{name}/"))
+        yield f'<body name="{name}" mocap="true" pos="0 0 -20">{geoms}</body>'
+
+
+def _room(layout: Layout) -> str:
+    w, d, h = layout.width / 2, layout.depth / 2, layout.height / 2
+    walls = {
+        "back": ((0, 0, h), "1 0 0 0 0 1", (w, h)),
+        "front": ((0, -2 * d, h), "-1 0 0 0 0 1", (w, h)),
+        "west": ((-w, -d, h), "0 1 0 0 0 1", (d, h)),
+        "east": ((w, -d, h), "0 -1 0 0 0 1", (d, h)),
+    }
+    lines = [
+        f'<geom name="floor" type="plane" pos="0 {-d} 0" size="{w} {d} 0.1" material="floor"/>',
+        f'<geom name="ceiling" type="plane" pos="0 {-d} {2 * h}" zaxis="0 0 -1"'
+        f' size="{w} {d} 0.1" material="ceiling" contype="0" conaffinity="0"/>',
+    ]
+    for name, ((x, y, z), axes, (a, b)) in walls.items():
+        lines.append(
+            f'<geom name="wall_{name}" type="plane" pos="{x} {y} {z}" xyaxes="{axes}"'
+            f' size="{a} {b} 0.1" material="wall"/>'
+        )
+    run = [stand.x for stand in layout.cabinets if stand.yaw == 0]
+    middle, half = (min(run) + max(run)) / 2, (max(run) - min(run)) / 2 + 0.3
+    lines.append(
+        f'<geom name="tiles" type="plane" pos="{middle} -0.004 1.17" xyaxes="1 0 0 0 0 1"'
+        f' size="{half} 0.285 0.1" material="tiles" contype="0" conaffinity="0"/>'
+    )
+    return "\n".join(lines)
+
+
+_SCENE = """<mujoco model="kitchen">
+<compiler angle="degree" boundmass="1e-4" boundinertia="1e-8" balanceinertia="true"/>
+<option timestep="0.004" integrator="implicitfast"/>
+<size memory="32M"/>
+<statistic extent="4" center="0 -2 1"/>
+<visual>
+  <headlight ambient=".36 .36 .36" diffuse=".15 .15 .15" specular="0 0 0"/>
+  <quality shadowsize="1024" offsamples="4"/>
+  <map znear="0.01" zfar="4" shadowclip="3"/>
+  <global offwidth="1024" offheight="1024"/>
+</visual>
+<asset>
+<texture type="skybox" builtin="gradient" rgb1=".8 .85 .9" rgb2=".5 .55 .6" width="64" height="64"/>
+<material name="floor" rgba=".7 .65 .6 1"/>
+<material name="wall" rgba=".9 .88 .82 1"/>
+<material name="ceiling" rgba=".95 .95 .95 1"/>
+<material name="tiles" rgba=".92 .94 .94 1"/>
+<material name="gripper" rgba=".15 .15 .16 1" specular=".4"/>
+<material name="arm" rgba=".8 .8 .82 1" specular=".4"/>
+<material name="pads" rgba=".1 .1 .1 1" specular=".1"/>
+{assets}
+</asset>
+<worldbody>
+<light name="ceiling" pos="0 -2 2.5" dir="0 0 -1" diffuse=".45 .44 .42" specular=".2 .2 .2"
+  castshadow="true" cutoff="85" exponent="1" attenuation="1 0 0"/>
+<light name="window" pos="-2 -3 2.3" dir=".5 .6 -.6" diffuse=".28 .29 .32" specular=".1 .1 .1"
+  castshadow="false" cutoff="75" exponent="1"/>
+<camera name="robot" pos="0 -2 1.4" fovy="60"/>
+{room}
+{bodies}
+</worldbody>
+</mujoco>"""

@@ -1,0 +1,38 @@
+"""MuJoCo with a renderer that works without a screen."""
+
+import os
+import sys
+from types import ModuleType
+
+from tpvqa.errors import MissingExtraError, WorldError
+
+_REMEDY = (
+    "Software rendering needs the library OSMesa: `apt-get install libosmesa6`, then set the "
+    "environment variable MUJOCO_GL=osmesa."
+)
+
+
+def load_mujoco() -> ModuleType:
+    """Import MuJoCo, choosing software rendering where nothing else was chosen.
+
+    Raises:
+        MissingExtraError: MuJoCo is not installed.
+        WorldError: It is, but its graphics library is not there.
+    """
+    if "mujoco" not in sys.modules and "MUJOCO_GL" not in os.environ and sys.platform == "linux":
+        os.environ["MUJOCO_GL"] = "osmesa"
+    os.environ.setdefault("LP_NUM_THREADS", "2")
+    try:
+        import mujoco
+    except ModuleNotFoundError as error:
+        if error.name and error.name.split(".")[0] != "mujoco":
+            raise WorldError(f"MuJoCo cannot draw ({error}). {_REMEDY}") from error
+        raise MissingExtraError("mujoco", "sim", "The live kitchen") from error
+    except (ImportError, AttributeError, RuntimeError, OSError) as error:
+        raise WorldError(f"MuJoCo cannot draw ({error}). {_REMEDY}") from error
+    return mujoco
+
+
+def cannot_draw(error: BaseException) -> WorldError:
+    """The error to raise when a graphics context cannot be made."""
+    return WorldError(f"MuJoCo cannot draw: {error or type(error).__name__}. {_REMEDY}")

@@ -1,0 +1,61 @@
+"""Colours and lights of a kitchen, changed without compiling it again."""
+
+import colorsys
+from typing import Any
+
+import numpy as np
+
+from tpvqa.worlds.kitchen.rotation import Array
+
+
+def colour(
+    rng: np.random.Generator, *, saturation: float, dark: float, bright: float = 1.0
+) -> Array:
+    """A random colour, at most so saturated and between so dark and so bright."""
+    return np.array(
+        colorsys.hsv_to_rgb(
+            rng.random(), rng.random() * saturation, float(rng.uniform(dark, bright))
+        )
+    )
+
+
+class Paintwork:
+    """Repaints and lights one model.
+
+    Args:
+        model: The compiled scene.
+        material: Number of each material by name.
+    """
+
+    def __init__(self, model: Any, material: dict[str, int]):
+        self._model, self._material = model, material
+        self._base = model.mat_rgba.copy()
+        self._light_position = model.light_pos.copy()
+        self._light_colour = model.light_diffuse.copy()
+
+    def repaint(self, rng: np.random.Generator) -> None:
+        """Other colours for walls, floor and furniture."""
+        model = self._model
+        model.mat_rgba[:] = self._base
+        for name, saturation, dark in (
+            ("wall", 0.4, 0.55),
+            ("floor", 0.45, 0.4),
+            ("tiles", 0.4, 0.55),
+            ("ceiling", 0.08, 0.85),
+        ):
+            model.mat_rgba[self._material[name], :3] = colour(rng, saturation=saturation, dark=dark)
+
+    def light(self, rng: np.random.Generator) -> None:
+        """Other strength, colour and place of the lights."""
+        model = self._model
+        strength = float(rng.uniform(0.7, 1.3))
+        model.vis.headlight.ambient[:] = rng.uniform(0.34, 0.5) * colour(
+            rng, saturation=0.08, dark=0.92
+        )
+        model.vis.headlight.diffuse[:] = rng.uniform(0.12, 0.35)
+        for k in range(model.nlight):
+            tint = colour(rng, saturation=0.15, dark=0.9)
+            model.light_diffuse[k] = np.clip(
+                self._light_colour[k] * strength * rng.uniform(0.7, 1.3) * tint, 0, 1
+            )
+            model.light_pos[k] = self._light_position[k] + rng.uniform(-0.8, 0.8, 3) * [1, 1, 0.1]

@@ -1,0 +1,305 @@
+"""One random kitchen that can be put into any state of the household and looked at."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tpvqa.chance import chance_array
+from tpvqa.errors import UnknownNameError, WorldError
+from tpvqa.pddl import Atom, State
+from tpvqa.worlds.kitchen.cameras import Shot, choose
+from tpvqa.worlds.kitchen.drawing import Drawing
+from tpvqa.worlds.kitchen.furniture import furnish
+from tpvqa.worlds.kitchen.gl import load_mujoco
+from tpvqa.worlds.kitchen.grippers import draw_gripper, hand_pose, held_pose, pieces
+from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, ITEMS, Household
+from tpvqa.worlds.kitchen.layout import Split
+from tpvqa.worlds.kitchen.paintwork import Paintwork
+from tpvqa.worlds.kitchen.rotation import Array, looking, quaternion
+from tpvqa.worlds.kitchen.sight import Sight
+from tpvqa.worlds.kitchen.spots import Pose, Spots, halves
+from tpvqa.worlds.kitchen.truth import Shown, shown
+from tpvqa.worlds.kitchen.viewpoints import approach
+
+VIEWS = ("front", "left", "right", "overview")
+HIDDEN = 4
+"""The geom group that is not drawn."""
+LABELS = ("nothing", *ITEMS, *FIXTURES, "screen", "dirt", *HANDS)
+
+
+class KitchenScene:
+    """One random kitchen, compiled by MuJoCo.
+
+    Args:
+        seed: Decides the whole kitchen.
+        split: Held-out kitchens have meshes, grippers and layouts that training never sees.
+        size: Height and width of the pictures, pixels.
+
+    Raises:
+        MissingExtraError: MuJoCo is not installed.
+        WorldError: There is no graphics library to draw with.
+    """
+
+    def __init__(self, *, seed: int, split: Split = "train", size: int = 224):
+        self._mujoco = mj = load_mujoco()
+        self.seed, self.split, self.size = seed, split, size
+        rng = chance_array(seed, 0, "kitchen", split)
+        self.furniture = furnish(rng, split)
+        self.model = mj.MjModel.from_xml_string(
+            self.furniture.xml, assets=dict(self.furniture.files)
+        )
+        self.data = mj.MjData(self.model)
+        self.spots = Spots(self.furniture, seed)
+        self._names()
+        self._paintwork = Paintwork(self.model, self._material)
+        self._gripper = draw_gripper(rng, split)
+        self._door = self.furniture.models["fridge"].joints[0]
+        self._drawing = Drawing(self.model, size)
+        self._sight = Sight(self.model, self.data)
+        self._household: Household | None = None
+        self._counts: Mapping[str, int] | None = None
+        self._shadow = True
+        self.wrong = 0.0
+        self.view = "front"
+        self.repaint(0)
+
+    def _names(self) -> None:
+        mj, model = self._mujoco, self.model
+
+        def names(kind: Any, count: int) -> list[str]:
+            return [mj.mj_id2name(model, kind, k) or "" for k in range(count)]
+
+        kinds = mj.mjtObj
+        self._body = {n: k for k, n in enumerate(names(kinds.mjOBJ_BODY, model.nbody))}
+        self._material = {n: k for k, n in enumerate(names(kinds.mjOBJ_MATERIAL, model.nmat))}
+        self.geom_names = names(kinds.mjOBJ_GEOM, model.ngeom)
+        self._geom = {n: k for k, n in enumerate(self.geom_names) if n}
+        self._group = model.geom_group.copy()
+        self._camera = mj.mj_name2id(model, kinds.mjOBJ_CAMERA, "robot")
+        self._mocap = {n: int(model.body_mocapid[k]) for n, k in self._body.items()}
+        self._label = np.array([LABELS.index(self._label_of(n)) for n in self.geom_names])
+        self._geoms_of: dict[str, list[int]] = {}
+        for k, name in enumerate(self.geom_names):
+            if self._group[k] < 3:
+                self._geoms_of.setdefault(name.split("/")[0], []).append(k)
+
+    def _label_of(self, geom: str) -> str:
+        thing, _, part = geom.partition("/")
+        models = self.furniture.models
+        if thing in ("half_a", "half_b"):
+            return "apple"
+        if thing.startswith("counter"):
+            return "counter"
+        if thing == "tv" and part in {p.name for p in models["tv"].parts_with("screen")}:
+            return "screen"
+        if thing == "sink":
+            wet = {p.name for role in ("basin", "tap") for p in models["sink"].parts_with(role)}
+            return "sink" if not wet or part in wet else "counter"
+        if part in {p.name for p in models["plate"].parts_with("dirt")} and thing == "plate":
+            return "dirt"
+        return thing if thing in LABELS else "nothing"
+
+    def repaint(self, number: int) -> None:
+        """Give walls, floor and furniture other colours. 0 is how the kitchen was made."""
+        rng = chance_array(self.seed, 0, "paint", number)
+        self._paintwork.repaint(rng)
+
+    @staticmethod
+    def views() -> tuple[str, ...]:
+        """The views that `arrange` can take."""
+        return VIEWS
+
+    def arrange(
+        self,
+        state: State,
+        *,
+        look: int,
+        view: str = "front",
+        placement: object = None,
+        steady: bool = False,
+    ) -> None:
+        """Put everything where the state says, and the camera where the robot stands.
+
+        Args:
+            state: A state of the household domain.
+            look: Varies camera pose, hands and light.
+            view: One of `views()`.
+            placement: Varies where on their surfaces things lie; as `look` unless given.
+            steady: Never move things to get a better picture of them.
+
+        Raises:
+            UnknownNameError: There is no such view.
+            WorldError: The state is not one of the household.
+        """
+        if view not in VIEWS:
+            raise UnknownNameError("view", view, VIEWS)
+        household = Household.read(state)
+        key = look if placement is None else placement
+        best: tuple[float, dict[str, Pose], Shot] | None = None
+        for attempt in range(1 if steady else 6):
+            together = None if steady else household.near
+            poses = self.spots.place(household, (key, attempt), together=together)
+            rng = chance_array(self.seed, 0, "look", look, view, attempt)
+            shot, wrong = self._shoot(household, poses, view, rng)
+            if best is None or wrong < best[0]:
+                best = wrong, {**poses, **self.spots.loose((key, attempt))}, shot
+            if wrong <= 0:
+                break
+        assert best is not None
+        self.wrong, poses, shot = best
+        self._household, self.view = household, view
+        self._set_scene(household, poses, shot, chance_array(self.seed, 0, "set", look, view))
+
+    def _shoot(
+        self, household: Household, poses: Mapping[str, Pose], view: str, rng: np.random.Generator
+    ) -> tuple[Shot, float]:
+        layout = self.furniture.layout
+        if view == "overview":
+            corner = np.array([-1.0 if rng.random() < 0.5 else 1.0, -1.0])
+            x = corner[0] * (layout.width / 2 - 0.3)
+            position = np.array([x, -layout.depth + 0.3, rng.uniform(2.0, 2.3)])
+            middle = np.array([-0.1 * x, -layout.depth * 0.3, 0.7])
+            return Shot(position, looking(middle - position), float(rng.uniform(66, 74))), 0.0
+        found, wanted = approach(household, self.spots, poses, rng)
+        side = {"left": -1.0, "right": 1.0}.get(view, 0.0)
+        aside = 0.0
+        if len(household.held) == 1:
+            aside = 0.2 if "left" in household.held else -0.2
+        return choose(found, wanted, layout, rng, side=side, aside=aside)
+
+    def _set_scene(
+        self,
+        household: Household,
+        poses: Mapping[str, Pose],
+        shot: Shot,
+        rng: np.random.Generator,
+    ) -> None:
+        model, data, mj = self.model, self.data, self._mujoco
+        model.cam_pos[self._camera] = shot.position
+        model.cam_quat[self._camera] = quaternion(shot.axes)
+        model.cam_fovy[self._camera] = shot.fovy
+        self._paintwork.light(rng)
+        self._shadow = bool(rng.random() < 0.6)
+        drawn = set(self._geoms_of) - set(ITEMS) - {"half_a", "half_b", "dirt", *HANDS}
+        drawn -= {name for name in self.furniture.loose if name not in poses}
+        placed = dict(poses)
+        if self.view != "overview":
+            drawn |= set(HANDS)
+        for hand in HANDS:
+            tip, axes = hand_pose(hand, shot.axes, shot.position, rng)
+            width, item = self._gripper.open, household.held.get(hand)
+            if item is not None:
+                thing = self.furniture.models[item]
+                position, rotation, axes = held_pose(thing, tip, axes, rng)
+                placed[item] = Pose(position, rotation)
+                width = thing.grasps[0].width
+            self._set_hand(hand, tip, axes, width)
+        if self.view == "overview":
+            for item in household.hand_of:
+                placed.pop(item)
+        placed |= self.spots.upon(household, placed, ("held",))
+        for item in ITEMS:
+            if item not in placed:
+                continue
+            if item == "apple" and household.halved:
+                held = item in household.hand_of
+                pair = halves(placed[item], self.furniture.models["half"], rng, held=held)
+                for name, pose in zip(("half_a", "half_b"), pair, strict=True):
+                    data.mocap_pos[self._mocap[name]] = pose.position
+                    data.mocap_quat[self._mocap[name]] = quaternion(pose.axes)
+                drawn |= {"half_a", "half_b"}
+                continue
+            drawn.add(item)
+            self._put(item, placed[item])
+        if not household.clean:
+            drawn.add("dirt")
+        for name in self.furniture.loose:
+            if name in poses:
+                model.body_pos[self._body[name]] = poses[name].position
+                model.body_quat[self._body[name]] = quaternion(poses[name].axes)
+        low, high = np.radians(self._door.range)
+        angle = rng.uniform(0.5, 0.85) * high if household.opened else low
+        joint = mj.mj_name2id(model, mj.mjtObj.mjOBJ_JOINT, "fridge/door_joint")
+        data.qpos[model.jnt_qposadr[joint]] = angle
+        self._switch_tv(household.turned_on)
+        mj.mj_kinematics(model, data)
+        mj.mj_comPos(model, data)
+        mj.mj_camlight(model, data)
+        self._draw_only(drawn, shot)
+        self._counts = None
+
+    def _draw_only(self, drawn: set[str], shot: Shot) -> None:
+        """Hide what is not there, and spare the renderer what the camera cannot see."""
+        model, data = self.model, self.data
+        hidden = np.full(model.ngeom, HIDDEN)
+        for name in drawn:
+            geoms = self._geoms_of[name]
+            hidden[geoms] = self._group[geoms]
+        bounded = model.geom_rbound > 0
+        in_view = shot.sees(data.geom_xpos, model.geom_rbound + 0.15)
+        hidden[bounded & ~in_view] = HIDDEN
+        model.geom_group[:] = hidden
+
+    def _switch_tv(self, on: bool) -> None:
+        tv = self.furniture.models["tv"]
+        material = self._material[tv.material("screen_on" if on else "screen_off")]
+        for part in tv.parts_with("screen"):
+            self.model.geom_matid[self._geom[f"tv/{part.name}"]] = material
+
+    def _put(self, body: str, pose: Pose) -> None:
+        joint = self.model.body_jntadr[self._body[body]]
+        address = self.model.jnt_qposadr[joint]
+        self.data.qpos[address : address + 3] = pose.position
+        self.data.qpos[address + 3 : address + 7] = quaternion(pose.axes)
+
+    def _set_hand(self, hand: str, tip: Array, axes: Array, width: float) -> None:
+        self.data.mocap_pos[self._mocap[hand]] = tip
+        self.data.mocap_quat[self._mocap[hand]] = quaternion(axes)
+        for piece, (position, size) in pieces(self._gripper, width).items():
+            geom = self._geom[f"{hand}/{piece}"]
+            self.model.geom_pos[geom] = position
+            self.model.geom_size[geom] = size
+            upright = piece in ("wrist", "arm")
+            self.model.geom_quat[geom] = [0.7071, 0.7071, 0, 0] if upright else [1, 0, 0, 0]
+            self.model.geom_rbound[geom] = float(np.linalg.norm(size)) + 0.1
+            palm = {"palm": 1, "wrist": 1, "arm": 2}.get(piece, 0)
+            material = self.model.geom_matid[geom]
+            self.model.mat_rgba[material, :3] = self._gripper.colours[palm]
+
+    def render(self) -> NDArray[np.uint8]:
+        """The picture of the last arrangement, size × size × 3.
+
+        Raises:
+            WorldError: Nothing was arranged yet.
+        """
+        self._arranged()
+        return self._drawing.picture(self.data, self._camera, shadow=self._shadow)
+
+    def pixels(self) -> Mapping[str, int]:
+        """How many pixels of a picture of the last arrangement show each thing."""
+        self._arranged()
+        if self._counts is None:
+            by_geom = self._drawing.counts(self.data, self._camera, self.size)
+            sums = np.bincount(self._label, weights=by_geom, minlength=len(LABELS))
+            counts = {name: int(n) for name, n in zip(LABELS, sums, strict=True)}
+            counts["plate"] += counts["dirt"]
+            counts["tv"] += counts["screen"]
+            self._counts = counts
+        return self._counts
+
+    def shown(self) -> Mapping[Atom, Shown]:
+        """Every fact of the household: whether it is true, and whether the picture shows it."""
+        return shown(
+            self._arranged(), self.pixels(), size=self.size, first_person=self.view != "overview"
+        )
+
+    def _arranged(self) -> Household:
+        if self._household is None:
+            raise WorldError("Nothing was arranged yet: call arrange(state, look=…) first.")
+        return self._household
+
+    def close(self) -> None:
+        """Free the canvas. Can be called twice."""
+        self._drawing.close()

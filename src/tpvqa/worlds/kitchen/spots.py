@@ -1,0 +1,185 @@
+"""Where things lie: positions on the surfaces that a state names."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tpvqa.chance import chance_array
+from tpvqa.worlds.kitchen.assets import Model
+from tpvqa.worlds.kitchen.furniture import Furniture
+from tpvqa.worlds.kitchen.household import Household
+from tpvqa.worlds.kitchen.layout import Area, Stand
+from tpvqa.worlds.kitchen.rotation import Array, about_x, about_z
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Position and axes (as columns) of a body."""
+
+    position: Array
+    axes: Array
+
+
+def radius(model: Model) -> float:
+    """Of a ball around the thing that is centred half-way up."""
+    x, y, z = model.extent
+    return math.sqrt(x * x + y * y + z * z) / 2
+
+
+class Spots:
+    """Draws places in one kitchen.
+
+    Args:
+        furniture: What stands where.
+        seed: Of the kitchen.
+    """
+
+    def __init__(self, furniture: Furniture, seed: int):
+        self.furniture, self.seed = furniture, seed
+        layout, models = furniture.layout, furniture.models
+        table = models["table"].surface("top")
+        x, y, z = table.pos
+        at = layout.table.point(x, y, z)
+        self.areas: dict[str, list[Area]] = {
+            "counter": [layout.counter],
+            "table": [
+                Area(
+                    "table",
+                    Stand(at[0], at[1], layout.table.yaw, at[2]),
+                    (table.half[0] - 0.12, table.half[1] - 0.12),
+                )
+            ],
+            "floor": list(layout.floors),
+            "sink": [self._inside("sink", "basin", 0.7)],
+            "fridge": [
+                self._inside("fridge", surface.name, 0.8)
+                for surface in models["fridge"].surfaces
+                if surface.name.startswith("shelf") and 0.45 < surface.pos[2] < 1.35
+            ],
+        }
+        x, y, z = models["tv_stand"].surface("top").pos
+        top = layout.tv_stand.point(x, y, z)
+        self._stand_top = Area(
+            "tv", Stand(top[0], top[1], layout.tv_stand.yaw, top[2]), (0.55, 0.1)
+        )
+
+    def _inside(self, fixture: str, surface_name: str, around: float) -> Area:
+        surface = self.furniture.models[fixture].surface(surface_name)
+        stand: Stand = getattr(self.furniture.layout, fixture)
+        at = stand.point(*surface.pos)
+        half = (max(surface.half[0] - 0.1, 0.03), max(surface.half[1] - 0.1, 0.03))
+        return Area(fixture, Stand(at[0], at[1], stand.yaw, at[2]), half, around)
+
+    def place(
+        self, household: Household, key: tuple[object, ...], *, together: str | None = None
+    ) -> dict[str, Pose]:
+        """A pose for every item that lies on a fixture, directly or through another item.
+
+        The draw of an item depends on the key, the item and where it lies, so an item stays
+        where it is while others move, unless it would have to share its place.
+        """
+        models = self.furniture.models
+        taken = [(pose.position, radius(models[name])) for name, pose in self.loose(key).items()]
+        poses: dict[str, Pose] = {}
+        for item, place in household.where.items():
+            if place not in self.areas:
+                continue
+            rng = chance_array(self.seed, 0, "spot", item, place, *key)
+            others = [poses[x].position for x in poses if household.where[x] == place]
+            by = np.mean(others, axis=0) if others and place == together else None
+            poses[item] = self._free(self.areas[place], models[item], rng, taken, by=by)
+            taken.append((poses[item].position, radius(models[item])))
+        return poses | self.upon(household, poses, key)
+
+    def upon(
+        self, household: Household, poses: Mapping[str, Pose], key: tuple[object, ...]
+    ) -> dict[str, Pose]:
+        """Poses of the items that lie on other items whose pose is known."""
+        found: dict[str, Pose] = {}
+        below = dict(poses)
+        waiting = [(x, p) for x, p in household.where.items() if x not in poses]
+        while ready := [(x, p) for x, p in waiting if p in below]:
+            for turn, (item, place) in enumerate(ready):
+                rng = chance_array(self.seed, 0, "spot", item, place, *key)
+                base = below[place]
+                middle = self.furniture.models[place].surface("middle")
+                angle = 2.4 * turn + rng.uniform(0, 2 * math.pi)
+                reach = 0.012 if len(ready) == 1 else 0.05
+                offset = np.array([math.cos(angle) * reach, math.sin(angle) * reach, 0.0])
+                spin = about_z(rng.uniform(0, 2 * math.pi))
+                found[item] = below[item] = Pose(
+                    base.position + base.axes @ (np.asarray(middle.pos) + offset + [0, 0, 0.004]),
+                    base.axes @ spin,
+                )
+            waiting = [(x, p) for x, p in waiting if x not in found]
+        return found
+
+    def loose(self, key: tuple[object, ...]) -> dict[str, Pose]:
+        """Poses of the distractors: on counter, table and TV stand."""
+        found: dict[str, Pose] = {}
+        models = self.furniture.models
+        taken: list[tuple[Array, float]] = []
+        for name in self.furniture.loose:
+            rng = chance_array(self.seed, 0, "loose", name, *key)
+            choice = [self.areas["counter"], self.areas["table"], [self._stand_top]]
+            areas = choice[int(rng.choice(3, p=[0.5, 0.4, 0.1]))]
+            if rng.random() < 0.15:
+                continue
+            found[name] = self._free(areas, models[name], rng, taken, yaw=1.0)
+            taken.append((found[name].position, radius(models[name])))
+        return found
+
+    def _free(
+        self,
+        areas: list[Area],
+        model: Model,
+        rng: np.random.Generator,
+        taken: list[tuple[Array, float]],
+        *,
+        yaw: float = math.pi,
+        by: Array | None = None,
+    ) -> Pose:
+        """A pose that shares its place with nothing, if one is found soon."""
+        best, most = None, -math.inf
+        for area, at in self._candidates(areas, rng):
+            room = min(
+                (
+                    float(np.linalg.norm(at - other)) - r - radius(model)
+                    for other, r in taken
+                    if abs(at[2] - other[2]) < 0.3
+                ),
+                default=1.0,
+            )
+            if by is not None:  # near the others, as far as there is room
+                room = min(room, 0.02) - 0.1 * max(float(np.linalg.norm(at - by)) - 0.3, 0.0)
+            if room > most:
+                turn = area.stand.yaw + rng.uniform(-yaw, yaw)
+                best, most = Pose(at, about_z(turn)), room
+            if room >= 0.02:
+                break
+        if best is None:
+            raise ValueError(f"there is nowhere to put {model.name}")
+        return best
+
+    def _candidates(
+        self, areas: list[Area], rng: np.random.Generator
+    ) -> Iterator[tuple[Area, Array]]:
+        for _ in range(40):
+            area = areas[int(rng.integers(len(areas)))]
+            x, y = area.half
+            yield area, area.stand.point(rng.uniform(-x, x), rng.uniform(-y, y))
+
+
+def halves(pose: Pose, model: Model, rng: np.random.Generator, *, held: bool) -> tuple[Pose, Pose]:
+    """The two halves of a cut apple around the place of the whole one, faces in view."""
+    apart = model.extent[0] * (0.5 if held else 0.6)
+    along = np.array([0.0, 1.0, 0.0]) if held else np.array([1.0, 0.0, 0.0])
+    first = Pose(pose.position - pose.axes @ along * apart, pose.axes @ about_z(rng.uniform(0, 6)))
+    tilt = about_x(float(rng.uniform(-0.3, 0.3)) if not held else 0.0)
+    second = Pose(
+        pose.position + pose.axes @ (along * apart + [0, 0, 0.012 * (not held)]),
+        pose.axes @ tilt @ about_z(rng.uniform(0, 6)),
+    )
+    return first, second

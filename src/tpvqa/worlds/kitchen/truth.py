@@ -1,0 +1,99 @@
+"""Which facts a picture shows: from how many pixels of each thing are in it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from tpvqa.pddl import Atom
+from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, ITEMS, SUPPORTS, Household
+
+ENOUGH: Mapping[str, int] = {
+    "plate": 120,
+    "bread": 100,
+    "apple": 45,
+    "knife": 40,
+    "table": 1500,
+    "counter": 1500,
+    "floor": 1500,
+    "sink": 900,
+    "fridge": 3000,
+    "tv": 900,
+    "screen": 600,
+    "dirt": 14,
+    "hand": 60,
+}
+"""Pixels of a 224 × 224 picture from which a person knows the thing."""
+NOTHING = 3
+"""Up to this many pixels nobody sees."""
+REFERENCE = 224
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """Whether a fact is true, and whether a picture shows if it is."""
+
+    true: bool
+    visible: bool
+
+
+def shown(
+    household: Household, pixels: Mapping[str, int], *, size: int, first_person: bool = True
+) -> dict[Atom, Shown]:
+    """Judge every fact of the household by one picture.
+
+    Args:
+        household: The true state.
+        pixels: How many pixels show each thing: items, fixtures, "screen", "dirt" and the hands.
+        size: Height of the picture that was counted.
+        first_person: False for a camera that is not the robot's own.
+    """
+    scale = (size / REFERENCE) ** 2
+
+    def seen(thing: str, least: str | None = None) -> bool:
+        return pixels.get(thing, 0) >= ENOUGH[least or thing] * scale
+
+    def absent(thing: str) -> bool:
+        return pixels.get(thing, 0) <= NOTHING * scale
+
+    found: dict[Atom, Shown] = {}
+    for thing in (*ITEMS, *FIXTURES):
+        near = household.near == thing
+        visible = first_person and (seen(thing) if near else absent(thing))
+        found[Atom("near", (thing,))] = Shown(near, visible)
+    hand_seen = {hand: first_person and seen(hand, "hand") for hand in HANDS}
+    for item in ITEMS:
+        holder = household.hand_of.get(item)
+        for hand in HANDS:
+            # A person sees what the hands hold, and that they do not hold what lies elsewhere.
+            visible = all(hand_seen.values()) if holder is None else seen(item)
+            found[Atom("in_hand", (item, hand))] = Shown(holder == hand, visible)
+    for hand in HANDS:
+        held = household.held.get(hand)
+        visible = hand_seen[hand] and (held is None or seen(held))
+        found[Atom("free", (hand,))] = Shown(held is None, visible)
+    for item in ITEMS:
+        for place in SUPPORTS:
+            if place != item:
+                found[Atom("on", (item, place))] = _on(household, item, place, seen, first_person)
+    dirt_seen = seen("plate") and (household.clean or seen("dirt"))
+    return found | {
+        Atom("opened", ("fridge",)): Shown(household.opened, seen("fridge")),
+        Atom("turned_on", ("tv",)): Shown(household.turned_on, seen("screen")),
+        Atom("clean", ("plate",)): Shown(household.clean, dirt_seen),
+        Atom("halved", ("apple",)): Shown(household.halved, seen("apple")),
+    }
+
+
+def _on(
+    household: Household, item: str, place: str, seen: Callable[..., bool], first_person: bool
+) -> Shown:
+    true = household.where.get(item) == place
+    if seen(item):
+        return Shown(true, True)
+    if true or not first_person:
+        return Shown(true, False)
+    if place in ITEMS:  # on a plate that is seen whole there is nothing
+        return Shown(False, seen(place))
+    # The robot looks at the whole of what lies on the surface before it.
+    whole = household.subject == place == household.near and place != "fridge"
+    whole = whole and all(seen(other) for other in household.upon(place)) and seen(place)
+    return Shown(False, whole)
