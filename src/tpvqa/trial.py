@@ -23,7 +23,7 @@ from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM
 from tpvqa.worlds import World
 from tpvqa.worlds.simulation import DISTURBANCE, FAILURE, Simulation
-from tpvqa.worlds.undo import load_undo_rules
+from tpvqa.worlds.world_file import load_world_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,7 +113,7 @@ class Trial:
             self._closing.append(planner.close)
         self.simulation = Simulation(
             self.task,
-            load_undo_rules(self.world_file, self.task),
+            load_world_file(self.world_file, self.task),
             failure=config.failure,
             disturbance=config.disturbance,
             spontaneous=config.spontaneous,

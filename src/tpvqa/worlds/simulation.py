@@ -5,13 +5,13 @@ also undo something achieved before. The truth is kept for judging and never sho
 """
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from tpvqa.chance import chance
 from tpvqa.pddl import Action, Atom, State, Task
-from tpvqa.worlds.undo import UndoRule
+from tpvqa.worlds.world_file import WorldRules
 
 FAILURE = 0.25
 DISTURBANCE = 0.25
@@ -43,7 +43,7 @@ class Simulation:
 
     Args:
         task: Gives the initial state and the actions.
-        rules: What disturbances can undo (see `load_undo_rules`).
+        rules: What disturbances can undo, and more (see `load_world_file`).
         failure: Probability that an action fails although it is possible.
         disturbance: Probability that a failure also undoes an achieved fact.
         spontaneous: Probability that an achieved fact is undone after a success.
@@ -54,7 +54,7 @@ class Simulation:
     def __init__(
         self,
         task: Task,
-        rules: Sequence[UndoRule] = (),
+        rules: WorldRules | None = None,
         *,
         failure: float = FAILURE,
         disturbance: float = DISTURBANCE,
@@ -62,7 +62,7 @@ class Simulation:
         seed: int = 0,
         episode: int = 0,
     ):
-        self.task, self.rules = task, tuple(rules)
+        self.task, self.rules = task, rules or WorldRules()
         self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
         self.seed, self.episode = seed, episode
         self.state: State = task.init
@@ -75,7 +75,7 @@ class Simulation:
         for atom in sorted(self.state - self.task.init):
             results = [
                 result
-                for rule in self.rules
+                for rule in self.rules.undo
                 for result in rule.results(atom, self.state, self.ended, self.task)
             ]
             if results:
@@ -89,8 +89,8 @@ class Simulation:
         self.attempts[action.pddl()] += 1
         draw = chance(self.seed, self.episode, "fault", action.pddl(), attempt)
         fails, disturbs = draw.random() < self.failure, draw.random()
-        possible = self.task.applicable(before, action)
-        intended = self.task.apply(before, action)
+        possible = self.possible(action)
+        intended = self.task.apply(before, self.truly(action))
         undone, undoing, reason = None, "", ""
         if self.achieved(action):
             succeeded = True
@@ -108,6 +108,16 @@ class Simulation:
             if disturbs < self.spontaneous:
                 undone, undoing = self._disturb(draw.random(), draw.random())
         return Outcome(succeeded, reason, undone, undoing, before, self.state)
+
+    def truly(self, action: Action) -> Action:
+        """The action that the robot's skill truly is, see `Rebinding`."""
+        for rebinding in self.rules.rebind:
+            action = rebinding.apply(action, self.state, self.task)
+        return action
+
+    def possible(self, action: Action) -> bool:
+        """Whether all preconditions of an action hold in truth."""
+        return self.task.applicable(self.state, self.truly(action))
 
     def achieved(self, action: Action) -> bool:
         """Whether all effects of an action hold already, so that it has nothing left to do."""
@@ -168,7 +178,7 @@ class SimulatedTruth:
 
     def possible(self, action: Action) -> bool:
         """Whether all preconditions of an action hold now."""
-        return self._simulation.task.applicable(self._simulation.state, action)
+        return self._simulation.possible(action)
 
     def successful(self, action: Action) -> bool:
         """Whether all effects of an action hold now."""

@@ -1,13 +1,8 @@
-"""World files: what a disturbance can undo, and what holds instead."""
+"""What a disturbance can undo, and what holds instead."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
-import yaml
-
-from tpvqa.errors import WorldError
 from tpvqa.pddl import Atom, State, Task
 
 Binding = Mapping[str, str]
@@ -65,7 +60,7 @@ class Pattern:
         return Atom(self.predicate, tuple(binding.get(term, term) for term in self.terms))
 
 
-def _bindings(
+def bindings(
     patterns: Sequence[Pattern], state: State, binding: Binding, task: Task
 ) -> Iterator[dict[str, str]]:
     if not patterns:
@@ -74,7 +69,7 @@ def _bindings(
     for atom in sorted(state):
         bound = patterns[0].match(atom, binding, task)
         if bound is not None:
-            yield from _bindings(patterns[1:], state, bound, task)
+            yield from bindings(patterns[1:], state, bound, task)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,9 +102,9 @@ class Outcome:
             if latest is None:
                 return None
             bound = latest
-        if self.unless and next(_bindings(self.unless, state, bound, task), None) is not None:
+        if self.unless and next(bindings(self.unless, state, bound, task), None) is not None:
             return None
-        matched = next(_bindings(self.when, state, bound, task), None)
+        matched = next(bindings(self.when, state, bound, task), None)
         if matched is None:
             return None
         gone = {undone, *(pattern.ground(matched) for pattern in self.delete)}
@@ -135,70 +130,3 @@ class UndoRule:
             for outcome in self.outcomes
         ]
         return [(say, after) for say, after in states if after is not None]
-
-
-def load_undo_rules(path: Path | str | None, task: Task) -> tuple[UndoRule, ...]:
-    """Read a world file; without one nothing can be undone.
-
-    Raises:
-        WorldError: The file is missing or broken; the message names the place.
-    """
-    if path is None:
-        return ()
-    try:
-        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise WorldError(f"{path}: cannot be read ({error.strerror})") from error
-    except yaml.YAMLError as error:
-        raise WorldError(f"{path}: not valid YAML: {error}") from error
-    if not isinstance(document, dict) or not isinstance(document.get("undo", []), list):
-        raise WorldError(f"{path}: expected a list under `undo:`")
-    rules = []
-    for number, entry in enumerate(document.get("undo", []), 1):
-        try:
-            rules.append(_rule(entry, task))
-        except (ValueError, TypeError, KeyError) as error:
-            raise WorldError(f"{path}: rule {number} under `undo`: {error}") from error
-    return tuple(rules)
-
-
-def _rule(entry: Any, task: Task) -> UndoRule:
-    if not isinstance(entry, dict) or not isinstance(entry.get("fact"), str):
-        raise ValueError("expected `fact: (predicate ?x …)` and a list of `outcomes`")
-    outcomes = entry.get("outcomes")
-    if not isinstance(outcomes, list) or not outcomes:
-        raise ValueError(f"{entry['fact']} has no `outcomes`")
-    return UndoRule(
-        _pattern(entry["fact"], task), tuple(_outcome(outcome, task) for outcome in outcomes)
-    )
-
-
-def _outcome(entry: Any, task: Task) -> Outcome:
-    fields = {"say", "last", "when", "unless", "add", "delete"}
-    if not isinstance(entry, dict) or not set(entry) <= fields:
-        raise ValueError(f"an outcome has only the fields {', '.join(sorted(fields))}")
-
-    def patterns(name: str) -> tuple[Pattern, ...]:
-        return tuple(_pattern(text, task) for text in entry.get(name) or ())
-
-    last = entry.get("last")
-    return Outcome(
-        say=str(entry.get("say", "it is undone")),
-        last=None if last is None else _pattern(last, task),
-        when=patterns("when"),
-        unless=patterns("unless"),
-        add=patterns("add"),
-        delete=patterns("delete"),
-    )
-
-
-def _pattern(text: Any, task: Task) -> Pattern:
-    if not isinstance(text, str):
-        raise TypeError(f"{text!r} is not an atom; write it as (predicate ?x …)")
-    pattern = Pattern.parse(text)
-    if pattern.predicate not in task.predicates:
-        raise ValueError(f"{text}: the domain has no predicate {pattern.predicate!r}")
-    arity = len(task.predicates[pattern.predicate])
-    if len(pattern.terms) != arity:
-        raise ValueError(f"{text}: {pattern.predicate} takes {arity} objects")
-    return pattern

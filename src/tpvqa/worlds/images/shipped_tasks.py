@@ -4,7 +4,7 @@ from tpvqa.pddl import load_task
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.tasks import find_task
 from tpvqa.worlds.images.reachable import Reachable, reachable
-from tpvqa.worlds.undo import load_undo_rules
+from tpvqa.worlds.world_file import load_world_file
 
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 """The paper's, which the pictures are made for."""
@@ -18,7 +18,7 @@ def all_reachable() -> list[Reachable]:
         for name in TASKS:
             files = find_task(name)
             task = load_task(files.domain, files.problem)
-            found.append(reachable(task, load_undo_rules(files.world, task), planner, name))
+            found.append(reachable(task, load_world_file(files.world, task).undo, planner, name))
     finally:
         planner.close()
     return found
