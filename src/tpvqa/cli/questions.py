@@ -85,7 +85,10 @@ def ask(
     observation = observe_file(image)
     model = make(Kind.VLM, vlm, base_url=base_url)
     asked = [Question(text, Way.PRECONDITION) for text in question]
-    answers = model.ask(observation, asked)
+    try:
+        answers = model.ask(observation, asked)
+    finally:
+        getattr(model, "close", lambda: None)()
     if as_json:
         rows = [_answer_as_json(answer) for answer in answers]
         print(json.dumps({"image": str(image), "vlm": model.name, "answers": rows}, indent=1))
