@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from tpvqa.errors import PDDLError
 from tpvqa.pddl.atoms import Atom, Literal, State
-from tpvqa.pddl.conditions import Condition, Conjunction, holds, literals
+from tpvqa.pddl.conditions import Condition, Conjunction, holds, literals, supporting
 from tpvqa.pddl.schema import FALSE, TRUE, AxiomSchema, Objects, bindings, ground_condition, join
 
 
@@ -57,6 +57,7 @@ class Derivation:
             ]
             for head, conditions in rules.items()
         }
+        self._rules = rules
         self._strata: list[list[Rule]] = []
         for component in _components(needs):
             members = set(component)
@@ -83,6 +84,58 @@ class Derivation:
                 known.update(rule.head for rule in fired)
                 waiting = [rule for rule in waiting if rule.head not in known]
         return frozenset(known)
+
+    def explain(self, literal: Literal, state: State) -> frozenset[Literal]:
+        """Literals of facts that are not derived, on which a derived literal rests.
+
+        Args:
+            literal: A derived literal that holds in the state.
+            state: The state, without derived atoms.
+
+        Returns:
+            Literals that hold in the state; wherever they hold, so does the derived one.
+        """
+        if literal.positive:
+            return frozenset(self._proof(literal.atom, state))
+        # It is false because no rule fires; that stays so while nothing the rules speak of changes.
+        open_atoms, seen, result = [literal.atom], {literal.atom}, set()
+        while open_atoms:
+            for condition in self._rules.get(open_atoms.pop(), ()):
+                for part in literals(condition):
+                    if part.atom not in self._rules:
+                        result.add(Literal(part.atom, part.atom in state))
+                    elif part.atom not in seen:
+                        seen.add(part.atom)
+                        open_atoms.append(part.atom)
+        return frozenset(result)
+
+    def _proof(self, atom: Atom, state: State) -> set[Literal]:
+        reasons: dict[Atom, list[Literal]] = {}
+        known = set(state)
+        view: State = known  # type: ignore[assignment]
+        for stratum in self._strata:
+            fired = True
+            while fired:
+                fired = False
+                for rule in stratum:
+                    if rule.head not in known and holds(rule.condition, view):
+                        reasons[rule.head] = [
+                            part for part in supporting(rule.condition, view) if part.holds(view)
+                        ]
+                        known.add(rule.head)
+                        fired = True
+        result: set[Literal] = set()
+        open_atoms, seen = [atom], {atom}
+        while open_atoms:
+            for part in reasons[open_atoms.pop()]:
+                if part.atom not in self._rules:
+                    result.add(part)
+                elif not part.positive:
+                    result |= self.explain(part, state)
+                elif part.atom not in seen:
+                    seen.add(part.atom)
+                    open_atoms.append(part.atom)
+        return result
 
 
 def _decided(condition: Condition, static: State, predicates: frozenset[str]) -> Condition:

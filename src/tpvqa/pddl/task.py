@@ -171,8 +171,10 @@ class Task:
 
     def extend(self, state: State) -> State:
         """The state with its derived atoms."""
-        if not self.axioms:
-            return state
+        return self.derivation(state).extend(state) if self.axioms else state
+
+    def derivation(self, state: State) -> Derivation:
+        """How derived atoms follow from the others, given the static facts of a state."""
         static = frozenset(atom for atom in state if atom.predicate not in self.fluents)
         derivation = self._derivations.get(static)
         if derivation is None:
@@ -180,7 +182,7 @@ class Task:
             derivation = Derivation(self.axioms, self.objects_by_type, static, constant)
             self._derivations.clear()
             self._derivations[static] = derivation
-        return derivation.extend(state)
+        return derivation
 
     def applicable(self, state: State, action: Action) -> bool:
         """Whether an action's precondition holds in a state."""
