@@ -3,8 +3,8 @@
 Two true states with the same visible state may share their pictures. The camera looks at the one
 thing that the robot is near, with what lies on it and what it lies on (at the place where it
 usually lies, while the robot holds it), and the robot's grippers are in view with what they hold;
-a picture does not say which of the hands holds it. What lies in a closed container is hidden, and
-what else lies beside the thing looked at stays out of the picture.
+a picture does not say which of the hands holds it. What lies in a container is hidden until the
+robot looks for it there, and what else lies beside the thing looked at stays out of the picture.
 """
 
 from tpvqa.pddl import Atom, State
@@ -56,7 +56,7 @@ def visible_state(state: State) -> VisibleState:
         below = household.where.get(below)
         if below is not None:
             in_view.add(below)
-    if subject not in CONTAINERS or household.opened:
+    if subject == household.near and subject not in CONTAINERS:
         in_view.update(household.upon(subject))
     # Of a thing behind a closed door nothing shows but where the robot looks for it.
     hidden = {subject} if in_view & CONTAINERS and not household.opened else set()
