@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tpvqa.worlds.kitchen.layout import Footprint, Layout, Stand
 from tpvqa.worlds.kitchen.rotation import Array, about_x, about_y, looking
@@ -34,14 +35,14 @@ class Shot:
         reach = np.maximum(abs(depth), 1e-6) * math.tan(math.radians(self.fovy) / 2)
         return local[:, :2] / reach[:, None], depth
 
-    def sees(self, centres: Array, radii: Array) -> Array:
+    def sees(self, centres: Array, radii: Array) -> NDArray[np.bool_]:
         """Whether any bit of each ball may be in the picture (walls and furniture aside)."""
         t = math.tan(math.radians(self.fovy) / 2)
         local = (centres - self.position) @ self.axes
         depth = -local[:, 2]
         reach = depth * t + radii * math.sqrt(1 + t * t)
-        near: Array = (depth > -radii) & (abs(local[:, :2]) < reach[:, None]).all(axis=1)
-        return near
+        inside = (abs(local[:, :2]) < reach[:, None]).all(axis=1)
+        return np.asarray((depth > -radii) & inside)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from types import ModuleType
+from typing import Any
 
 from tpvqa.errors import MissingExtraError, WorldError
 
@@ -12,7 +12,7 @@ _REMEDY = (
 )
 
 
-def load_mujoco() -> ModuleType:
+def load_mujoco() -> Any:
     """Import MuJoCo, choosing software rendering where nothing else was chosen.
 
     Raises:

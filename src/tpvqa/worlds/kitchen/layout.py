@@ -30,8 +30,8 @@ class Stand:
 
     def point(self, x: float, y: float, z: float = 0.0) -> Array:
         """A point of the furniture's own frame, in the room."""
-        turned: Array = about_z(self.yaw) @ np.array([x, y, z])
-        return turned + np.array([self.x, self.y, self.z])
+        turned = about_z(self.yaw) @ np.array([x, y, z])
+        return np.asarray(turned + np.array([self.x, self.y, self.z]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +61,7 @@ class Footprint:
     def blocks(self, points: Array, margin: float) -> NDArray[np.bool_]:
         """Which of (n, 2) points lie in it or nearer than `margin`."""
         local = (points - [self.stand.x, self.stand.y]) @ about_z(self.stand.yaw)[:2, :2]
-        inside: NDArray[np.bool_] = (abs(local) < np.array(self.half) + margin).all(axis=1)
-        return inside
+        return np.asarray((abs(local) < np.array(self.half) + margin).all(axis=1))
 
 
 @dataclass(frozen=True)
@@ -203,7 +202,8 @@ def _table(
         spare = max(high - low - 2 * half, 0.0)
         return (low + high) / 2 + float(rng.uniform(-0.5, 0.5)) * spare
 
-    x, y = between(*walls_x, half_x), between(*walls_y, half_y)
+    x = between(walls_x[0], walls_x[1], half_x)
+    y = between(walls_y[0], walls_y[1], half_y)
     return Stand(x, y, float(rng.uniform(-0.12, 0.12)))
 
 

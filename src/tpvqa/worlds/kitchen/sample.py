@@ -1,4 +1,4 @@
-"""Pictures of random kitchens in random states, for training: `python -m …kitchen.sample --help`."""
+"""Pictures of random kitchens in random states, for training; also run by `python -m`."""
 
 import argparse
 from collections.abc import Iterator, Mapping

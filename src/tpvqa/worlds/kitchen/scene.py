@@ -239,7 +239,7 @@ class KitchenScene:
             hidden[geoms] = self._group[geoms]
         bounded = model.geom_rbound > 0
         in_view = shot.sees(data.geom_xpos, model.geom_rbound + 0.15)
-        hidden[bounded & ~in_view] = HIDDEN
+        hidden[bounded & np.logical_not(in_view)] = HIDDEN
         model.geom_group[:] = hidden
 
     def _switch_tv(self, on: bool) -> None:

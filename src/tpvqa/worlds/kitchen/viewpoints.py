@@ -7,7 +7,7 @@ import numpy as np
 
 from tpvqa.worlds.kitchen.cameras import Approach, Ball, Wanted, front_of
 from tpvqa.worlds.kitchen.furniture import Furniture
-from tpvqa.worlds.kitchen.household import ITEMS, Household
+from tpvqa.worlds.kitchen.household import HOMES, ITEMS, Household
 from tpvqa.worlds.kitchen.rotation import Array
 from tpvqa.worlds.kitchen.spots import Pose, Spots, radius
 
@@ -25,21 +25,23 @@ def fixture_balls(furniture: Furniture, fixture: str, *, opened: bool) -> list[B
     if fixture == "tv":
         width, _, height = models["tv"].extent
         base = models["tv_stand"].extent[2]
-        for x in (-0.3, 0.0, 0.3):
-            balls.append((layout.tv_stand.point(x * width, 0, base + height / 2), height * 0.55))
+        middle = base + height / 2
+        balls += [
+            (layout.tv_stand.point(x * width, 0, middle), height * 0.55) for x in (-0.3, 0.0, 0.3)
+        ]
     elif fixture == "sink":
         basin = models["sink"].surface("basin")
         at = layout.sink.point(basin.pos[0], basin.pos[1], models["cabinet"].extent[2])
         balls.append((at, max(basin.half) + 0.06))
-        balls.append((at + [0, 0, 0.15], 0.15))
+        balls.append((at + np.array([0, 0, 0.15]), 0.15))
     elif fixture == "fridge":
         width, depth, height = models["fridge"].extent
-        for z in np.arange(0.25, height, 0.35):
-            balls.append((layout.fridge.point(0, 0, float(z)), math.hypot(width, depth) / 2))
+        wide = math.hypot(width, depth) / 2
+        balls += [(layout.fridge.point(0, 0, z), wide) for z in np.arange(0.25, height, 0.35)]
         if opened:
             side = hinge_side(furniture) * width / 2
-            for z in (0.6, 1.1, 1.5):
-                balls.append((layout.fridge.point(side, -depth / 2 - 0.3, z), 0.35))
+            front = -depth / 2 - 0.3
+            balls += [(layout.fridge.point(side, front, z), 0.35) for z in (0.6, 1.1, 1.5)]
     return balls
 
 
@@ -72,8 +74,8 @@ def approach(
             subject = household.where[subject]
             while subject in household.where:
                 subject = household.where[subject]
-            found = _fixture(household, spots, poses, _home(subject), rng)
-            seen.add(_home(subject))
+            found = _fixture(household, spots, poses, HOMES[subject], rng)
+            seen.add(HOMES[subject])
         elif support == "fridge" and not household.opened:
             found = _fixture(household, spots, poses, "fridge", rng)
             seen.add("fridge")
@@ -99,12 +101,6 @@ def approach(
         if fixture not in seen:
             outside += fixture_balls(furniture, fixture, opened=household.opened)
     return found, Wanted(tuple(inside), tuple(outside))
-
-
-def _home(item: str) -> str:
-    from tpvqa.worlds.kitchen.household import HOMES
-
-    return HOMES[item]
 
 
 def _item(spots: Spots, support: str, pose: Pose, item_ball: Ball) -> Approach:
