@@ -35,7 +35,7 @@ def build(
         RendererName, typer.Option(help="Cycles: seconds a picture. MuJoCo: much quicker, plainer.")
     ] = RendererName.CYCLES,
     workers: Annotated[int, typer.Option(min=1, help="Processes that render.")] = 1,
-    samples: Annotated[int, typer.Option(min=1, help="Cycles: paths a pixel.")] = 16,
+    samples: Annotated[int, typer.Option(min=1, help="Cycles: paths a pixel.")] = 8,
     blender_python: Annotated[
         Path | None,
         typer.Option(

@@ -56,12 +56,12 @@ class Cycles:
         threads: CPU threads.
     """
 
-    def __init__(self, python: Path, *, size: int = 256, samples: int = 16, threads: int = 1):
+    def __init__(self, python: Path, *, size: int = 256, samples: int = 8, threads: int = 1):
         self._folder = tempfile.TemporaryDirectory(prefix="tpvqa-cycles-")
         self._log = (Path(self._folder.name) / "blender.log").open("w+b")
         self._process = subprocess.Popen(
             [
-                *(str(python), str(SCRIPT)),
+                *(str(python), "-P", str(SCRIPT)),
                 *("--size", str(size), "--samples", str(samples), "--threads", str(threads)),
             ],
             stdin=subprocess.PIPE,

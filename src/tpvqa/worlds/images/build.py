@@ -24,6 +24,7 @@ from tpvqa.chance import chance
 from tpvqa.errors import PictureSetError
 from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Picture, Renderer, digest
 from tpvqa.worlds.images.recipe import FACTS, TRIES, Job, objection
+from tpvqa.worlds.kitchen.layout import Split
 
 SIDE = 224
 QUALITY = 85
@@ -45,7 +46,7 @@ class Settings:
 
     renderer: Renderer
     blender: Path | None = None
-    samples: int = 16
+    samples: int = 8
     size: int = 256
     threads: int = 1
 
@@ -195,8 +196,8 @@ class _Maker:
         reasons = []
         for seed in range(job.seed, job.seed + TRIES):
             state = chance(seed, 0, "true state").choice(job.states)
-            split = "train" if job.meshes == "known" else "held_out"
-            with contextlib.closing(KitchenScene(seed, split=split)) as scene:
+            split: Split = "train" if job.meshes == "known" else "held_out"
+            with contextlib.closing(KitchenScene(seed=seed, split=split, size=SIDE)) as scene:
                 for look in range(LOOKS):
                     scene.arrange(state, look=look)
                     shown = scene.shown()

@@ -10,12 +10,15 @@ of the training pictures.
 import colorsys
 import json
 import random
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import mujoco
 import numpy as np
 
 from tpvqa.chance import chance
+from tpvqa.worlds.kitchen.furniture import Furniture
+from tpvqa.worlds.kitchen.scene import KitchenScene
 
 SHAPES = {
     mujoco.mjtGeom.mjGEOM_PLANE: "plane",
@@ -26,20 +29,22 @@ SHAPES = {
     mujoco.mjtGeom.mjGEOM_BOX: "box",
     mujoco.mjtGeom.mjGEOM_MESH: "mesh",
 }
+DRAWN = 3
+"""Geoms of this group and above are not drawn."""
 GLOW = 0.3
 """Emission from which a surface is a light of its own (a screen, a lamp)."""
 
 
-def scene_arrays(scene: Any) -> dict[str, Any]:
+def scene_arrays(scene: KitchenScene) -> dict[str, Any]:
     """The arrays of a scene file.
 
     Args:
-        scene: An arranged `KitchenScene`.
+        scene: An arranged kitchen.
     """
-    model, data = scene.model, scene.data
-    writer = _Writer(model, data, chance(scene.seed, scene.look, "cycles"))
+    model = scene.model
+    writer = _Writer(model, scene.data, chance(scene.seed, 0, "cycles"))
     for geom in range(model.ngeom):
-        if scene.drawn(geom):
+        if model.geom_group[geom] < DRAWN:
             writer.add(geom)
     return writer.finish(scene)
 
@@ -112,7 +117,6 @@ class _Writer:
                     0.85, max(0.12, 0.75 - 0.45 * max(shine, specular) + self.draw.gauss(0, 0.08))
                 ),
                 "emission": self.draw.uniform(0.9, 1.8) if glows else 0.0,
-                "grain": 0.0 if glows or rgba[3] < 1 else self.draw.uniform(0.0, 0.08),
             }
         )
         return self._known[key]
@@ -134,24 +138,22 @@ class _Writer:
             )
         return texture
 
-    def finish(self, scene: Any) -> dict[str, Any]:
+    def finish(self, scene: KitchenScene) -> dict[str, Any]:
         """Everything, with camera and lights."""
-        draw = self.draw
-        camera = scene.camera
+        draw, model = self.draw, self.model
+        camera = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, "robot")
         matrix = np.eye(4)
         matrix[:3, :3] = self.data.cam_xmat[camera].reshape(3, 3)
         matrix[:3, 3] = self.data.cam_xpos[camera]
+        head = self.data.cam_xpos[camera].tolist()
         self.arrays["scene"] = json.dumps(
             {
-                "camera": {"matrix": matrix.tolist(), "fovy": float(self.model.cam_fovy[camera])},
+                "camera": {"matrix": matrix.tolist(), "fovy": float(model.cam_fovy[camera])},
                 "parts": self.parts,
                 "materials": self.materials,
-                "lights": _lights(scene, matrix, draw),
-                "background": {
-                    "colour": _tint(draw, 0.12),
-                    "strength": draw.uniform(0.25, 0.5),
-                },
-                "exposure": draw.uniform(0.0, 0.6),
+                "lights": _lights(scene.furniture, head, draw),
+                "background": {"colour": _tint(draw, 0.12), "strength": draw.uniform(0.1, 0.3)},
+                "exposure": draw.uniform(-0.2, 0.5),
                 "seed": draw.randrange(2**31),
             }
         )
@@ -164,6 +166,40 @@ def _tint(draw: random.Random, saturation: float) -> list[float]:
     return list(colorsys.hsv_to_rgb(hue, draw.uniform(0.0, saturation), 1.0))
 
 
-def _lights(scene: Any, camera: Any, draw: random.Random) -> list[dict[str, Any]]:
-    """A ceiling lamp, a window and a weak light from behind the robot."""
-    raise NotImplementedError
+def _lights(
+    furniture: Furniture, head: Sequence[float], draw: random.Random
+) -> list[dict[str, Any]]:
+    """One or two ceiling lamps, a window, a weak light behind the robot, the fridge's lamp."""
+    layout = furniture.layout
+    width, depth, height = layout.width, layout.depth, layout.height
+    room = width * depth / 16
+
+    def light(
+        position: Iterable[float], target: Iterable[float], watts: float, size: float, tint: float
+    ) -> dict[str, Any]:
+        return {
+            "position": [float(x) for x in position],
+            "target": [float(x) for x in target],
+            "watts": watts,
+            "size": size,
+            "colour": _tint(draw, tint),
+        }
+
+    lights = []
+    lamps = draw.choice((1, 2, 2))
+    for k in range(lamps):
+        x = width * (draw.uniform(-0.25, 0.25) + (0.25 * (2 * k - 1) if lamps == 2 else 0.0))
+        y = -depth * draw.uniform(0.3, 0.7)
+        watts = 90 * room / lamps * draw.uniform(0.6, 1.5)
+        lights.append(light((x, y, height - 0.04), (x, y, 0), watts, draw.uniform(0.3, 1.2), 0.3))
+    side = draw.choice((-1, 1))
+    window = (side * (width / 2 - 0.06), -depth * draw.uniform(0.4, 0.8), draw.uniform(1.4, 1.9))
+    lights.append(
+        light(window, (0, -depth / 2, 0.6), 70 * room * draw.uniform(0.1, 1.2), 1.0, 0.15)
+    )
+    lights.append(light((head[0], head[1], height - 0.3), (0, -0.6, 0.9), 8, 0.8, 0.1))
+    fridge, model = layout.fridge, furniture.models["fridge"]
+    front = model.extent[1] / 2 - 0.12
+    lamp = fridge.point(0, -front, model.extent[2] - 0.14)
+    lights.append(light(lamp, fridge.point(0, 0, 0.6), draw.uniform(0.8, 2.0), 0.12, 0.1))
+    return lights
