@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable, Sequence
 
 import pytest
-from tests.vlm.chat_server import LEFTOVER, Act, ChatServer, Request, Script, completion, refusal
 
+from tests.vlm.chat_server import LEFTOVER, Act, ChatServer, Request, Script, completion, refusal
 from tpvqa.errors import AnswerError, PluginError
 from tpvqa.observation import Frame, Observation
 from tpvqa.plugins import Kind, make
