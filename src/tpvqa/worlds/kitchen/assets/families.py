@@ -1,6 +1,15 @@
 """The list of all families, kind by kind."""
 
-from tpvqa.worlds.kitchen.assets import apple, bread, crockery, fridge, knives, television
+from tpvqa.worlds.kitchen.assets import (
+    apple,
+    bread,
+    crockery,
+    fridge,
+    furniture,
+    knives,
+    sinks,
+    television,
+)
 from tpvqa.worlds.kitchen.assets.family import Family
 
 FAMILIES: tuple[Family, ...] = (
@@ -29,4 +38,14 @@ FAMILIES: tuple[Family, ...] = (
     Family("fridge", "fridge-door", fridge.fridge, fixed=6),
     Family("fridge", "fridge-side-by-side", fridge.side_by_side, held_out=True),
     Family("fridge", "fridge-retro", fridge.retro, held_out=True),
+    Family("table", "table-legs", furniture.table, fixed=4),
+    Family("table", "table-round", furniture.round_table),
+    Family("table", "table-trestle", furniture.trestle_table, held_out=True, fixed=3),
+    Family("counter", "counter-plain", furniture.counter, fixed=4),
+    Family("counter", "counter-bold", furniture.bold_counter, held_out=True, fixed=3),
+    Family("wall_cabinet", "wall-cabinet", furniture.wall_cabinet),
+    Family("tvstand", "tvstand-board", furniture.tvstand, fixed=4),
+    Family("tvstand", "tvstand-bench", furniture.tv_bench, held_out=True, fixed=3),
+    Family("sink", "sink-basin", sinks.sink, fixed=6),
+    Family("sink", "sink-trough", sinks.trough, held_out=True, fixed=4),
 )
