@@ -60,14 +60,16 @@ class QuestionBook:
         text = self._fill(self._questions[atom.predicate], values)
         return Question(text, way, atom=atom, action=action, expected=literal.positive)
 
-    def asked(self, literal: Literal, action_name: str | None = None) -> bool:
+    def asked(self, literal: Literal, action: Action | None = None) -> bool:
         """Whether a literal is asked about (at an action), as a camera can show it."""
-        return self.why_not(literal, action_name) is None
+        return self.why_not(literal, action) is None
 
-    def why_not(self, literal: Literal, action_name: str | None = None) -> str | None:
+    def why_not(self, literal: Literal, action: Action | None = None) -> str | None:
         """Why a literal is never asked about; None where it is asked."""
+        name = None if action is None else action.name
+        arguments = {} if action is None else self._values(action)
         for pattern in self._wordings.never_asked:
-            if pattern.matches(literal, action_name, self._is_a):
+            if pattern.matches(literal, name, arguments, self._is_a):
                 return pattern.because or "the questions file says so"
         return None
 
@@ -77,7 +79,7 @@ class QuestionBook:
         Of a disjunction these are the parts that hold; none of them where one part holds that
         rests on nothing askable, as the precondition then does not hang on the others.
         """
-        resting = self._rests_on(action.precondition, self.task.extend(state), action.name)
+        resting = self._rests_on(action.precondition, self.task.extend(state), action)
         return self._ask(resting, Way.PRECONDITION, action)
 
     def effects(self, action: Action, state: State) -> tuple[Question, ...]:
@@ -93,7 +95,7 @@ class QuestionBook:
         # What is both deleted and added holds afterwards.
         left = (each for each in happening if each.positive or each.atom not in added)
         return self._ask(
-            (each for each in left if self.asked(each, action.name)), Way.EFFECT, action
+            (each for each in left if self.asked(each, action)), Way.EFFECT, action
         )
 
     # Whole actions
@@ -161,7 +163,7 @@ class QuestionBook:
         )
         return Question(text, way, action=action)
 
-    def _rests_on(self, condition: Condition, state: State, action: str) -> list[Literal]:
+    def _rests_on(self, condition: Condition, state: State, action: Action) -> list[Literal]:
         if isinstance(condition, Literal):
             return [condition] if self.asked(condition, action) else []
         parts: Sequence[Condition] = condition.parts

@@ -1,7 +1,7 @@
 """Facts that no camera shows, as patterns: (free ?h), (not (near ?x))."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from tpvqa.pddl import Literal
@@ -16,7 +16,8 @@ class NeverAsked:
 
     Attributes:
         predicate: The predicate.
-        terms: An object, or a variable such as `?x`; the same variable is the same object.
+        terms: An object, or a variable such as `?x`; the same variable is the same object. With
+            `actions` given, a variable named like a parameter is the action's own argument.
         types: The type a variable must have; None for any.
         positive: False for the negative literal alone; None for both.
         actions: The actions at which it is not asked; empty for everywhere.
@@ -60,13 +61,18 @@ class NeverAsked:
         return NeverAsked(words[0], tuple(terms), tuple(types), False if negated else None)
 
     def matches(
-        self, literal: Literal, action: str | None, is_a: Callable[[str, str], bool]
+        self,
+        literal: Literal,
+        action: str | None,
+        arguments: Mapping[str, str],
+        is_a: Callable[[str, str], bool],
     ) -> bool:
         """Whether a literal is not asked about at an action.
 
         Args:
             literal: The literal.
             action: The action's name; None where the question belongs to none.
+            arguments: The action's arguments by parameter, without the question mark.
             is_a: Whether an object is of a type.
         """
         atom = literal.atom
@@ -74,7 +80,7 @@ class NeverAsked:
             return False
         if self.actions and action not in self.actions:
             return False
-        bound: dict[str, str] = {}
+        bound = {f"?{name}": value for name, value in arguments.items()} if self.actions else {}
         for term, kind, value in zip(self.terms, self.types, atom.arguments, strict=True):
             if kind is not None and not is_a(value, kind):
                 return False
