@@ -162,17 +162,23 @@ def _cannot_import(kind: Kind, point: EntryPoint, error: Exception) -> Exception
 
 
 def extra_that_installs(module: str) -> str | None:
-    """The extra of tpvqa that installs a package, by tpvqa's own metadata; None for none."""
+    """The smallest extra of tpvqa that installs a package, by its metadata; None for none."""
     try:
         requirements = requires("tpvqa") or []
     except PackageNotFoundError:
         return None
+    extras: dict[str, list[str]] = {}
     for requirement in requirements:
         package = re.match(r"[A-Za-z0-9._-]+", requirement)
         extra = re.search(r"extra\s*==\s*['\"]([^'\"]+)['\"]", requirement)
-        if package and extra and _same(package[0], module):
-            return extra[1]
-    return None
+        if package and extra:
+            extras.setdefault(extra[1], []).append(package[0])
+    fitting = [
+        name
+        for name, packages in extras.items()
+        if any(_same(package, module) for package in packages)
+    ]
+    return min(fitting, key=lambda name: len(extras[name]), default=None)
 
 
 def _same(package: str, module: str) -> bool:
