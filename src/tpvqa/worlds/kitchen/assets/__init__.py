@@ -1,5 +1,6 @@
 """The things in the kitchen: meshes, materials and textures in many variants."""
 
+from tpvqa.worlds.kitchen.assets.dirt import soiled
 from tpvqa.worlds.kitchen.assets.library import Split, draw, families, kinds, models
 from tpvqa.worlds.kitchen.assets.model import (
     Grasp,
@@ -10,8 +11,12 @@ from tpvqa.worlds.kitchen.assets.model import (
     Solid,
     Surface,
 )
+from tpvqa.worlds.kitchen.assets.television import OFF, ON
+from tpvqa.worlds.kitchen.assets.textures import Texture, draw_texture
 
 __all__ = [
+    "OFF",
+    "ON",
     "Grasp",
     "Joint",
     "Model",
@@ -20,8 +25,11 @@ __all__ = [
     "Solid",
     "Split",
     "Surface",
+    "Texture",
     "draw",
+    "draw_texture",
     "families",
     "kinds",
     "models",
+    "soiled",
 ]

@@ -6,6 +6,7 @@ from tpvqa.worlds.kitchen.assets import (
     crockery,
     fridge,
     furniture,
+    grippers,
     knives,
     sinks,
     television,
@@ -48,4 +49,9 @@ FAMILIES: tuple[Family, ...] = (
     Family("tvstand", "tvstand-bench", furniture.tv_bench, held_out=True, fixed=3),
     Family("sink", "sink-basin", sinks.sink, fixed=6),
     Family("sink", "sink-trough", sinks.trough, held_out=True, fixed=4),
+    *(Family("gripper", f"gripper-{name}", make) for name, make in grippers.TRAIN.items()),
+    *(
+        Family("gripper", f"gripper-{name}", make, held_out=True)
+        for name, make in grippers.HELD_OUT.items()
+    ),
 )

@@ -5,6 +5,7 @@ are open. Surfaces "shelf0" (lowest) … are inside.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.random import Generator
@@ -12,7 +13,7 @@ from numpy.random import Generator
 from tpvqa.worlds.kitchen.assets.builder import Builder
 from tpvqa.worlds.kitchen.assets.mesh import Mesh, joined
 from tpvqa.worlds.kitchen.assets.model import Joint, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, near, one_of
+from tpvqa.worlds.kitchen.assets.paint import Colour, one_of
 from tpvqa.worlds.kitchen.assets.shapes import box, tube
 
 COLOURS: tuple[Colour, ...] = (
@@ -127,7 +128,7 @@ def _handle(style: str, z: float, side: float) -> Mesh:
     h = min(0.32, 0.3 * z)
     if style == "bar":
         path = [[0, 0, -h], [0, -0.035, -h], [0, -0.035, h], [0, 0, h]]
-        steps = np.concatenate([np.linspace(a, b, 3) for a, b in zip(path, path[1:], strict=False)])
+        steps = np.concatenate([np.linspace(a, b, 3) for a, b in pairwise(path)])
         return tube(steps, 0.009, steps=8).moved(x=side)
     if style == "bow":
         t = np.linspace(0, np.pi, 12)

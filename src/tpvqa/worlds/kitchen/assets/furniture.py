@@ -7,7 +7,7 @@ from tpvqa.worlds.kitchen.assets.builder import Builder
 from tpvqa.worlds.kitchen.assets.mesh import Mesh, joined
 from tpvqa.worlds.kitchen.assets.model import Model
 from tpvqa.worlds.kitchen.assets.paint import Colour, near, one_of
-from tpvqa.worlds.kitchen.assets.shapes import box, disc, slab, tube
+from tpvqa.worlds.kitchen.assets.shapes import box, disc, tube
 from tpvqa.worlds.kitchen.assets.textures import PALE, WOODS, Use, draw_texture
 
 HEIGHT = 0.88
@@ -45,7 +45,7 @@ def table(rng: Generator) -> Model:
     x, y, z = rng.uniform(1.1, 1.6), rng.uniform(0.75, 1.0), rng.uniform(0.7, 0.77)
     build = Builder()
     scale = textured(build, rng, "top", "table")
-    leg = build.paint("leg", one_of(rng, WOODS + ((0.1, 0.1, 0.1), (0.9, 0.9, 0.88))))
+    leg = build.paint("leg", one_of(rng, (*WOODS, (0.1, 0.1, 0.1), (0.9, 0.9, 0.88))))
     thick = rng.uniform(0.022, 0.05)
     build.mesh(
         "top", box(x, y, thick, bevel=0.006, uv_scale=scale).moved(z=z - thick), "top", role="top"
@@ -73,7 +73,7 @@ def round_table(rng: Generator) -> Model:
     y = x * rng.uniform(0.85, 1.0)
     build = Builder()
     scale = textured(build, rng, "top", "table")
-    leg = build.paint("leg", one_of(rng, WOODS + ((0.1, 0.1, 0.1),)))
+    leg = build.paint("leg", one_of(rng, (*WOODS, (0.1, 0.1, 0.1))))
     top = disc(0.5, thickness=1.0, steps=40).scaled(x, y, 0.035).moved(z=z - 0.035)
     build.mesh("top", top.mapped(top.points[:, :2] * scale), "top", role="top")
     foot = joined(
@@ -165,8 +165,14 @@ def _grip(style: str, wide: float, *, upright: bool) -> Mesh:
     return bar.turned(1, 90) if upright else bar
 
 
-def cabinet(rng: Generator, *, held_out: bool, worktop: bool = True) -> tuple[Builder, float]:
-    """A floor cabinet with fronts and, if wanted, a worktop; gives its width too."""
+def cabinet(rng: Generator, *, held_out: bool, basin: float = 0.0) -> tuple[Builder, float]:
+    """A floor cabinet with fronts; gives its width too.
+
+    Args:
+        rng: Decides colours and fronts.
+        held_out: Which split.
+        basin: Depth of the room left open at the top instead of a worktop.
+    """
     x = float(rng.choice([0.45, 0.5, 0.6, 0.6, 0.8]))
     build = Builder()
     if rng.random() < 0.35:
@@ -190,10 +196,22 @@ def cabinet(rng: Generator, *, held_out: bool, worktop: bool = True) -> tuple[Bu
     )
     build.paint("plinth", (0.12, 0.11, 0.1))
     high = HEIGHT - TOP
-    build.mesh("body", box(x, DEPTH, high - 0.1, uv_scale=scale).moved(z=0.1), "body")
+    body = [box(x, DEPTH, high - 0.1 - basin, uv_scale=scale).moved(z=0.1)]
+    if basin:
+        wall = 0.016
+        low = high - basin
+        body += [
+            box(wall, DEPTH, basin, uv_scale=scale).moved(x=s * (x - wall) / 2, z=low)
+            for s in (-1, 1)
+        ]
+        body += [
+            box(x, wall, basin, uv_scale=scale).moved(y=s * (DEPTH - wall) / 2, z=low)
+            for s in (-1, 1)
+        ]
+    build.mesh("body", joined(body), "body")
     build.mesh("plinth", box(x, DEPTH - 0.06, 0.1).moved(y=0.03), "plinth")
     fronts(build, rng, x, low=0.1, high=high, metal=metal, paint="body")
-    if worktop:
+    if not basin:
         scale = textured(build, rng, "worktop", "worktop", held_out=held_out)
         top = box(x, DEPTH + 0.03, TOP, bevel=0.004, uv_scale=scale)
         build.mesh("worktop", top.moved(y=-0.015, z=high), "worktop", role="top")
@@ -298,8 +316,3 @@ def _tvstand(rng: Generator, *, held_out: bool) -> Model:
     build.standing("box", (x, y, z))
     build.top("top", (0, 0, z), (x / 2, y / 2))
     return build.done("tvstand", (x, y + 0.06, z), 30.0)
-
-
-def outline(points: list[tuple[float, float]]) -> Mesh:
-    """A thin flat sheet of an outline; kept for tops that are no rectangles."""
-    return slab(np.array(points), 0.0, TOP)

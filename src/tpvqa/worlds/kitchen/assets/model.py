@@ -92,14 +92,14 @@ class Joint:
 
     Attributes:
         body: Its name.
-        kind: "hinge" or "slide".
+        kind: "hinge", "slide" or "ball" (turns freely).
         pos: Where the body's own frame (and the axis) stands in the main body.
         axis: Direction of the axis; positive values open.
         range: Degrees (hinge) or metres (slide).
     """
 
     body: str
-    kind: Literal["hinge", "slide"]
+    kind: Literal["hinge", "slide", "ball"]
     pos: Vec
     axis: Vec
     range: tuple[float, float]
@@ -262,28 +262,36 @@ class Model:
                 )
         return lines
 
-    def mjcf_bodies(self, prefix: str) -> list[str]:
+    def mjcf_bodies(self, prefix: str, *, jointed: bool = True) -> list[str]:
         """Its moving bodies (named `prefix` + body), each with joint, geoms and solids.
 
         The joint is named `prefix` + body + "_joint". Ranges are in degrees, so the scene's
         `<compiler angle="degree"/>` (the default) has to stay.
+
+        Args:
+            prefix: For all names.
+            jointed: False leaves the joints out, for a scene that poses the bodies itself.
         """
         lines = []
         for joint in self.joints:
             inside = self.mjcf_geoms(prefix, body=joint.body)
-            inside += self.mjcf_solids(prefix, body=joint.body)
+            solids = self.mjcf_solids(prefix, body=joint.body)
+            inside += solids or ['<inertial pos="0 0 0" mass="0.1" diaginertia="1e-4 1e-4 1e-4"/>']
+            if jointed:
+                inside.insert(0, _joint(joint, f"{prefix}{joint.body}_joint"))
             lines.append(
                 f'<body name="{prefix}{joint.body}" pos="{_numbers(*joint.pos)}">'
-                f'<joint name="{prefix}{joint.body}_joint" type="{joint.kind}"'
-                f' axis="{_numbers(*joint.axis)}" range="{_numbers(*joint.range)}"'
-                ' limited="true" damping="2" frictionloss="0.5"/>' + "".join(inside) + "</body>"
+                + "".join(inside)
+                + "</body>"
             )
         return lines
 
-    def mjcf_inside(self, prefix: str) -> str:
+    def mjcf_inside(self, prefix: str, *, jointed: bool = True) -> str:
         """Everything for the inside of a `<body>`: drawn geoms, solids and moving bodies."""
         return "\n".join(
-            self.mjcf_geoms(prefix) + self.mjcf_solids(prefix) + self.mjcf_bodies(prefix)
+            self.mjcf_geoms(prefix)
+            + self.mjcf_solids(prefix)
+            + self.mjcf_bodies(prefix, jointed=jointed)
         )
 
     def parts_with(self, role: str) -> tuple[Part, ...]:
@@ -314,6 +322,15 @@ class Model:
             files={new[old]: data for old, data in self.files.items()},
             half=self.half.named(f"{name}-half") if self.half else None,
         )
+
+
+def _joint(joint: Joint, name: str) -> str:
+    if joint.kind == "ball":
+        return f'<joint name="{name}" type="ball" damping="2"/>'
+    return (
+        f'<joint name="{name}" type="{joint.kind}" axis="{_numbers(*joint.axis)}"'
+        f' range="{_numbers(*joint.range)}" limited="true" damping="2" frictionloss="0.5"/>'
+    )
 
 
 def _mesh_name(mesh: str | None, scale: tuple[float, ...]) -> str:

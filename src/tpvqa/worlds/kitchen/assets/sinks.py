@@ -136,7 +136,7 @@ def _sink(
     tap: str,
     drainer: bool,
 ) -> Model:
-    build, old = cabinet(rng, held_out=held_out, worktop=False)
+    build, old = cabinet(rng, held_out=held_out, basin=0.24)
     grown = x / old
     build = _stretched(build, grown)
     scale = textured(build, rng, "worktop", "worktop", held_out=held_out)
@@ -158,11 +158,13 @@ def _sink(
     y0 = -0.03
     depth = rng.uniform(0.15, 0.2)
     loop = _squircle(wide, deep, power, 36)
-    outer = loop + [at, y0 + 0.015]
+    outer = loop + np.array([at, y0 + 0.015])
     edge = _on_rectangle(loop, x, DEPTH + 0.03)
     # The rectangle is centred on the cabinet, the hole is not: keep corners and shift the rest.
     edge = np.clip(
-        edge + [at, y0 + 0.015], [-x / 2, -(DEPTH + 0.03) / 2], [x / 2, (DEPTH + 0.03) / 2]
+        edge + np.array([at, y0 + 0.015]),
+        [-x / 2, -(DEPTH + 0.03) / 2],
+        [x / 2, (DEPTH + 0.03) / 2],
     )
     for corner in [(a * x / 2, b * (DEPTH + 0.03) / 2) for a in (-1, 1) for b in (-1, 1)]:
         edge[np.argmin(np.linalg.norm(edge - corner, axis=1))] = corner

@@ -166,7 +166,7 @@ def fabric(rng: Generator) -> Made:
     """Woven cloth."""
     y, x = np.mgrid[0:SIZE, 0:SIZE]
     weave = 0.5 + 0.25 * np.sin(x * np.pi / 2) + 0.25 * np.sin(y * np.pi / 2)
-    base = one_of(rng, PALE + ((0.3, 0.35, 0.5), (0.5, 0.2, 0.2), (0.25, 0.4, 0.3)))
+    base = one_of(rng, (*PALE, (0.3, 0.35, 0.5), (0.5, 0.2, 0.2), (0.25, 0.4, 0.3)))
     uneven = clouds(rng, SIZE, SIZE, rows=12, columns=12)
     return _flat(base) * (0.82 + 0.2 * weave + 0.1 * uneven)[..., None], 0.35, 0.0
 
@@ -181,15 +181,16 @@ def concrete(rng: Generator) -> Made:
 def terrazzo(rng: Generator) -> Made:
     """Held out: chips of several colours in a pale base."""
     picture = _flat(one_of(rng, PALE, 0.03))
-    y, x = np.mgrid[0:SIZE, 0:SIZE]
     chips = [hsv(rng.random(), rng.uniform(0.1, 0.6), rng.uniform(0.25, 0.85)) for _ in range(4)]
+    near_by = np.arange(-8, 9)
+    dy, dx = np.meshgrid(near_by, near_by, indexing="ij")
     for _ in range(150):
-        cy, cx = rng.uniform(0, SIZE, 2)
+        cy, cx = rng.integers(0, SIZE, 2)
         a, r, squeeze = rng.uniform(0, np.pi), rng.uniform(2, 8), rng.uniform(0.4, 1)
-        dy = (y - cy + SIZE / 2) % SIZE - SIZE / 2
-        dx = (x - cx + SIZE / 2) % SIZE - SIZE / 2
         p, q = dx * np.cos(a) + dy * np.sin(a), dy * np.cos(a) - dx * np.sin(a)
-        picture[np.abs(p) + np.abs(q) / squeeze < r] = chips[int(rng.integers(4))]
+        inside = np.abs(p) + np.abs(q) / squeeze < r
+        rows, columns = (cy + dy[inside]) % SIZE, (cx + dx[inside]) % SIZE
+        picture[rows, columns] = chips[int(rng.integers(4))]
     return picture, rng.uniform(0.4, 0.7), 0.3
 
 
@@ -201,14 +202,12 @@ def herringbone(rng: Generator) -> Made:
     # Blocks of 1 x 4: the diagonal index tells lying from standing ones.
     k = (i - j) % 8
     lying = k < 4
-    along = np.where(lying, x % (4 * unit), y % (4 * unit)) / (4 * unit)
     across = np.where(lying, y % unit, x % unit) / unit
     start = np.where(lying, i - k, j - (7 - k))
     lane = np.where(lying, j, i)
     shade = rng.normal(0, 0.1, 97)[(start * 7 + lane * 13).astype(int) % 97]
     grain = clouds(rng, SIZE, SIZE, rows=20, columns=20, octaves=2)
     picture = _flat(one_of(rng, WOODS)) * (1 + shade * 1.2 + 0.18 * (grain - 0.5))[..., None]
-    del along
     return mix(picture, (0.12, 0.08, 0.05), (across < 0.07) * 0.6), rng.uniform(0.5, 0.9), 0.15
 
 
@@ -227,10 +226,9 @@ def marble(rng: Generator) -> Made:
 def dots(rng: Generator) -> Made:
     """Held out: a grid of dots in two colours."""
     n = int(rng.integers(4, 9))
-    row, _, v, u = _cells(n, n, 0.5 if n % 2 == 0 else 0.0)
+    _, _, v, u = _cells(n, n, 0.5 if n % 2 == 0 else 0.0)
     spot = np.hypot(u - 0.5, v - 0.5) < rng.uniform(0.14, 0.3)
     ink = hsv(rng.random(), rng.uniform(0.2, 0.6), rng.uniform(0.4, 0.9))
-    del row
     return mix(one_of(rng, PALE), ink, spot * 1.0), rng.uniform(0.3, 0.7), 0.03
 
 
