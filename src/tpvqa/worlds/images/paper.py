@@ -15,7 +15,7 @@ from tpvqa.worlds.simulation import Outcome, Simulation
 class PaperSimulation(Simulation):
     """A simulation whose disturbances return to what was true after an earlier action.
 
-    Takes the arguments of `Simulation`; the undo rules of a world file are not used.
+    Takes the arguments of `Simulation`; what a world file says can be undone is not used.
     """
 
     def __init__(self, *arguments: Any, **options: Any):

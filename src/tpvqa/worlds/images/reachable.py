@@ -15,7 +15,7 @@ from tpvqa.errors import PictureSetError
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.planning import Plan, Planner, Unsolvable
 from tpvqa.worlds.images.visible import VisibleState, visible_state
-from tpvqa.worlds.undo import UndoRule
+from tpvqa.worlds.world_file import WorldRules
 
 Kind = tuple[str, ...]
 """An action without its hands and without where it starts from: `("find", "plate")`."""
@@ -76,7 +76,7 @@ class Reachable:
         return frozenset(found - self.after_success(of))
 
 
-def reachable(task: Task, rules: Sequence[UndoRule], planner: Planner, name: str) -> Reachable:
+def reachable(task: Task, rules: WorldRules, planner: Planner, name: str) -> Reachable:
     """Enumerate what a task can lead to.
 
     Raises:
@@ -128,7 +128,7 @@ def _grouped(
 
 
 def _closure(
-    task: Task, rules: Sequence[UndoRule], actions: Sequence[Action]
+    task: Task, rules: WorldRules, actions: Sequence[Action]
 ) -> tuple[set[State], set[tuple[Action, State, State]], dict[State, frozenset[State]]]:
     steps: set[tuple[Action, State, State]] = set()
     disturbed: dict[State, set[State]] = defaultdict(set)
@@ -155,10 +155,10 @@ def _closure(
     return states, steps, {state: frozenset(found) for state, found in disturbed.items()}
 
 
-def _undone(task: Task, rules: Sequence[UndoRule], state: State, places: Places) -> Iterator[State]:
+def _undone(task: Task, rules: WorldRules, state: State, places: Places) -> Iterator[State]:
     history = [atom for _, atom in places]
     for atom in sorted(state - task.init):
-        for rule in rules:
+        for rule in rules.undo:
             for _, after in rule.results(atom, state, history, task):
                 yield after
 

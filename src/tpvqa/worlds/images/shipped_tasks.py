@@ -18,7 +18,7 @@ def all_reachable() -> list[Reachable]:
         for name in TASKS:
             files = find_task(name)
             task = load_task(files.domain, files.problem)
-            found.append(reachable(task, load_world_file(files.world, task).undo, planner, name))
+            found.append(reachable(task, load_world_file(files.world, task), planner, name))
     finally:
         planner.close()
     return found
