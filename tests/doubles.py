@@ -39,7 +39,8 @@ class ScriptedVLM:
 
 def perform(check: Check, *answerers: Answerer) -> tuple[Verdict, int, list[str]]:
     """Drive a monitor without world or VLM: its verdict, the number of looks, what it asked."""
-    looks, asked, answer = 0, [], None
+    looks, asked = 0, list[str]()
+    answer: object = None
     try:
         while True:
             request = check.send(answer)

@@ -70,6 +70,7 @@ def run_episode(
         because = _run(recorder, monitor, trial, started.limits, planning_timeout, action_deadline)
     except KeyboardInterrupt:
         because, trial.message = "cancelled", "interrupted by the user"
+    recorder.settle()
     goal = _goal_holds(parts)
     return recorder.end(
         Ended(

@@ -53,6 +53,7 @@ class EpisodeView:
         self._console, self._truth = console, truth
         self._plan: PlanMade | None = None
         self._step, self._attempt, self._done = 0, 0, False
+        self._headed, self._told = False, False
         self._asked: tuple[QuestionRecord, ...] = ()
         wanted = console.is_terminal if live is None else live
         self._live = Live(console=console, auto_refresh=False, transient=True) if wanted else None
@@ -78,10 +79,12 @@ class EpisodeView:
             case PlanMade():
                 self._show_plan(event)
             case Observed():
+                self._head()
                 names = ", ".join(frame.file for frame in event.frames) or "no picture"
                 self._line(f"  [dim]look {event.look}: {escape(names)}[/]")
             case Asked():
-                self._asked = event.questions
+                self._head()
+                self._asked, self._told = event.questions, True
             case Answered():
                 for question, answer in zip(self._asked, event.answers, strict=True):
                     self._line(_answer_line(question, answer))
@@ -90,16 +93,11 @@ class EpisodeView:
                 new = " ".join(event.added) or "nothing"
                 self._line(f"  [dim]now believed: {escape(new)}; no longer: {escape(gone)}[/]")
             case Decided():
-                self._step = event.step
-                style = _DECISION_STYLE[event.decision]
-                self._line(
-                    f"  [{style}]→ {event.decision}[/] [dim]({event.when} the action)[/] "
-                    f"{escape(event.reason)}"
-                )
+                self._head()
+                self._show_decision(event)
             case Acting():
-                self._step, self._attempt = event.step, event.attempt
-                again = f" [yellow](attempt {event.attempt + 1})[/]" if event.attempt else ""
-                self._line(f"[bold]{event.step + 1}. {escape(event.action.said)}[/]{again}")
+                self._head()
+                self._line(f"  [blue]▶ {escape(event.action.said)}[/]")
             case Acted():
                 self._show_outcome(event)
             case Ended():
@@ -111,12 +109,30 @@ class EpisodeView:
     def _line(self, text: str) -> None:
         self._console.print(text, highlight=False, soft_wrap=True)
 
+    def _head(self) -> None:
+        """Name the step, once, before the first that happens in it."""
+        if self._headed or self._plan is None or self._step >= len(self._plan.plan):
+            return
+        self._headed = True
+        again = f" [yellow](attempt {self._attempt + 1})[/]" if self._attempt else ""
+        self._line(f"[bold]{self._step + 1}. {escape(self._plan.plan[self._step].said)}[/]{again}")
+
+    def _show_decision(self, event: Decided) -> None:
+        if self._told or event.decision is not Decision.GO_ON:
+            style = _DECISION_STYLE[event.decision]
+            self._line(f"  [{style}]→ {event.decision}:[/] {escape(event.reason)}")
+        self._told = False
+        if event.decision is Decision.REPEAT:
+            self._attempt, self._headed = self._attempt + 1, False
+        elif event.when == "after" and event.decision is Decision.GO_ON:
+            self._step, self._attempt, self._headed = event.step + 1, 0, False
+
     def _show_plan(self, event: PlanMade) -> None:
         replanned = self._plan is not None
         if event.result != "plan":
             self._line(f"[red]no plan: {event.result}[/] {escape(event.reason)}")
             return
-        self._plan, self._step, self._attempt = event, 0, 0
+        self._plan, self._step, self._attempt, self._headed = event, 0, 0, False
         steps = " · ".join(action.said for action in event.plan) or "nothing left to do"
         word = "new plan" if replanned else "plan"
         self._line(

@@ -213,14 +213,18 @@ class Recorder:
             if snapshot is not None:
                 self._snapshots["vlm" if isinstance(event, Answered) else "world"] = snapshot
             return event
-        if self._replaying:
+        self.settle()
+        return None
+
+    def settle(self) -> None:
+        """Put world and VLM where the log left them, once it has been played back."""
+        if self._replaying and not self._recorded:
             self._replaying = False
             self._stale = not isinstance(self.parts.world, Restorable)
             for part, snapshot in self._snapshots.items():
                 target = getattr(self.parts, part)
                 if isinstance(target, Restorable):
                     target.restore(snapshot)
-        return None
 
     def _tell(self, event: E) -> E:
         for listener in self._listeners:

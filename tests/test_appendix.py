@@ -1,0 +1,77 @@
+"""The real-robot trial of the paper's appendix, told with a scripted world and a scripted VLM."""
+
+from pathlib import Path
+
+from tests.doubles import ScriptedVLM
+from tpvqa.episodes import MemoryWriter
+from tpvqa.episodes.events import Acting, Answered, Asked, Decided, Ended, PlanMade
+from tpvqa.monitors import Decision
+from tpvqa.questions import Question
+from tpvqa.trial import Trial, TrialConfig
+from tpvqa.vlm import Reply
+
+TOYS = Path(__file__).parent / "fixtures" / "toys"
+
+
+def test_the_container_drops_the_plan_starts_again_and_a_failed_pick_is_repeated() -> None:
+    config = TrialConfig(
+        domain=str(TOYS / "domain.pddl"),
+        problem=str(TOYS / "collect.pddl"),
+        questions=str(TOYS / "questions.yaml"),
+        world=f"scripted:{TOYS / 'script.yaml'}",
+        vlm="oracle",
+    )
+    writer = MemoryWriter()
+    with Trial(config) as trial:
+
+        def sees(question: Question) -> Reply:
+            assert question.atom is not None
+            return Reply.YES if trial.world.truth.holds(question.atom) else Reply.NO  # type: ignore[attr-defined]
+
+        trial.parts.vlm = ScriptedVLM(sees)
+        ended = trial.run(writer)
+
+    done = [event.action.said for event in writer.events if isinstance(event, Acting)]
+    assert done[:3] == [
+        "find the blue container",
+        "pick up the blue container",
+        "find the goal area",
+    ]
+
+    # Before placing it, its precondition is denied, and the plan starts again with another one.
+    asked = [event for event in writer.events if isinstance(event, Asked)]
+    assert any(
+        q.text == "Is the blue container in a robot's hand?" for a in asked for q in a.questions
+    )
+    replans = [
+        event
+        for event in writer.events
+        if isinstance(event, Decided) and event.decision is Decision.REPLAN
+    ]
+    assert [event.action for event in replans] == ["(place blue_container goal_area)"]
+    plans = [event for event in writer.events if isinstance(event, PlanMade)]
+    assert len(plans) == 2
+    assert plans[1].plan[0].said == "find the cyan container"
+
+    # The pick fails: "on the table" yes, "in hand" no, so it is repeated.
+    (repeat,) = [
+        event
+        for event in writer.events
+        if isinstance(event, Decided) and event.decision is Decision.REPEAT
+    ]
+    assert repeat.action == "(pick_up toy_eggplant)"
+    at = writer.events.index(repeat)
+    answered, question = writer.events[at - 1], writer.events[at - 2]
+    assert isinstance(answered, Answered)
+    assert isinstance(question, Asked)
+    said = {q.text: a.reply for q, a in zip(question.questions, answered.answers, strict=True)}
+    assert said == {
+        "Is the toy_eggplant in a robot's hand?": Reply.NO,
+        "Is there a toy_eggplant on the table?": Reply.YES,
+    }
+    assert done.count("pick up the toy_eggplant") == 2
+
+    assert isinstance(ended, Ended)
+    assert ended.completed
+    assert (ended.because, ended.repeats, ended.replans) == ("goal", 1, 1)
+    assert done[-1] == "place the toy_eggplant into the cyan container"

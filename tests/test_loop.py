@@ -1,0 +1,229 @@
+"""The closed loop: limits, endings, and resuming after a kill at any point."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.doubles import ScriptedVLM, replies
+from tpvqa.episodes import Ended, EpisodeWriter, Event, Limits, MemoryWriter, Parts, read_episode
+from tpvqa.episodes.log import LOG
+from tpvqa.errors import EpisodeError
+from tpvqa.loop import run_episode
+from tpvqa.monitors.tpvqa import TPVQA
+from tpvqa.planning import Crashed, Planner, TimedOut
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.trial import Trial, TrialConfig, config_of, resume
+from tpvqa.vlm import Reply
+
+
+@pytest.fixture(scope="module")
+def planner() -> Iterator[Planner]:
+    planner = FastDownward()
+    yield planner
+    planner.close()
+
+
+def symbolic(task: str = "serve_breakfast", **changes: object) -> TrialConfig:
+    settings: dict[str, object] = {"task": task, "world": "symbolic", "vlm": "oracle", **changes}
+    return TrialConfig(**settings)  # type: ignore[arg-type]
+
+
+def run(config: TrialConfig, planner: Planner) -> tuple[Ended, list[Event]]:
+    writer = MemoryWriter()
+    with Trial(config, planner=planner) as trial:
+        return trial.run(writer), writer.events
+
+
+def story(events: list[Event]) -> list[dict[str, object]]:
+    """The events without what differs between two runs of the same trial: times."""
+    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
+
+
+@pytest.mark.parametrize("task", ["clean_dishes", "eat_apple"])
+def test_with_perfect_answers_the_task_is_done_whatever_fails(task: str, planner: Planner) -> None:
+    ended = [run(symbolic(task, episode=episode), planner)[0] for episode in range(40)]
+    assert all(each.completed and each.because == "goal" for each in ended)
+    assert sum(each.repeats for each in ended) > 0
+    assert sum(each.replans for each in ended) > 0
+
+
+def test_without_perception_failures_go_unnoticed(planner: Planner) -> None:
+    ended = [run(symbolic(monitor="none", episode=n), planner)[0] for n in range(40)]
+    assert all(each.because == "goal" and each.believed_goal for each in ended)
+    assert 0 < sum(bool(each.completed) for each in ended) < 20
+    assert all(each.questions == each.looks == 0 for each in ended)
+
+
+def test_another_monitor_meets_the_same_faults(planner: Planner) -> None:
+    def first_outcomes(monitor: str) -> list[object]:
+        _, events = run(symbolic(monitor=monitor, episode=3), planner)
+        acted = [event for event in events if event.kind == "acted"]
+        return [event.truth and event.truth["succeeded"] for event in acted][:1]
+
+    assert first_outcomes("none") == first_outcomes("tpvqa")
+
+
+def test_the_same_seed_gives_the_same_trial(planner: Planner) -> None:
+    config = symbolic(vlm="oracle:0.8:0.5", seed=5)
+    assert story(run(config, planner)[1]) == story(run(config, planner)[1])
+    assert story(run(config, planner)[1]) != story(
+        run(symbolic(vlm="oracle:0.8", seed=6), planner)[1]
+    )
+
+
+@pytest.mark.parametrize(
+    ("limits", "failure", "because"),
+    [
+        (Limits(repeats=3), 1.0, "limit of repeats"),
+        (Limits(actions=2), 0.0, "limit of actions"),
+        (Limits(repeats=1000), 1.0, "limit of actions"),
+    ],
+)
+def test_limits_end_a_trial_as_a_failure(
+    limits: Limits, failure: float, because: str, planner: Planner
+) -> None:
+    ended, _ = run(symbolic(limits=limits, failure=failure, disturbance=0.0), planner)
+    assert (ended.because, ended.completed, ended.believed_goal) == (because, False, False)
+
+
+def test_an_always_no_to_preconditions_ends_at_the_limit_of_replans(planner: Planner) -> None:
+    def contrary(question):  # type: ignore[no-untyped-def]
+        denies = question.way == "precondition"
+        return Reply.NO if denies == question.expected else Reply.YES
+
+    with Trial(symbolic(failure=0.0), planner=planner) as trial:
+        trial.parts.vlm = ScriptedVLM(contrary)
+        ended = trial.run(MemoryWriter())
+    assert (ended.because, ended.replans, ended.completed) == ("limit of replans", 10, False)
+
+
+def test_a_vlm_that_never_answers_stops_the_robot_safely(planner: Planner) -> None:
+    with Trial(symbolic(), planner=planner) as trial:
+        trial.parts.vlm = ScriptedVLM(replies({}, Reply.UNKNOWN))
+        ended = trial.run(MemoryWriter())
+    assert ended.because == "gave up"
+    assert ended.actions == 1
+    assert not ended.completed
+
+
+@pytest.mark.parametrize(
+    ("result", "because"),
+    [
+        (TimedOut(1.0, "double", 1.0), "planner timed out"),
+        (Crashed("it broke", "double", 1.0), "planner crashed"),
+    ],
+)
+def test_a_planner_that_fails_ends_the_trial_with_its_reason(result: object, because: str) -> None:
+    class Failing:
+        name = "double"
+
+        def plan(self, *_: object, **__: object) -> object:
+            return result
+
+        def close(self) -> None: ...
+
+    with Trial(symbolic(), planner=Failing()) as trial:  # type: ignore[arg-type]
+        ended = trial.run(MemoryWriter())
+    assert ended.because == because
+    assert ended.message
+
+
+def test_no_plan_from_the_corrected_state_is_said(planner: Planner, tmp_path: Path) -> None:
+    with Trial(symbolic("clean_dishes"), planner=planner) as trial:
+        hopeless = frozenset(atom for atom in trial.task.init if atom.predicate != "near")
+        ended = run_episode(
+            Parts(trial.task.with_init(hopeless), trial.book, planner, trial.world, trial.vlm),
+            TPVQA(),
+            MemoryWriter(),
+            trial.started(),
+        )
+    assert ended.because == "no plan"
+
+
+# Resuming
+
+
+def unbroken(folder: Path, planner: Planner) -> list[Event]:
+    config = symbolic(vlm="oracle:0.85:0.3", seed=11, episode=2)
+    with Trial(config, planner=planner) as trial:
+        writer = EpisodeWriter(folder)
+        trial.run(writer, folder=folder)
+        writer.close()
+    return read_episode(folder)
+
+
+def test_a_trial_killed_after_any_event_resumes_to_the_same_end(
+    tmp_path: Path, planner: Planner
+) -> None:
+    whole = unbroken(tmp_path / "whole", planner)
+    lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
+    assert len(lines) > 40
+    for cut in range(1, len(lines)):
+        folder = tmp_path / f"cut{cut}"
+        folder.mkdir()
+        torn = lines[cut][: len(lines[cut]) // 2] if cut % 2 else b""
+        (folder / LOG).write_bytes(b"".join(lines[:cut]) + torn)
+        events = read_episode(folder)
+        assert len(events) == cut
+        with Trial(config_of(events[0]), planner=planner) as trial:  # type: ignore[arg-type]
+            writer = EpisodeWriter(folder, resume=cut, durable=False)
+            trial.run(writer, started=events[0], recorded=events, folder=folder)  # type: ignore[arg-type]
+            writer.close()
+        assert story(read_episode(folder)) == story(whole)
+
+
+def test_an_ended_episode_is_not_resumed(tmp_path: Path, planner: Planner) -> None:
+    unbroken(tmp_path / "whole", planner)
+    with pytest.raises(EpisodeError, match="has ended"):
+        resume(tmp_path / "whole")
+
+
+def test_a_folder_with_an_episode_is_not_overwritten(tmp_path: Path, planner: Planner) -> None:
+    unbroken(tmp_path / "whole", planner)
+    with pytest.raises(EpisodeError, match="holds an episode already"):
+        EpisodeWriter(tmp_path / "whole")
+
+
+def test_a_damaged_line_is_named(tmp_path: Path, planner: Planner) -> None:
+    unbroken(tmp_path / "whole", planner)
+    log = tmp_path / "whole" / LOG
+    lines = log.read_bytes().splitlines(keepends=True)
+    log.write_bytes(b"".join([*lines[:4], b'{"kind": "nonsense"}\n', *lines[5:]]))
+    with pytest.raises(EpisodeError, match=r"episode\.jsonl:5"):
+        read_episode(tmp_path / "whole")
+
+
+TPVQA_COMMAND = [sys.executable, "-c", "from tpvqa.cli import main; main()"]
+
+
+@pytest.mark.slow
+def test_the_command_killed_at_a_bad_moment_resumes_to_the_same_end(tmp_path: Path) -> None:
+    settings = ["eat_apple", "--world", "symbolic", "--vlm", "oracle:0.8:0.4", "--seed", "7"]
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    subprocess.run(
+        [*TPVQA_COMMAND, "run", *settings, "--out", whole], capture_output=True, check=False
+    )
+    process = subprocess.Popen(
+        [*TPVQA_COMMAND, "run", *settings, "--out", broken],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    log = broken / LOG
+    while process.poll() is None and not (log.exists() and log.stat().st_size > 12_000):
+        time.sleep(0.001)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    result = subprocess.run(
+        [*TPVQA_COMMAND, "resume", broken, "--json"], capture_output=True, text=True, check=False
+    )
+    if "has ended" not in result.stderr:
+        assert json.loads(result.stdout)["ended_because"] == read_episode(whole)[-1].because  # type: ignore[union-attr]
+    assert story(read_episode(broken)) == story(read_episode(whole))
