@@ -94,9 +94,7 @@ class QuestionBook:
         added = {literal.atom for literal in happening if literal.positive}
         # What is both deleted and added holds afterwards.
         left = (each for each in happening if each.positive or each.atom not in added)
-        return self._ask(
-            (each for each in left if self.asked(each, action)), Way.EFFECT, action
-        )
+        return self._ask((each for each in left if self.asked(each, action)), Way.EFFECT, action)
 
     # Whole actions
 

@@ -3,6 +3,8 @@
 import re
 from collections.abc import Sequence
 
+from tpvqa.questions.template import indefinite_article
+
 _PREPOSITIONS = {
     "above", "across", "against", "along", "around", "at", "atop", "before", "behind",
     "below", "beneath", "beside", "between", "by", "for", "from", "in", "inside", "into",
@@ -65,7 +67,8 @@ def question_about(predicate: str, parameters: Sequence[str]) -> str:
         if rest:
             tail = " ".join([f"the {{{rest[0]}}}", *words[1:]])
             return f"Does {first} {verb} {tail}{_in_brackets(rest[1:])}?"
-        return " ".join(["Does", first, verb, *words[1:]]) + "?"
+        noun = [indefinite_article(words[1])] if verb == "have" else []
+        return " ".join(["Does", first, verb, *noun, *words[1:]]) + "?"
     if words[0] == "can" and len(words) > 1:
         return f"Can {first} {' '.join(words[1:])}{_in_brackets(rest)}?"
     if rest and words[-1] in _LINKS:
