@@ -123,6 +123,16 @@ def candidate(approach: Approach, rng: np.random.Generator, side: float, aside: 
     return Shot(position, axes, fovy)
 
 
+def overview(layout: Layout, rng: np.random.Generator) -> Shot:
+    """The whole room from one of its front corners, high up."""
+    side = -1.0 if rng.random() < 0.5 else 1.0
+    position = np.array(
+        [side * (layout.width / 2 - 0.3), -layout.depth + 0.3, rng.uniform(2.0, 2.3)]
+    )
+    middle = np.array([-0.1 * position[0], -layout.depth * 0.3, 0.7])
+    return Shot(position, looking(middle - position), float(rng.uniform(66, 74)))
+
+
 def faults(shot: Shot, wanted: Wanted, layout: Layout, *, lean: float) -> float:
     """How much is wrong with a shot; 0 is good."""
     wrong = 0.0

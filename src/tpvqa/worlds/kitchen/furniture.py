@@ -6,21 +6,26 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.assets import Model, draw, kinds
+from tpvqa.worlds.kitchen.assets import Model, draw, families, kinds
+from tpvqa.worlds.kitchen.assets.textures import Use, draw_texture
 from tpvqa.worlds.kitchen.grippers import gripper_body
 from tpvqa.worlds.kitchen.household import HANDS, ITEMS
 from tpvqa.worlds.kitchen.layout import Layout, Split, Stand, draw_layout
 
 DISTRACTORS = 7
+ROOM: Mapping[str, Use] = {"wall": "wall", "floor": "floor", "tiles": "wall"}
+"""Surfaces of the room itself, and the kind of texture that each has."""
+ROOM_CHOICE = 3
+"""Textures of each that a kitchen can be repainted with."""
 _NOT_LOOSE = {
     *ITEMS,
     "apple_half",
     "dirt",
     "fridge",
     "tv",
-    "tv_stand",
+    "tvstand",
     "sink",
-    "cabinet",
+    "counter",
     "wall_cabinet",
     "table",
     "gripper",
@@ -50,12 +55,12 @@ def furnish(rng: np.random.Generator, split: Split) -> Furniture:
     """Choose a model for every thing, and put the fixtures into a random room."""
 
     def pick(kind: str) -> Model:
-        return draw(kind, rng, split=split)
+        return draw(kind, rng, split=split if families(kind, split=split) else "all")
 
     models = {item: pick(item) for item in ITEMS}
     models["half"] = models["apple"].half or pick("apple_half")
     models["dirt"] = pick("dirt")
-    for fixture in ("table", "sink", "fridge", "tv", "tv_stand", "cabinet", "wall_cabinet"):
+    for fixture in ("table", "sink", "fridge", "tv", "tvstand", "counter", "wall_cabinet"):
         models[fixture] = pick(fixture)
     clutter = [kind for kind in kinds() if kind not in _NOT_LOOSE]
     loose = []
@@ -74,6 +79,16 @@ def furnish(rng: np.random.Generator, split: Split) -> Furniture:
         for name in loose
     ]
     bodies += [gripper_body(hand) for hand in HANDS]
+    for use, texture_use in ROOM.items():
+        for k in range(ROOM_CHOICE):
+            texture = draw_texture(texture_use, rng, held_out=split == "held_out")
+            files[f"{use}{k}.png"] = texture.png
+            assets[
+                f'<texture name="{use}{k}" type="2d" file="{use}{k}.png"/>'
+                f'<material name="{use}{k}" texture="{use}{k}" texuniform="true"'
+                f' texrepeat="{1 / texture.metres:.4g} {1 / texture.metres:.4g}"'
+                f' specular="{0.5 * texture.shine:.3g}"/>'
+            ] = None
     xml = _SCENE.format(assets="\n".join(assets), room=_room(layout), bodies="\n".join(bodies))
     return Furniture(layout=layout, xml=xml, files=files, models=models, loose=tuple(loose))
 
@@ -96,14 +111,14 @@ def _placed(name: str, stand: Stand, inside: str) -> str:
 
 def _fixtures(layout: Layout, models: Mapping[str, Model]) -> Iterable[str]:
     for k, stand in enumerate(layout.cabinets):
-        yield _placed(f"counter{k}", stand, models["cabinet"].mjcf_inside(f"counter{k}/"))
+        yield _placed(f"counter{k}", stand, models["counter"].mjcf_inside(f"counter{k}/"))
     for k, stand in enumerate(layout.wall_cabinets):
         model = models["wall_cabinet"]
         yield _placed(f"upper{k}", stand, "\n".join(model.mjcf_geoms(f"upper{k}/")))
     for name, stand in (("sink", layout.sink), ("fridge", layout.fridge), ("table", layout.table)):
         yield _placed(name, stand, models[name].mjcf_inside(f"{name}/"))
-    stand, height = layout.tv_stand, models["tv_stand"].extent[2]
-    yield _placed("tv_stand", stand, models["tv_stand"].mjcf_inside("tv_stand/"))
+    stand, height = layout.tv_stand, models["tvstand"].extent[2]
+    yield _placed("tvstand", stand, models["tvstand"].mjcf_inside("tvstand/"))
     up = Stand(stand.x, stand.y, stand.yaw, height)
     yield _placed("tv", up, models["tv"].mjcf_inside("tv/"))
 
@@ -130,20 +145,20 @@ def _room(layout: Layout) -> str:
         "east": ((w, -d, h), "0 -1 0 0 0 1", (d, h)),
     }
     lines = [
-        f'<geom name="floor" type="plane" pos="0 {-d} 0" size="{w} {d} 0.1" material="floor"/>',
+        f'<geom name="floor" type="plane" pos="0 {-d} 0" size="{w} {d} 0.1" material="floor0"/>',
         f'<geom name="ceiling" type="plane" pos="0 {-d} {2 * h}" zaxis="0 0 -1"'
         f' size="{w} {d} 0.1" material="ceiling" contype="0" conaffinity="0"/>',
     ]
     for name, ((x, y, z), axes, (a, b)) in walls.items():
         lines.append(
             f'<geom name="wall_{name}" type="plane" pos="{x} {y} {z}" xyaxes="{axes}"'
-            f' size="{a} {b} 0.1" material="wall"/>'
+            f' size="{a} {b} 0.1" material="wall0"/>'
         )
     run = [stand.x for stand in layout.cabinets if stand.yaw == 0]
     middle, half = (min(run) + max(run)) / 2, (max(run) - min(run)) / 2 + 0.3
     lines.append(
         f'<geom name="tiles" type="plane" pos="{middle} -0.004 1.17" xyaxes="1 0 0 0 0 1"'
-        f' size="{half} 0.285 0.1" material="tiles" contype="0" conaffinity="0"/>'
+        f' size="{half} 0.285 0.1" material="tiles0" contype="0" conaffinity="0"/>'
     )
     return "\n".join(lines)
 
@@ -161,10 +176,7 @@ _SCENE = """<mujoco model="kitchen">
 </visual>
 <asset>
 <texture type="skybox" builtin="gradient" rgb1=".8 .85 .9" rgb2=".5 .55 .6" width="64" height="64"/>
-<material name="floor" rgba=".7 .65 .6 1"/>
-<material name="wall" rgba=".9 .88 .82 1"/>
 <material name="ceiling" rgba=".95 .95 .95 1"/>
-<material name="tiles" rgba=".92 .94 .94 1"/>
 <material name="gripper" rgba=".15 .15 .16 1" specular=".4"/>
 <material name="arm" rgba=".8 .8 .82 1" specular=".4"/>
 <material name="pads" rgba=".1 .1 .1 1" specular=".1"/>

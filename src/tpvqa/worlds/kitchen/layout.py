@@ -101,11 +101,11 @@ def draw_layout(rng: np.random.Generator, split: Split, sizes: Sizes) -> Layout:
     Args:
         rng: Decides everything.
         split: Which kind of room.
-        sizes: Extents of cabinet, wall_cabinet, sink, fridge, tv_stand and table.
+        sizes: Extents of counter, wall_cabinet, sink, fridge, tvstand and table.
     """
     sign = -1.0 if rng.random() < 0.5 else 1.0
     depth = float(rng.uniform(4.3, 5.3))
-    module, deep, top = sizes["cabinet"]
+    module, deep, top = sizes["counter"]
     modules = round(float(rng.uniform(2.4, 3.0)) / module)
     y = -deep / 2 - 0.005
     fridge_w, fridge_d, _ = sizes["fridge"]
@@ -144,13 +144,13 @@ def draw_layout(rng: np.random.Generator, split: Split, sizes: Sizes) -> Layout:
     uppers = tuple(
         Stand(stand.x, upper_y, 0.0, 1.45) for stand in cabinets[:modules] if rng.random() < 0.75
     )
-    tv = _tv_stand(rng, split, sign, width, depth, sizes["tv_stand"])
+    tv = _tv_stand(rng, split, sign, width, depth, sizes["tvstand"])
     table = _table(rng, width, depth, deep, tv, sizes)
     footprints = (
         *(Footprint(stand, (module / 2, deep / 2)) for stand in cabinets),
         Footprint(sink, (sink_w / 2, deep / 2)),
         Footprint(fridge, (fridge_w / 2, fridge_d / 2)),
-        Footprint(tv, (sizes["tv_stand"][0] / 2, sizes["tv_stand"][1] / 2)),
+        Footprint(tv, (sizes["tvstand"][0] / 2, sizes["tvstand"][1] / 2)),
         Footprint(table, (sizes["table"][0] / 2, sizes["table"][1] / 2)),
     )
     return Layout(
@@ -190,7 +190,7 @@ def _table(
     half_x, half_y = sizes["table"][0] / 2, sizes["table"][1] / 2
     walls_x = [-width / 2 + 0.5, width / 2 - 0.5]
     walls_y = [-depth + 0.5, -deep - 1.0]
-    reach = sizes["tv_stand"][1] + 1.3
+    reach = sizes["tvstand"][1] + 1.3
     if abs(tv.yaw) > 3:
         walls_y[0] = -depth + reach
     elif tv.x < 0:

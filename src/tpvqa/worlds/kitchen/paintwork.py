@@ -1,10 +1,12 @@
 """Colours and lights of a kitchen, changed without compiling it again."""
 
 import colorsys
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from tpvqa.worlds.kitchen.furniture import ROOM, ROOM_CHOICE
 from tpvqa.worlds.kitchen.rotation import Array
 
 
@@ -25,25 +27,30 @@ class Paintwork:
     Args:
         model: The compiled scene.
         material: Number of each material by name.
+        geom: Number of each geom by name.
     """
 
-    def __init__(self, model: Any, material: dict[str, int]):
+    def __init__(self, model: Any, material: Mapping[str, int], geom: Mapping[str, int]):
         self._model, self._material = model, material
+        self._surfaces = {
+            use: [k for name, k in geom.items() if name.split("_")[0] == use] for use in ROOM
+        }
         self._base = model.mat_rgba.copy()
         self._light_position = model.light_pos.copy()
         self._light_colour = model.light_diffuse.copy()
 
     def repaint(self, rng: np.random.Generator) -> None:
-        """Other colours for walls, floor and furniture."""
+        """Other textures and tints for the walls and the floor, and tints for the rest."""
         model = self._model
         model.mat_rgba[:] = self._base
-        for name, saturation, dark in (
-            ("wall", 0.4, 0.55),
-            ("floor", 0.45, 0.4),
-            ("tiles", 0.4, 0.55),
-            ("ceiling", 0.08, 0.85),
-        ):
-            model.mat_rgba[self._material[name], :3] = colour(rng, saturation=saturation, dark=dark)
+        for use, geoms in self._surfaces.items():
+            material = self._material[f"{use}{int(rng.integers(ROOM_CHOICE))}"]
+            model.geom_matid[geoms] = material
+            if rng.random() < 0.6:
+                model.mat_rgba[material, :3] = colour(rng, saturation=0.35, dark=0.7)
+        for name, material in self._material.items():
+            if name.startswith(("counter-", "sink-", "table-", "tvstand-", "wall-cabinet-")):
+                model.mat_rgba[material, :3] *= colour(rng, saturation=0.12, dark=0.8)
 
     def light(self, rng: np.random.Generator) -> None:
         """Other strength, colour and place of the lights."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from tpvqa.chance import chance_array
 from tpvqa.errors import UnknownNameError, WorldError
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.kitchen.cameras import Shot, choose
+from tpvqa.worlds.kitchen.cameras import Shot, choose, overview
 from tpvqa.worlds.kitchen.drawing import Drawing
 from tpvqa.worlds.kitchen.furniture import furnish
 from tpvqa.worlds.kitchen.gl import load_mujoco
@@ -17,12 +17,13 @@ from tpvqa.worlds.kitchen.grippers import draw_gripper, hand_pose, held_pose, pi
 from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, ITEMS, Household
 from tpvqa.worlds.kitchen.layout import Split
 from tpvqa.worlds.kitchen.paintwork import Paintwork
-from tpvqa.worlds.kitchen.rotation import Array, looking, quaternion
-from tpvqa.worlds.kitchen.sight import Sight
+from tpvqa.worlds.kitchen.rotation import Array, quaternion
 from tpvqa.worlds.kitchen.spots import Pose, Spots, halves
-from tpvqa.worlds.kitchen.truth import Shown, shown
+from tpvqa.worlds.kitchen.truth import Shown, objections, shown
 from tpvqa.worlds.kitchen.viewpoints import approach
 
+ATTEMPTS = 8
+"""Arrangements that are tried for one picture."""
 VIEWS = ("front", "left", "right", "overview")
 HIDDEN = 4
 """The geom group that is not drawn."""
@@ -53,11 +54,10 @@ class KitchenScene:
         self.data = mj.MjData(self.model)
         self.spots = Spots(self.furniture, seed)
         self._names()
-        self._paintwork = Paintwork(self.model, self._material)
+        self._paintwork = Paintwork(self.model, self._material, self._geom)
         self._gripper = draw_gripper(rng, split)
         self._door = self.furniture.models["fridge"].joints[0]
         self._drawing = Drawing(self.model, size)
-        self._sight = Sight(self.model, self.data)
         self._household: Household | None = None
         self._counts: Mapping[str, int] | None = None
         self._shadow = True
@@ -118,6 +118,7 @@ class KitchenScene:
         look: int,
         view: str = "front",
         placement: object = None,
+        fixed: Mapping[str, Pose] | None = None,
         steady: bool = False,
     ) -> None:
         """Put everything where the state says, and the camera where the robot stands.
@@ -127,6 +128,7 @@ class KitchenScene:
             look: Varies camera pose, hands and light.
             view: One of `views()`.
             placement: Varies where on their surfaces things lie; as `look` unless given.
+            fixed: Poses of items that are already decided, e.g. by how they fell.
             steady: Never move things to get a better picture of them.
 
         Raises:
@@ -136,38 +138,51 @@ class KitchenScene:
         if view not in VIEWS:
             raise UnknownNameError("view", view, VIEWS)
         household = Household.read(state)
-        key = look if placement is None else placement
-        best: tuple[float, dict[str, Pose], Shot] | None = None
-        for attempt in range(1 if steady else 6):
-            together = None if steady else household.near
-            poses = self.spots.place(household, (key, attempt), together=together)
-            rng = chance_array(self.seed, 0, "look", look, view, attempt)
-            shot, wrong = self._shoot(household, poses, view, rng)
-            if best is None or wrong < best[0]:
-                best = wrong, {**poses, **self.spots.loose((key, attempt))}, shot
-            if wrong <= 0:
-                break
-        assert best is not None
-        self.wrong, poses, shot = best
         self._household, self.view = household, view
-        self._set_scene(household, poses, shot, chance_array(self.seed, 0, "set", look, view))
+        key = look if placement is None else placement
+        wrong: dict[int, float] = {}
+        for attempt in range(ATTEMPTS):
+            wrong[attempt] = self._attempt(household, attempt, look, key, fixed, steady=steady)
+            if wrong[attempt] <= 0:
+                break
+        best = min(wrong, key=lambda attempt: wrong[attempt])
+        if best != attempt:
+            self._attempt(household, best, look, key, fixed, steady=steady)
+        self.wrong = wrong[best]
+
+    def _attempt(
+        self,
+        household: Household,
+        attempt: int,
+        look: int,
+        key: object,
+        fixed: Mapping[str, Pose] | None,
+        *,
+        steady: bool,
+    ) -> float:
+        """Arrange everything once; gives how much is wrong with the picture."""
+        together = None if steady else household.near
+        where = (key, 0 if steady else attempt)
+        poses = self.spots.place(household, where, together=together, fixed=fixed)
+        rng = chance_array(self.seed, 0, "look", look, self.view, attempt)
+        if self.view == "overview":
+            shot, wrong = overview(self.furniture.layout, rng), 0.0
+        else:
+            shot, wrong = self._shoot(household, poses, rng)
+        self._set_scene(household, poses | self.spots.loose(where), shot, rng)
+        if self.view == "overview":
+            return wrong
+        return 0.2 * wrong + objections(household, self.pixels(), size=self.size)
 
     def _shoot(
-        self, household: Household, poses: Mapping[str, Pose], view: str, rng: np.random.Generator
+        self, household: Household, poses: Mapping[str, Pose], rng: np.random.Generator
     ) -> tuple[Shot, float]:
-        layout = self.furniture.layout
-        if view == "overview":
-            corner = np.array([-1.0 if rng.random() < 0.5 else 1.0, -1.0])
-            x = corner[0] * (layout.width / 2 - 0.3)
-            position = np.array([x, -layout.depth + 0.3, rng.uniform(2.0, 2.3)])
-            middle = np.array([-0.1 * x, -layout.depth * 0.3, 0.7])
-            return Shot(position, looking(middle - position), float(rng.uniform(66, 74))), 0.0
         found, wanted = approach(household, self.spots, poses, rng)
-        side = {"left": -1.0, "right": 1.0}.get(view, 0.0)
+        side = {"left": -1.0, "right": 1.0}.get(self.view, 0.0)
         aside = 0.0
         if len(household.held) == 1:
             aside = 0.2 if "left" in household.held else -0.2
-        return choose(found, wanted, layout, rng, side=side, aside=aside)
+        return choose(found, wanted, self.furniture.layout, rng, side=side, aside=aside)
 
     def _set_scene(
         self,
@@ -299,6 +314,22 @@ class KitchenScene:
         if self._household is None:
             raise WorldError("Nothing was arranged yet: call arrange(state, look=…) first.")
         return self._household
+
+    def drop(self, item: str, *, at: Array, key: tuple[object, ...]) -> Pose:
+        """Let an item fall to the floor beside a point, by physics.
+
+        Args:
+            item: Which.
+            at: Where the robot stands.
+            key: Decides how it falls.
+        """
+        rng = chance_array(self.seed, 0, "drop", item, *key)
+        return self.spots.dropped(item, self.spots.floor_beside(at, 0.45, rng), rng)
+
+    @property
+    def robot(self) -> Array:
+        """Where the robot's camera is."""
+        return np.asarray(self.model.cam_pos[self._camera].copy())
 
     def close(self) -> None:
         """Free the canvas. Can be called twice."""

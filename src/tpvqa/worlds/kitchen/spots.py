@@ -8,6 +8,7 @@ import numpy as np
 
 from tpvqa.chance import chance_array
 from tpvqa.worlds.kitchen.assets import Model
+from tpvqa.worlds.kitchen.falling import come_to_rest
 from tpvqa.worlds.kitchen.furniture import Furniture
 from tpvqa.worlds.kitchen.household import Household
 from tpvqa.worlds.kitchen.layout import Area, Stand
@@ -59,7 +60,7 @@ class Spots:
                 if surface.name.startswith("shelf") and 0.45 < surface.pos[2] < 1.35
             ],
         }
-        x, y, z = models["tv_stand"].surface("top").pos
+        x, y, z = models["tvstand"].surface("top").pos
         top = layout.tv_stand.point(x, y, z)
         self._stand_top = Area(
             "tv", Stand(top[0], top[1], layout.tv_stand.yaw, top[2]), (0.55, 0.1)
@@ -73,25 +74,46 @@ class Spots:
         return Area(fixture, Stand(at[0], at[1], stand.yaw, at[2]), half, around)
 
     def place(
-        self, household: Household, key: tuple[object, ...], *, together: str | None = None
+        self,
+        household: Household,
+        key: tuple[object, ...],
+        *,
+        together: str | None = None,
+        fixed: Mapping[str, Pose] | None = None,
     ) -> dict[str, Pose]:
         """A pose for every item that lies on a fixture, directly or through another item.
 
         The draw of an item depends on the key, the item and where it lies, so an item stays
-        where it is while others move, unless it would have to share its place.
+        where it is while others move, unless it would have to share its place. The items
+        on the fixture `together` are put side by side; `fixed` ones are where they are.
         """
         models = self.furniture.models
         taken = [(pose.position, radius(models[name])) for name, pose in self.loose(key).items()]
-        poses: dict[str, Pose] = {}
+        poses: dict[str, Pose] = dict(fixed or {})
+        taken += [(pose.position, radius(models[item])) for item, pose in poses.items()]
         for item, place in household.where.items():
-            if place not in self.areas:
+            if place not in self.areas or item in poses:
                 continue
             rng = chance_array(self.seed, 0, "spot", item, place, *key)
-            others = [poses[x].position for x in poses if household.where[x] == place]
+            others = [poses[x].position for x in poses if household.where.get(x) == place]
             by = np.mean(others, axis=0) if others and place == together else None
             poses[item] = self._free(self.areas[place], models[item], rng, taken, by=by)
+            if place == "floor":
+                poses[item] = self.dropped(item, poses[item].position, rng)
             taken.append((poses[item].position, radius(models[item])))
         return poses | self.upon(household, poses, key)
+
+    def dropped(self, item: str, at: Array, rng: np.random.Generator) -> Pose:
+        """How an item lies after it fell to the floor at a point."""
+        position, axes = come_to_rest(self.furniture.models[item], rng)
+        return Pose(np.array([at[0], at[1], 0.0]) + position, axes)
+
+    def floor_beside(self, at: Array, away: float, rng: np.random.Generator) -> Array:
+        """The middle of a free patch of floor about so far away from a point."""
+        centres = np.array([area.stand.point(0, 0) for area in self.areas["floor"]])
+        distance = np.linalg.norm(centres[:, :2] - np.asarray(at)[:2], axis=1)
+        nearest = np.argsort(abs(distance - away))[:4]
+        return np.asarray(centres[int(rng.choice(nearest))])
 
     def upon(
         self, household: Household, poses: Mapping[str, Pose], key: tuple[object, ...]

@@ -83,6 +83,39 @@ def shown(
     }
 
 
+def objections(household: Household, pixels: Mapping[str, int], *, size: int) -> float:
+    """What a picture of a state lacks or shows too much: 0 is a good picture.
+
+    Args:
+        household: The true state.
+        pixels: As for `shown`.
+        size: Height of the picture that was counted.
+    """
+    scale = (size / REFERENCE) ** 2
+    near, subject = household.near, household.subject
+    wanted = {subject: 2.0, **dict.fromkeys(household.held.values(), 2.0)}
+    support = household.support(subject) if subject in ITEMS else None
+    if support == "fridge" and not household.opened:
+        wanted = {**{x: w for x, w in wanted.items() if x != subject}, "fridge": 2.0}
+    allowed = {near, subject, *household.held.values()}
+    if subject != "fridge":
+        allowed |= set(household.upon(near))
+        wanted |= dict.fromkeys(household.upon(near), 1.0)
+    place = household.where.get(subject)
+    while place in ITEMS:
+        allowed |= {place, *household.upon(place)}
+        place = household.where.get(place)
+    if "plate" in wanted and not household.clean:
+        wanted["dirt"] = 0.3 if household.upon("plate") else 1.0
+    lacking = sum(w for x, w in wanted.items() if pixels.get(x, 0) < ENOUGH[x] * scale)
+    surplus = sum(
+        1.0
+        for x in (*ITEMS, "tv", "sink", "fridge")
+        if x not in allowed and x != support and pixels.get(x, 0) > NOTHING * scale
+    )
+    return lacking + surplus
+
+
 def _on(
     household: Household, item: str, place: str, seen: Callable[..., bool], first_person: bool
 ) -> Shown:

@@ -24,14 +24,14 @@ def fixture_balls(furniture: Furniture, fixture: str, *, opened: bool) -> list[B
     balls: list[Ball] = []
     if fixture == "tv":
         width, _, height = models["tv"].extent
-        base = models["tv_stand"].extent[2]
+        base = models["tvstand"].extent[2]
         middle = base + height / 2
         balls += [
             (layout.tv_stand.point(x * width, 0, middle), height * 0.55) for x in (-0.3, 0.0, 0.3)
         ]
     elif fixture == "sink":
         basin = models["sink"].surface("basin")
-        at = layout.sink.point(basin.pos[0], basin.pos[1], models["cabinet"].extent[2])
+        at = layout.sink.point(basin.pos[0], basin.pos[1], models["counter"].extent[2])
         balls.append((at, max(basin.half) + 0.06))
         balls.append((at + np.array([0, 0, 0.15]), 0.15))
     elif fixture == "fridge":
@@ -135,7 +135,7 @@ def _fixture(
     furniture, layout = spots.furniture, spots.furniture.layout
     if fixture == "tv":
         _, _, height = furniture.models["tv"].extent
-        base = furniture.models["tv_stand"].extent[2]
+        base = furniture.models["tvstand"].extent[2]
         target = layout.tv_stand.point(0, 0, base + height / 2)
         return Approach(target, front_of(layout.tv_stand), 0.45, (1.1, 1.7), (1.15, 1.5))
     if fixture == "sink":
