@@ -48,7 +48,7 @@ class ImageWorld:
         arguments: str,
         *,
         simulation: Simulation,
-        simulator: str = "faults",
+        simulator: str = "state",
         pictures: str | None = None,
     ) -> "ImageWorld":
         """The world that a specification names: `images`, `images:paper`, `images:held_out`.
@@ -56,7 +56,7 @@ class ImageWorld:
         Args:
             arguments: Words between colons: "paper" (as `simulator`), "known" or "held_out".
             simulation: The true state and its faults.
-            simulator: "faults", or "paper" for the paper's simulator to the letter.
+            simulator: "state", or "paper" for the paper's simulator to the letter.
             pictures: Folder of the set; the shipped one by default.
 
         Raises:
@@ -75,8 +75,8 @@ class ImageWorld:
                     f"The world 'images' knows the words paper, known and held_out, not {word!r}. "
                     "Write for example images:paper or images:held_out."
                 )
-        if simulator not in ("faults", "paper"):
-            raise PluginError(f"There is no simulator {simulator!r}: write faults or paper.")
+        if simulator not in ("state", "paper"):
+            raise PluginError(f"There is no simulator {simulator!r}: write state or paper.")
         return cls(
             PaperSimulation.like(simulation) if simulator == "paper" else simulation,
             folder=None if pictures is None else Path(pictures),
