@@ -1,0 +1,5 @@
+"""`python -m tpvqa`."""
+
+from tpvqa.cli import main
+
+main()

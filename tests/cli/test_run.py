@@ -1,0 +1,178 @@
+"""`tpvqa run`, `resume`, `show` and `report`, as a user types them."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from tpvqa.cli import main
+from tpvqa.episodes import Ended, read_episode
+
+TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def tpvqa(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Run:
+    """Run the command in an empty folder: its exit code, stdout and stderr."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["tpvqa", *map(str, words)])
+        with pytest.raises(SystemExit) as end:
+            main()
+            raise SystemExit(0)
+        out, err = capsys.readouterr()
+        return int(end.value.code or 0), out, err
+
+    return run
+
+
+SYMBOLIC = ["--world", "symbolic", "--vlm", "oracle"]
+
+
+def test_a_trial_prints_its_plan_questions_decisions_and_end(tpvqa: Run) -> None:
+    code, out, _ = tpvqa("run", "clean_dishes", *SYMBOLIC, "--seed", 4)
+    assert code == 0
+    assert "plan find the plate · pick up the plate · find the sink · wash the plate" in out
+    assert "Is the plate clean? yes" in out
+    assert "goal reached" in out
+    assert Path("episodes/clean_dishes-seed4/episode.jsonl").exists()
+
+
+def test_json_has_the_promised_fields(tpvqa: Run) -> None:
+    code, out, _ = tpvqa("run", "eat_apple", *SYMBOLIC, "--json", "--out", "here")
+    result = json.loads(out)
+    assert code == 0
+    assert result["completed"] is True
+    assert result["ended_because"] == "goal"
+    assert result["episode"] == "here"
+    assert {"actions", "questions", "repeats", "replans"} <= set(result)
+
+
+def test_exit_code_one_where_the_goal_is_not_reached(tpvqa: Run) -> None:
+    code, out, _ = tpvqa("run", "clean_dishes", *SYMBOLIC, "--failure", 1, "--json")
+    assert code == 1
+    assert json.loads(out)["ended_because"] == "limit of repeats"
+
+
+def test_ones_own_domain_against_a_scripted_world(tpvqa: Run) -> None:
+    code, out, err = tpvqa(
+        *("run", "--domain", TOYS / "domain.pddl", "--problem", TOYS / "collect.pddl"),
+        *("--questions", TOYS / "questions.yaml", "--world", f"scripted:{TOYS / 'script.yaml'}"),
+        *("--vlm", "oracle"),
+    )
+    assert (code, err) == (0, "")
+    assert "find the cyan container" in out
+
+
+def test_without_a_questions_file_the_fallbacks_are_reported_once(tpvqa: Run) -> None:
+    code, _, err = tpvqa(
+        *("run", "--domain", TOYS / "domain.pddl", "--problem", TOYS / "collect.pddl"),
+        *("--failure", 0),
+    )
+    assert code == 0
+    notes = err.splitlines()
+    assert notes
+    assert len(notes) == len(set(notes))
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["run", "serve_breakfst"], "Did you mean 'serve_breakfast'?"),
+        (["run"], "Name a shipped task"),
+        (["run", "eat_apple", "--vlm", "orcle"], "Did you mean 'oracle'?"),
+        (["run", "eat_apple", "--monitor", "tpvka", *SYMBOLIC], "Did you mean 'tpvqa'?"),
+        (["run", "eat_apple", "--world", "kitchn"], "Did you mean 'kitchen'?"),
+        (["run", "eat_apple", "--world", "scripted:none.yaml"], "none.yaml: cannot be read"),
+        (["run", "--domain", "no.pddl", "--problem", "no.pddl"], "no.pddl"),
+        (["show", "nowhere"], "holds no episode"),
+        (["resume", "nowhere"], "holds no episode"),
+        (["report", "nowhere"], "holds no episode"),
+    ],
+)
+def test_bad_input_gets_one_clear_line_and_leaves_nothing(
+    tpvqa: Run, words: list[str], says: str
+) -> None:
+    code, out, err = tpvqa(*words)
+    assert code == 2
+    assert says in err
+    assert "Traceback" not in out + err
+    assert list(Path().iterdir()) == []
+
+
+def test_show_prints_the_same_trial_again(tpvqa: Run) -> None:
+    _, ran, _ = tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    code, shown, _ = tpvqa("show", "here")
+    assert code == 0
+    assert shown.splitlines() == ran.splitlines()[:-1]
+
+
+def test_the_report_needs_nothing_beside_it(tpvqa: Run) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    code, out, _ = tpvqa("report", "here")
+    assert code == 0
+    page = Path(out.strip()).read_text()
+    sources: list[str] = []
+
+    class Sources(HTMLParser):
+        def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+            sources.extend(
+                value
+                for name, value in attrs
+                if name in ("src", "href") and value and not value.startswith(("data:", "#"))
+            )
+
+    Sources().feed(page)
+    assert sources == []
+    for question in ("Is the fridge open?", "Is the apple cut in half?"):
+        assert question in page
+
+
+def test_a_report_of_an_unfinished_episode(tpvqa: Run) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    log = Path("here/episode.jsonl")
+    lines = log.read_bytes().splitlines(keepends=True)
+    for cut in range(1, len(lines)):
+        log.write_bytes(b"".join(lines[:cut]))
+        assert tpvqa("report", "here")[0] == 0
+        assert tpvqa("show", "here")[0] == 0
+    assert "unfinished" in Path("here/report.html").read_text()
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "tpvqa", "run", "eat_apple", *SYMBOLIC]
+    # Failing on and on, so that there is time to interrupt it.
+    command += ["--failure", "1", "--max-repeats", "100000", "--max-actions", "100000"]
+    process = subprocess.Popen(
+        [*command, "--out", "here"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    log = tmp_path / "here" / "episode.jsonl"
+    while not (log.exists() and log.stat().st_size > 20_000):
+        assert process.poll() is None
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert "Traceback" not in out + err
+    last = read_episode(tmp_path / "here")[-1]
+    assert isinstance(last, Ended)
+    assert last.because == "cancelled"
+    left = subprocess.run(["pgrep", "-g", str(process.pid)], capture_output=True, check=False)
+    assert left.stdout == b""
