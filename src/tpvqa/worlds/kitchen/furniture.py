@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.assets import Model, draw, families, kinds
+from tpvqa.worlds.kitchen.assets import Model, draw, families, kinds, soiled
 from tpvqa.worlds.kitchen.assets.textures import Use, draw_texture
-from tpvqa.worlds.kitchen.grippers import gripper_body
 from tpvqa.worlds.kitchen.household import HANDS, ITEMS
 from tpvqa.worlds.kitchen.layout import Layout, Split, Stand, draw_layout
 
@@ -20,7 +19,6 @@ ROOM_CHOICE = 3
 _NOT_LOOSE = {
     *ITEMS,
     "apple_half",
-    "dirt",
     "fridge",
     "tv",
     "tvstand",
@@ -59,7 +57,8 @@ def furnish(rng: np.random.Generator, split: Split) -> Furniture:
 
     models = {item: pick(item) for item in ITEMS}
     models["half"] = models["apple"].half or pick("apple_half")
-    models["dirt"] = pick("dirt")
+    models["plate"] = soiled(models["plate"], rng, held_out=split == "held_out")
+    models["gripper"] = pick("gripper")
     for fixture in ("table", "sink", "fridge", "tv", "tvstand", "counter", "wall_cabinet"):
         models[fixture] = pick(fixture)
     clutter = [kind for kind in kinds() if kind not in _NOT_LOOSE]
@@ -78,7 +77,11 @@ def furnish(rng: np.random.Generator, split: Split) -> Furniture:
         f'<body name="{name}" pos="0 0 -20">{models[name].mjcf_inside(name + "/")}</body>'
         for name in loose
     ]
-    bodies += [gripper_body(hand) for hand in HANDS]
+    bodies += [
+        f'<body name="{hand}" mocap="true" pos="0 0 -20">'
+        f"{models['gripper'].mjcf_inside(hand + '/')}</body>"
+        for hand in HANDS
+    ]
     for use, texture_use in ROOM.items():
         for k in range(ROOM_CHOICE):
             texture = draw_texture(texture_use, rng, held_out=split == "held_out")
@@ -126,10 +129,6 @@ def _fixtures(layout: Layout, models: Mapping[str, Model]) -> Iterable[str]:
 def _items(models: Mapping[str, Model]) -> Iterable[str]:
     for item in ITEMS:
         inside = models[item].mjcf_inside(f"{item}/")
-        if item == "plate" and not models[item].parts_with("dirt"):
-            x, y, z = models[item].surface("middle").pos
-            dirt = "\n".join(models["dirt"].mjcf_geoms("dirt/"))
-            inside += f'<body name="dirt" pos="{x} {y} {z + 0.0006}">{dirt}</body>'
         yield f'<body name="{item}" pos="0 0 -20"><freejoint name="{item}"/>{inside}</body>'
     for name in ("half_a", "half_b"):
         geoms = "\n".join(models["half"].mjcf_geoms(f"{name}/"))
@@ -177,9 +176,6 @@ _SCENE = """<mujoco model="kitchen">
 <asset>
 <texture type="skybox" builtin="gradient" rgb1=".8 .85 .9" rgb2=".5 .55 .6" width="64" height="64"/>
 <material name="ceiling" rgba=".95 .95 .95 1"/>
-<material name="gripper" rgba=".15 .15 .16 1" specular=".4"/>
-<material name="arm" rgba=".8 .8 .82 1" specular=".4"/>
-<material name="pads" rgba=".1 .1 .1 1" specular=".1"/>
 {assets}
 </asset>
 <worldbody>

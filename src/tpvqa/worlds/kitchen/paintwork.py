@@ -56,10 +56,10 @@ class Paintwork:
         """Other strength, colour and place of the lights."""
         model = self._model
         strength = float(rng.uniform(0.7, 1.3))
-        model.vis.headlight.ambient[:] = rng.uniform(0.34, 0.5) * colour(
+        model.vis.headlight.ambient[:] = rng.uniform(0.32, 0.46) * colour(
             rng, saturation=0.08, dark=0.92
         )
-        model.vis.headlight.diffuse[:] = rng.uniform(0.12, 0.35)
+        model.vis.headlight.diffuse[:] = rng.uniform(0.22, 0.42)
         for k in range(model.nlight):
             tint = colour(rng, saturation=0.15, dark=0.9)
             model.light_diffuse[k] = np.clip(

@@ -13,7 +13,7 @@ from tpvqa.worlds.kitchen.cameras import Shot, choose, overview
 from tpvqa.worlds.kitchen.drawing import Drawing
 from tpvqa.worlds.kitchen.furniture import furnish
 from tpvqa.worlds.kitchen.gl import load_mujoco
-from tpvqa.worlds.kitchen.grippers import draw_gripper, hand_pose, held_pose, pieces
+from tpvqa.worlds.kitchen.grippers import Hand, empty_hand, forearm, holding
 from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, ITEMS, Household
 from tpvqa.worlds.kitchen.layout import Split
 from tpvqa.worlds.kitchen.paintwork import Paintwork
@@ -55,7 +55,6 @@ class KitchenScene:
         self.spots = Spots(self.furniture, seed)
         self._names()
         self._paintwork = Paintwork(self.model, self._material, self._geom)
-        self._gripper = draw_gripper(rng, split)
         self._door = self.furniture.models["fridge"].joints[0]
         self._drawing = Drawing(self.model, size)
         self._household: Household | None = None
@@ -76,14 +75,18 @@ class KitchenScene:
         self._material = {n: k for k, n in enumerate(names(kinds.mjOBJ_MATERIAL, model.nmat))}
         self.geom_names = names(kinds.mjOBJ_GEOM, model.ngeom)
         self._geom = {n: k for k, n in enumerate(self.geom_names) if n}
+        joints = names(kinds.mjOBJ_JOINT, model.njnt)
+        self._joint = {n: int(model.jnt_qposadr[k]) for k, n in enumerate(joints)}
         self._group = model.geom_group.copy()
         self._camera = mj.mj_name2id(model, kinds.mjOBJ_CAMERA, "robot")
         self._mocap = {n: int(model.body_mocapid[k]) for n, k in self._body.items()}
         self._label = np.array([LABELS.index(self._label_of(n)) for n in self.geom_names])
+        dirt = LABELS.index("dirt")
         self._geoms_of: dict[str, list[int]] = {}
         for k, name in enumerate(self.geom_names):
             if self._group[k] < 3:
-                self._geoms_of.setdefault(name.split("/")[0], []).append(k)
+                thing = "dirt" if self._label[k] == dirt else name.split("/")[0]
+                self._geoms_of.setdefault(thing, []).append(k)
 
     def _label_of(self, geom: str) -> str:
         thing, _, part = geom.partition("/")
@@ -203,14 +206,12 @@ class KitchenScene:
         if self.view != "overview":
             drawn |= set(HANDS)
         for hand in HANDS:
-            tip, axes = hand_pose(hand, shot.axes, shot.position, rng)
-            width, item = self._gripper.open, household.held.get(hand)
+            gripper = empty_hand(hand, shot.axes, shot.position, rng)
+            item = household.held.get(hand)
             if item is not None:
-                thing = self.furniture.models[item]
-                position, rotation, axes = held_pose(thing, tip, axes, rng)
+                position, rotation, gripper = holding(self.furniture.models[item], gripper, rng)
                 placed[item] = Pose(position, rotation)
-                width = thing.grasps[0].width
-            self._set_hand(hand, tip, axes, width)
+            self._set_hand(hand, gripper, shot)
         if self.view == "overview":
             for item in household.hand_of:
                 placed.pop(item)
@@ -236,8 +237,7 @@ class KitchenScene:
                 model.body_quat[self._body[name]] = quaternion(poses[name].axes)
         low, high = np.radians(self._door.range)
         angle = rng.uniform(0.5, 0.85) * high if household.opened else low
-        joint = mj.mj_name2id(model, mj.mjtObj.mjOBJ_JOINT, "fridge/door_joint")
-        data.qpos[model.jnt_qposadr[joint]] = angle
+        data.qpos[self._joint["fridge/door_joint"]] = angle
         self._switch_tv(household.turned_on)
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)
@@ -269,19 +269,17 @@ class KitchenScene:
         self.data.qpos[address : address + 3] = pose.position
         self.data.qpos[address + 3 : address + 7] = quaternion(pose.axes)
 
-    def _set_hand(self, hand: str, tip: Array, axes: Array, width: float) -> None:
-        self.data.mocap_pos[self._mocap[hand]] = tip
-        self.data.mocap_quat[self._mocap[hand]] = quaternion(axes)
-        for piece, (position, size) in pieces(self._gripper, width).items():
-            geom = self._geom[f"{hand}/{piece}"]
-            self.model.geom_pos[geom] = position
-            self.model.geom_size[geom] = size
-            upright = piece in ("wrist", "arm")
-            self.model.geom_quat[geom] = [0.7071, 0.7071, 0, 0] if upright else [1, 0, 0, 0]
-            self.model.geom_rbound[geom] = float(np.linalg.norm(size)) + 0.1
-            palm = {"palm": 1, "wrist": 1, "arm": 2}.get(piece, 0)
-            material = self.model.geom_matid[geom]
-            self.model.mat_rgba[material, :3] = self._gripper.colours[palm]
+    def _set_hand(self, side: str, hand: Hand, shot: Shot) -> None:
+        self.data.mocap_pos[self._mocap[side]] = hand.tip
+        self.data.mocap_quat[self._mocap[side]] = quaternion(hand.axes)
+        for joint in self.furniture.models["gripper"].joints:
+            address = self._joint[f"{side}/{joint.body}_joint"]
+            if joint.kind == "ball":
+                wrist = np.array(joint.pos)
+                axes = forearm(side, hand, wrist, shot.axes, shot.position)
+                self.data.qpos[address : address + 4] = quaternion(axes)
+            else:
+                self.data.qpos[address] = hand.width / 2
 
     def render(self) -> NDArray[np.uint8]:
         """The picture of the last arrangement, size × size × 3.
