@@ -1,4 +1,7 @@
-"""How long `import tpvqa` and `tpvqa --help` take, in fresh processes: python benchmarks/startup.py"""
+"""How long `import tpvqa` and `tpvqa --help` take, in fresh processes.
+
+python benchmarks/startup.py
+"""
 
 import statistics
 import subprocess
