@@ -49,8 +49,14 @@ class Furniture:
     loose: tuple[str, ...]
 
 
-def furnish(rng: np.random.Generator, split: Split) -> Furniture:
-    """Choose a model for every thing, and put the fixtures into a random room."""
+def furnish(rng: np.random.Generator, split: Split, *, size: int) -> Furniture:
+    """Choose a model for every thing, and put the fixtures into a random room.
+
+    Args:
+        rng: Decides everything.
+        split: Which models, textures and layouts.
+        size: Height and width of the largest picture to draw, pixels.
+    """
 
     def pick(kind: str) -> Model:
         return draw(kind, rng, split=split if families(kind, split=split) else "all")
@@ -92,7 +98,9 @@ def furnish(rng: np.random.Generator, split: Split) -> Furniture:
                 f' texrepeat="{1 / texture.metres:.4g} {1 / texture.metres:.4g}"'
                 f' specular="{0.5 * texture.shine:.3g}"/>'
             ] = None
-    xml = _SCENE.format(assets="\n".join(assets), room=_room(layout), bodies="\n".join(bodies))
+    xml = _SCENE.format(
+        size=size, assets="\n".join(assets), room=_room(layout), bodies="\n".join(bodies)
+    )
     return Furniture(layout=layout, xml=xml, files=files, models=models, loose=tuple(loose))
 
 
@@ -171,7 +179,7 @@ _SCENE = """<mujoco model="kitchen">
   <headlight ambient=".36 .36 .36" diffuse=".15 .15 .15" specular="0 0 0"/>
   <quality shadowsize="1024" offsamples="4"/>
   <map znear="0.01" zfar="4" shadowclip="3"/>
-  <global offwidth="1024" offheight="1024"/>
+  <global offwidth="{size}" offheight="{size}"/>
 </visual>
 <asset>
 <texture type="skybox" builtin="gradient" rgb1=".8 .85 .9" rgb2=".5 .55 .6" width="64" height="64"/>

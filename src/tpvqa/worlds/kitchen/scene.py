@@ -47,7 +47,7 @@ class KitchenScene:
         self._mujoco = mj = load_mujoco()
         self.seed, self.split, self.size = seed, split, size
         rng = chance_array(seed, 0, "kitchen", split)
-        self.furniture = furnish(rng, split)
+        self.furniture = furnish(rng, split, size=size)
         self.model = mj.MjModel.from_xml_string(
             self.furniture.xml, assets=dict(self.furniture.files)
         )
