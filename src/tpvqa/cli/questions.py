@@ -4,9 +4,11 @@ import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
+
+from tpvqa.cli.plan import CRASHED, TIMED_OUT, UNSOLVABLE
 
 if TYPE_CHECKING:
     from tpvqa.pddl import Action, Task
@@ -14,7 +16,7 @@ if TYPE_CHECKING:
     from tpvqa.vlm import Answer
 
 _PLAN_EXIT = (
-    "Exit codes: 0 printed, 2 bad input, 3 the task has no plan, 4 planning took too long, "
+    "Exit codes: 0 printed, 2 bad input, 3 the task has no plan, 4 planning timed out, "
     "5 the planner crashed."
 )
 
@@ -34,14 +36,20 @@ def questions(
         Path | None,
         typer.Option("--questions", help="Questions for the domain; fallbacks without it."),
     ] = None,
-    timeout: Annotated[float, typer.Option(help="Seconds for planning.", min=0.001)] = 60.0,
+    timeout: Annotated[
+        float, typer.Option(help="Seconds for grounding, and for planning.", min=0.001)
+    ] = 60.0,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Print every question of a task's plan, action by action, for each way of asking."""
+    from tpvqa.errors import GroundingTimedOut
     from tpvqa.planning import Crashed, Plan, TimedOut, Unsolvable
     from tpvqa.plugins import Kind, make
 
-    loaded, book = _load(task, domain, problem, questions_file)
+    try:
+        loaded, book = _load(task, domain, problem, questions_file, timeout)
+    except GroundingTimedOut as error:
+        _no_questions(str(error), TIMED_OUT)
     planner = make(Kind.PLANNER, "fast-downward")
     try:
         result = planner.plan(loaded, timeout=timeout)
@@ -51,11 +59,13 @@ def questions(
         case Plan(actions):
             pass
         case Unsolvable(reason):
-            _no_questions(f"the task has no plan: {reason}", 3)
+            _no_questions(f"the task has no plan: {reason}", UNSOLVABLE)
         case TimedOut(limit):
-            _no_questions(f"planning took more than {limit:g} s; give it more by --timeout", 4)
+            _no_questions(
+                f"planning took more than {limit:g} s; give it more by --timeout", TIMED_OUT
+            )
         case Crashed(reason):
-            _no_questions(f"the planner crashed: {reason}", 5)
+            _no_questions(f"the planner crashed: {reason}", CRASHED)
     steps = list(_steps(loaded, book, actions))
     for notice in () if as_json else book.notices:
         print(f"note: {notice}", file=sys.stderr)
@@ -98,7 +108,11 @@ def ask(
 
 
 def _load(
-    task: str | None, domain: Path | None, problem: Path | None, questions_file: Path | None
+    task: str | None,
+    domain: Path | None,
+    problem: Path | None,
+    questions_file: Path | None,
+    timeout: float,
 ) -> "tuple[Task, QuestionBook]":
     from tpvqa.errors import TpvqaError
     from tpvqa.pddl import load_task
@@ -106,16 +120,16 @@ def _load(
     from tpvqa.tasks import find_task
 
     if task is None and domain is not None and problem is not None:
-        loaded = load_task(domain, problem)
+        loaded = load_task(domain, problem, timeout=timeout)
     elif task is not None and domain is None and problem is None:
-        loaded = load_task(task)
+        loaded = load_task(task, timeout=timeout)
         questions_file = questions_file or find_task(task).questions
     else:
         raise TpvqaError("Give either a shipped task, or both --domain and --problem.")
     return loaded, QuestionBook.load(questions_file, loaded)
 
 
-def _no_questions(why: str, code: int) -> None:
+def _no_questions(why: str, code: int) -> NoReturn:
     print(f"error: {why}", file=sys.stderr)
     raise typer.Exit(code)
 
