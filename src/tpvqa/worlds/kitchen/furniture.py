@@ -12,6 +12,8 @@ from tpvqa.worlds.kitchen.household import HANDS, ITEMS
 from tpvqa.worlds.kitchen.layout import Layout, Split, Stand, draw_layout
 
 DISTRACTORS = 7
+COVER = 0.6
+"""Share of the plate that the bread may hide."""
 ROOM: Mapping[str, Use] = {"wall": "wall", "floor": "floor", "tiles": "wall"}
 """Surfaces of the room itself, and the kind of texture that each has."""
 ROOM_CHOICE = 3
@@ -62,6 +64,10 @@ def furnish(rng: np.random.Generator, split: Split, *, size: int) -> Furniture:
         return draw(kind, rng, split=split if families(kind, split=split) else "all")
 
     models = {item: pick(item) for item in ITEMS}
+    for _ in range(10):  # bread that does not hide the plate below it
+        if _cover(models["bread"], models["plate"]) < COVER:
+            break
+        models["bread"] = pick("bread")
     models["half"] = models["apple"].half or pick("apple_half")
     models["plate"] = soiled(models["plate"], rng, held_out=split == "held_out")
     models["gripper"] = pick("gripper")
@@ -72,7 +78,8 @@ def furnish(rng: np.random.Generator, split: Split, *, size: int) -> Furniture:
     for k in range(min(DISTRACTORS, 2 * len(clutter))):
         models[f"loose{k}"] = pick(clutter[int(rng.integers(len(clutter)))])
         loose.append(f"loose{k}")
-    layout = draw_layout(rng, split, {name: model.extent for name, model in models.items()})
+    sizes = {name: model.extent for name, model in models.items()}
+    layout = draw_layout(rng, split, sizes, hinge=hinge_side(models["fridge"]))
     files: dict[str, bytes] = {}
     assets: dict[str, None] = {}
     for model in models.values():
@@ -102,6 +109,17 @@ def furnish(rng: np.random.Generator, split: Split, *, size: int) -> Furniture:
         size=size, assets="\n".join(assets), room=_room(layout), bodies="\n".join(bodies)
     )
     return Furniture(layout=layout, xml=xml, files=files, models=models, loose=tuple(loose))
+
+
+def hinge_side(fridge: Model) -> float:
+    """1 where the fridge's door hangs on its right, seen from the front; -1 on its left."""
+    return 1.0 if fridge.joints[0].pos[0] > 0 else -1.0
+
+
+def _cover(bread: Model, plate: Model) -> float:
+    """Share of the plate that bread on it hides from above."""
+    width, _, _ = plate.extent
+    return 1.27 * min(bread.extent[0], width) * bread.extent[1] / width**2
 
 
 def _flat(name: str) -> str:

@@ -7,6 +7,7 @@ in which the fingers close, z the one in which they point, x faces the robot's o
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tpvqa.worlds.kitchen.assets import Grasp, Model
 from tpvqa.worlds.kitchen.rotation import Array, about_z
@@ -64,13 +65,16 @@ def forearm(side: str, hand: Hand, wrist: Array, camera: Array, position: Array)
     return np.stack([x, np.cross(z, x), z], axis=1)
 
 
-def holding(model: Model, hand: Hand, rng: np.random.Generator) -> tuple[Array, Array, Hand]:
+def holding(
+    model: Model, hand: Hand, rng: np.random.Generator, *, level: float = 0.0
+) -> tuple[Array, Array, Hand]:
     """Where a held thing is, and how the gripper turns about its own z to show the thing's top.
 
     Args:
         model: What is held; its grasps say how.
         hand: The hand before it turns.
         rng: Varies how it is held.
+        level: From 0 to 1: how far a thing on which something lies is kept level.
 
     Returns:
         Position and axes of the thing, and the hand that holds it.
@@ -83,6 +87,11 @@ def holding(model: Model, hand: Hand, rng: np.random.Generator) -> tuple[Array, 
     if np.hypot(top[0], top[1]) > 0.2:  # the top is not along the fingers: turn it to the robot
         turn -= float(np.arctan2(top[1], top[0]))
     axes = hand.axes @ about_z(turn)
+    if level > 0:
+        up = (1 - level) * (axes @ top) + level * np.array([0, 0, 1.0])
+        along_hand = axes[:, 2] - up * (axes[:, 2] @ up) / (up @ up)
+        z, y = _unit(along_hand), _unit(up * np.sign(top[1] or 1.0))
+        axes = np.stack([np.cross(y, z), y, z], axis=1)
     rotation = axes @ own.T
     position = hand.tip - rotation @ np.asarray(grasp.offset)
     return position, rotation, Hand(hand.tip, axes, grasp.width)
@@ -99,6 +108,6 @@ def _grasp(model: Model, rng: np.random.Generator) -> Grasp:
     return grasp
 
 
-def _unit(vector: tuple[float, float, float]) -> Array:
+def _unit(vector: ArrayLike) -> Array:
     array = np.asarray(vector, float)
     return np.asarray(array / np.linalg.norm(array))

@@ -95,15 +95,18 @@ class Layout:
 Sizes = Mapping[str, tuple[float, float, float]]
 
 
-def draw_layout(rng: np.random.Generator, split: Split, sizes: Sizes) -> Layout:
+def draw_layout(rng: np.random.Generator, split: Split, sizes: Sizes, *, hinge: float) -> Layout:
     """Furnish a random room. Held-out rooms have the sink and the fridge on side walls.
+
+    The open door of the fridge hides what is in it from one side, so that side is the roomy one.
 
     Args:
         rng: Decides everything.
         split: Which kind of room.
         sizes: Extents of counter, wall_cabinet, sink, fridge, tvstand and table.
+        hinge: 1 where the fridge's door hangs on the right, seen from its front; -1 on the left.
     """
-    sign = -1.0 if rng.random() < 0.5 else 1.0
+    sign = -hinge if split == "train" else hinge
     depth = float(rng.uniform(4.3, 5.3))
     module, deep, top = sizes["counter"]
     modules = round(float(rng.uniform(2.4, 3.0)) / module)

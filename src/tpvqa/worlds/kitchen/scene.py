@@ -209,7 +209,12 @@ class KitchenScene:
             gripper = empty_hand(hand, shot.axes, shot.position, rng)
             item = household.held.get(hand)
             if item is not None:
-                position, rotation, gripper = holding(self.furniture.models[item], gripper, rng)
+                position, rotation, gripper = holding(
+                    self.furniture.models[item],
+                    gripper,
+                    rng,
+                    level=0.6 if household.upon(item) else 0.0,
+                )
                 placed[item] = Pose(position, rotation)
             self._set_hand(hand, gripper, shot)
         if self.view == "overview":

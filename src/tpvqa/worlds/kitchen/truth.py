@@ -98,15 +98,17 @@ def objections(household: Household, pixels: Mapping[str, int], *, size: int) ->
     if support == "fridge" and not household.opened:
         wanted = {**{x: w for x, w in wanted.items() if x != subject}, "fridge": 2.0}
     allowed = {near, subject, *household.held.values()}
-    if subject != "fridge":
+    for item in household.held.values():
+        allowed |= set(household.upon(item))
+    if near != "fridge":
         allowed |= set(household.upon(near))
         wanted |= dict.fromkeys(household.upon(near), 1.0)
-    place = household.where.get(subject)
-    while place in ITEMS:
+    place = household.where.get(subject) if support != "fridge" or household.opened else None
+    while place in (*ITEMS, "sink", "fridge"):  # what shares so small a place is seen with it
         allowed |= {place, *household.upon(place)}
         place = household.where.get(place)
-    if "plate" in wanted and not household.clean:
-        wanted["dirt"] = 0.3 if household.upon("plate") else 1.0
+    if "plate" in wanted and not household.clean and not household.upon("plate"):
+        wanted["dirt"] = 1.0
     lacking = sum(w for x, w in wanted.items() if pixels.get(x, 0) < ENOUGH[x] * scale)
     surplus = sum(
         1.0

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from tpvqa.worlds.kitchen.cameras import Approach, Ball, Wanted, front_of
-from tpvqa.worlds.kitchen.furniture import Furniture
+from tpvqa.worlds.kitchen.furniture import Furniture, hinge_side
 from tpvqa.worlds.kitchen.household import HOMES, ITEMS, Household
 from tpvqa.worlds.kitchen.rotation import Array
 from tpvqa.worlds.kitchen.spots import Pose, Spots, radius
@@ -39,16 +39,10 @@ def fixture_balls(furniture: Furniture, fixture: str, *, opened: bool) -> list[B
         wide = math.hypot(width, depth) / 2
         balls += [(layout.fridge.point(0, 0, z), wide) for z in np.arange(0.25, height, 0.35)]
         if opened:
-            side = hinge_side(furniture) * width / 2
+            side = hinge_side(furniture.models["fridge"]) * width / 2
             front = -depth / 2 - 0.3
             balls += [(layout.fridge.point(side, front, z), 0.35) for z in (0.6, 1.1, 1.5)]
     return balls
-
-
-def hinge_side(furniture: Furniture) -> float:
-    """1 where the fridge's door hangs on its right, seen from the front; -1 on its left."""
-    doors = furniture.models["fridge"].joints
-    return 1.0 if not doors or doors[0].pos[0] > 0 else -1.0
 
 
 def approach(
@@ -60,7 +54,11 @@ def approach(
     """How the robot looks at what it stands before."""
     furniture = spots.furniture
     subject = household.subject
-    exempt = set(household.hand_of) | set(household.upon(household.near)) | {household.near}
+    exempt = (
+        set(household.hand_of).union(*map(household.upon, household.hand_of))
+        | set(household.upon(household.near))
+        | {household.near}
+    )
     inside: list[Ball] = []
     seen = {subject}
     if subject in ITEMS:
@@ -68,8 +66,10 @@ def approach(
         place = household.where.get(subject)
         exempt |= set(household.upon(subject))
         while place in ITEMS:
-            exempt.add(place)
+            exempt |= {place, *household.upon(place)}
             place = household.where.get(place)
+        if support == "sink":
+            exempt |= set(household.upon("sink"))
         if support is None:  # it lies on something that a hand holds
             subject = household.where[subject]
             while subject in household.where:
@@ -86,7 +86,7 @@ def approach(
             seen.add(support)
     else:
         found = _fixture(household, spots, poses, subject, rng)
-        if subject in ("table", "counter", "floor"):
+        if household.near == subject and subject in ("table", "counter", "floor"):
             inside += [ball(poses[x], furniture, x) for x in household.upon(subject)]
         if subject == "fridge":
             exempt -= set(household.upon("fridge"))
@@ -114,7 +114,7 @@ def _item(spots: Spots, support: str, pose: Pose, item_ball: Ball) -> Approach:
         return Approach(target, front_of(layout.counter.stand), 0.6, (0.4, 0.6), (1.3, 1.5))
     if support == "sink":
         return Approach(target, front_of(layout.sink), 0.5, (0.35, 0.55), (1.25, 1.5))
-    hinge = hinge_side(spots.furniture)
+    hinge = hinge_side(spots.furniture.models["fridge"])
     return Approach(
         target,
         front_of(layout.fridge) - hinge * 0.25,
@@ -173,7 +173,7 @@ def _fridge(household: Household, furniture: Furniture, rng: np.random.Generator
     target: Array = layout.fridge.point(0, -depth / 2, float(rng.uniform(0.62, 0.72)) * height)
     front = front_of(layout.fridge)
     if household.opened:
-        hinge = hinge_side(furniture)
+        hinge = hinge_side(furniture.models["fridge"])
         return Approach(
             target, front + hinge * 0.65, 0.3, (1.0, 1.5), (1.3, 1.6), (0.15, -0.1, 0.2)
         )
