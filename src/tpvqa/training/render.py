@@ -25,7 +25,7 @@ from tpvqa.worlds.kitchen.layout import Split
 
 PART = 200
 """Pictures a part."""
-PER_KITCHEN = 20
+PER_KITCHEN = 25
 """Pictures of one kitchen; compiling the next takes as long as a few pictures."""
 _OVERVIEW = 0.04
 _SIDE = 0.16
@@ -107,7 +107,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(f"{len(seeds)} parts of {PART} pictures, {len(todo)} to render", flush=True)
     began = time.perf_counter()
     queue = iter(todo)
-    with ProcessPoolExecutor(chosen.processes, mp_context=get_context("spawn")) as pool:
+    context = get_context("spawn")
+    with ProcessPoolExecutor(chosen.processes, context, max_tasks_per_child=4) as pool:
         running = {pool.submit(_render, part) for _, part in zip(range(chosen.processes), queue)}  # noqa: B905
         done = 0
         while running:
