@@ -2,13 +2,16 @@
 
 import asyncio
 import socket
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 import pytest
 
 from tests.vlm.chat_server import LEFTOVER, Act, ChatServer, Request, Script, completion, refusal
-from tpvqa.errors import AnswerError, PluginError
+from tpvqa.errors import AnswerError, MissingExtraError, PluginError
 from tpvqa.observation import Frame, Observation
 from tpvqa.plugins import Kind, make
 from tpvqa.questions import Question, Way
@@ -273,7 +276,7 @@ def picky(request: Request, _before: int) -> Act | None:
             code="unsupported_parameter",
         )
     if "logprobs" in body:
-        return refusal(403 - 3, "You are not allowed to request logprobs from this model")
+        return refusal(403, "You are not allowed to request logprobs from this model")
     if "temperature" in body:
         return refusal(400, "Only the default is supported", param="temperature")
     if body.get("max_completion_tokens", 0) < 100:
@@ -294,10 +297,18 @@ def test_a_reasoning_model_is_asked_as_it_wants_and_only_found_out_once() -> Non
     assert len(server.requests) == found_out + 2
 
 
-def test_fewer_alternatives_are_asked_for_where_the_server_limits_them() -> None:
+@pytest.mark.parametrize(
+    "complaint",
+    [
+        "top_logprobs must be less than or equal to 5",
+        "Cannot request more than 5 logprobs.",
+        "20 is greater than the maximum of 5 - 'logprobs'",
+    ],
+)
+def test_fewer_alternatives_are_asked_for_where_the_server_limits_them(complaint: str) -> None:
     def limited(request: Request, _before: int) -> Act | None:
         if request.body.get("top_logprobs", 0) > 5:
-            return refusal(400, "top_logprobs must be less than or equal to 5")
+            return refusal(400, complaint)
         return None
 
     with ChatServer(scripted, script=limited) as server:
@@ -329,13 +340,14 @@ def test_a_filtered_picture_is_unknown() -> None:
         (Act(401, {"error": {"message": "Incorrect API key sk-12345"}}), "OPENAI_API_KEY"),
         (Act(404, {"error": {"message": "The model `test` does not exist"}}), "does not exist"),
         (Act(400, {"error": {"message": "image input is not supported"}}), "take pictures"),
+        (Act(500, {"error": {"message": "image input is not supported"}}), "take pictures"),
         (
             Act(429, {"error": {"message": "You exceeded", "code": "insufficient_quota"}}),
             "credit",
         ),
         (Act(200, "<!doctype html>", {"Content-Type": "text/html"}), "web page"),
     ],
-    ids=["key", "model", "blind", "quota", "web page"],
+    ids=["key", "model", "blind", "blind, as llama.cpp says it", "quota", "web page"],
 )
 def test_what_no_retry_mends_is_an_error_with_its_remedy(act: Act, remedy: str) -> None:
     with ChatServer(scripted, script=always(act)) as server:
@@ -411,3 +423,42 @@ def test_it_is_made_from_a_specification_whose_model_has_colons() -> None:
     assert vlm.name == "openai:llama3.2-vision:11b"
     with pytest.raises(PluginError, match="openai:MODEL"):
         make(Kind.VLM, "openai")
+
+
+def test_without_the_package_it_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda _name: None)
+    with pytest.raises(MissingExtraError, match=r"pip install 'tpvqa\[openai\]'"):
+        OpenAICompatibleVLM("test", base_url="http://127.0.0.1:1/v1")
+
+
+ASK_SLOWLY = """
+import signal, sys, threading, time
+from tests.vlm.test_openai_compatible import look, questions
+from tpvqa.vlm.openai_compatible import OpenAICompatibleVLM
+vlm = OpenAICompatibleVLM("test", base_url=sys.argv[1])
+main = threading.main_thread().ident
+def interrupt():
+    time.sleep(0.5)
+    signal.pthread_kill(main, signal.SIGINT)
+threading.Thread(target=interrupt).start()
+try:
+    vlm.ask(look(), questions("Is the plate clean?"))
+except KeyboardInterrupt:
+    vlm.close()
+    print("interrupted")
+"""
+
+
+def test_an_interrupt_ends_waiting_at_once() -> None:
+    with ChatServer(scripted, script=always(Act(wait=30.0))) as server:
+        started = time.monotonic()
+        done = subprocess.run(
+            [sys.executable, "-c", ASK_SLOWLY, server.url],
+            cwd=Path(__file__).parents[2],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        seconds = time.monotonic() - started
+    assert (done.stdout, done.stderr) == ("interrupted\n", "")
+    assert seconds < 20

@@ -56,7 +56,7 @@ class Dialect:
         complaint = complaint.lower()
         if self.logprobs and re.search(r"log_?prob", complaint):
             at_most = re.search(
-                r"(?:<=|at most|up to|maximum[^\d]*|less than or equal to)\s*(\d+)", complaint
+                r"(?:<=|at most|more than|maximum[^\d]*|equal to)\s*(\d+)", complaint
             )
             fewer = int(at_most[1]) if at_most else 0
             return replace(self, logprobs=fewer if 0 < fewer < self.logprobs else 0)
@@ -185,6 +185,19 @@ def _tokens(logprobs: Any) -> list[Token]:
         )
         for token in content
     ]
+
+
+def refuses_form(status: int, said: str) -> bool:
+    """Whether a server complains of how it is asked, so that the same again would not help.
+
+    OpenAI forbids logprobs of its reasoning models with 403, llama.cpp answers a picture that the
+    model cannot take with 500.
+    """
+    if status in (400, 415, 422):
+        return True
+    of_logprobs = status in (403, 500, 501) and re.search(r"log_?prob", said, re.I)
+    pictures = r"(image|picture|vision|multimodal).*(not|un)[ -]?support|unsupported.*image"
+    return bool(of_logprobs or (status >= 500 and re.search(pictures, said, re.I)))
 
 
 def complaint(body: object) -> Mapping[str, str]:

@@ -22,6 +22,7 @@ from tpvqa.vlm.chat_completions import (
     complaint,
     messages,
     read_completion,
+    refuses_form,
 )
 
 if TYPE_CHECKING:
@@ -271,6 +272,10 @@ class OpenAICompatibleVLM:
     def _refused(self, error: "APIStatusError") -> Reading | str:
         status, parts = error.status_code, complaint(error.body)
         said = ", ".join(parts.values()) or f"HTTP status {status}"
+        if any("content_" in value for key, value in parts.items() if key in ("code", "type")):
+            return Reading(Reply.UNKNOWN, text=f"refused: {said}")
+        if refuses_form(status, said):
+            return said
         if status in (401, 403):
             raise AnswerError(
                 f"{self._where()} refuses the key (HTTP status {status}). Set the environment "
@@ -287,10 +292,6 @@ class OpenAICompatibleVLM:
             pause = error.response.headers.get("retry-after", "")
             wanted = float(pause) if pause.replace(".", "", 1).isdecimal() else None
             raise _Again(f"HTTP status {status}: {said}", pause=wanted)
-        if any("content_" in value for key, value in parts.items() if key in ("code", "type")):
-            return Reading(Reply.UNKNOWN, text=f"refused: {said}")
-        if status in (400, 415, 422):
-            return said
         raise AnswerError(f"{self._where()} refuses to be asked (HTTP status {status}): {said}")
 
     def _where(self) -> str:
