@@ -65,11 +65,11 @@ def test_every_way_of_asking_has_its_share(tmp_path: Path) -> None:
     words = np.array(["", *ASKING.lexicon.vocabulary])
     first = words[asked.tokens[:, :, :3]]
     ways = {
-        "possible": np.isin(first[:, :, 0], ["can", "could"]) | (first[:, :, 2] == "possible"),
+        "possible": (first[:, :, 0] == "could") | (first[:, :, 2] == "possible"),
         "did": first[:, :, 0] == "did",
     }
     for way, place in (("possible", slice(4, 6)), ("did", slice(8, 10))):
-        assert ways[way][:, place].mean() > 0.4
+        assert ways[way][:, place].mean() > 0.3
         assert not ways[way][:, :4].any()
     # No answer drowns the others.
     shares = np.bincount(asked.answers[asked.answers >= 0], minlength=3) / asked.answers.size
