@@ -7,6 +7,7 @@ from threading import Lock, Thread
 from typing import Any, TypeVar
 
 T = TypeVar("T")
+_SECONDS_TO_END = 2.0
 
 
 class BackgroundLoop:
@@ -19,6 +20,7 @@ class BackgroundLoop:
         self._lock = Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._process = 0
+        self._thread: Thread | None = None
 
     def run(self, coroutine: Coroutine[Any, Any, T]) -> T:
         """Run a coroutine to its end and return what it returns.
@@ -38,19 +40,32 @@ class BackgroundLoop:
         return self._loop is None or self._process != os.getpid()
 
     def close(self) -> None:
-        """End the thread. Can be called twice; `run` starts it again."""
+        """Cancel what still runs and end the thread. Can be called twice; `run` starts it again."""
         with self._lock:
             loop, self._loop = self._loop, None
         if loop is not None and self._process == os.getpid():
-            loop.call_soon_threadsafe(loop.stop)
+            asyncio.run_coroutine_threadsafe(_cancel_all(), loop)
+            if self._thread is not None:
+                self._thread.join(_SECONDS_TO_END)
 
     def _started(self) -> asyncio.AbstractEventLoop:
         with self._lock:
             # A forked process inherits the loop, but not the thread that runs it.
             if self._loop is None or self._process != os.getpid():
                 self._loop, self._process = asyncio.new_event_loop(), os.getpid()
-                Thread(target=_run, args=(self._loop,), name="tpvqa-vlm", daemon=True).start()
+                self._thread = Thread(
+                    target=_run, args=(self._loop,), name="tpvqa-vlm", daemon=True
+                )
+                self._thread.start()
             return self._loop
+
+
+async def _cancel_all() -> None:
+    others = asyncio.all_tasks() - {asyncio.current_task()}
+    for task in others:
+        task.cancel()
+    await asyncio.gather(*others, return_exceptions=True)
+    asyncio.get_running_loop().stop()
 
 
 def _run(loop: asyncio.AbstractEventLoop) -> None:
