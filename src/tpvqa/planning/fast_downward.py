@@ -4,7 +4,7 @@ import time
 from typing import Any
 
 from tpvqa.errors import PDDLError, PlannerError
-from tpvqa.pddl import State, Task
+from tpvqa.pddl import State, Task, validate
 from tpvqa.pddl.loading import to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
@@ -82,10 +82,10 @@ class FastDownward:
             reply = {"outcome": {"kind": "timeout"}}
         except PlannerError as error:
             reply = {"outcome": {"kind": "crash", "reason": str(error)}}
-        return self._result(task, reply, limit, start)
+        return self._result(task, state, reply, limit, start)
 
     def _result(
-        self, task: Task, reply: dict[str, Any], limit: float | None, start: float
+        self, task: Task, state: State, reply: dict[str, Any], limit: float | None, start: float
     ) -> PlanningResult:
         if "error" in reply:
             raise PDDLError(reply["error"][0], line=reply["error"][2])
@@ -93,6 +93,10 @@ class FastDownward:
         if outcome["kind"] == "plan":
             actions = tuple(task.action(words[0], words[1:]) for words in outcome["steps"])
             cost = sum(action.cost for action in actions)
+            replay = validate(task, actions, state)
+            if not replay.valid:
+                reason = f"the plan that came back does not work: {replay}"
+                return Crashed(reason, self.name, time.perf_counter() - start)
             return Plan(actions, cost, self.name, time.perf_counter() - start)
         seconds = time.perf_counter() - start
         if outcome["kind"] == "timeout":

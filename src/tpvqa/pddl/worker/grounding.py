@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from io import StringIO
 from typing import Any
 
@@ -101,7 +102,6 @@ class Grounding:
         self.mutex_groups = [frozenset(map(key_of, group)) for group in groups if len(group) > 1]
         self.initial = task.init
         self._metric = task.use_min_cost_metric
-        self._template: Template | None = None
 
     @property
     def goal_reachable(self) -> bool:
@@ -121,14 +121,12 @@ class Grounding:
             and all(len(fluent & group) <= 1 for group in self.mutex_groups)
         )
 
-    @property
-    def template(self) -> Template:
-        """The SAS+ text; written on first use."""
-        if self._template is None:
-            self._template = self._write()
-        return self._template
+    @cached_property
+    def template(self) -> Template | None:
+        """The SAS+ text, written on first use; None where the goal asks for two of a group."""
+        return self._write()
 
-    def _write(self) -> Template:
+    def _write(self) -> Template | None:
         ranges, places = translator.strips_to_sas_dictionary(self._groups, assert_partial=True)
         mutex_ranges, mutex_places = translator.strips_to_sas_dictionary(
             self._all_groups, assert_partial=False
@@ -147,6 +145,8 @@ class Grounding:
             self._metric,
             {},
         )
+        if task.variables.value_names is not self._names:
+            return None  # the translator saw that the goal violates a mutex group
         # Which atom each value stands for is read from the names, as variables are about to move.
         by_name = {str(to_fact(key)): key for key in self.atoms}
         variable_order.find_and_apply_variable_order(task, True, True)

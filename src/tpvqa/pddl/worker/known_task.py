@@ -110,6 +110,8 @@ class KnownTask:
             return Outcome("plan")
         with _quiet():
             template = grounding.template
+        if template is None:
+            return Outcome("unsolvable", reason="the goal asks for facts that exclude each other")
         search = searches["simple" if template.simple else "other"]
         left = None if end is None else max(0.0, end - time.monotonic())
         return searcher.run(template.fill(fluent), search, seconds=left, memory=memory)
