@@ -60,6 +60,7 @@ class KitchenScene:
         self._household: Household | None = None
         self._counts: Mapping[str, int] | None = None
         self._shadow = True
+        self._where: tuple[object, ...] = ()
         self.wrong = 0.0
         self.view = "front"
         self.repaint(0)
@@ -165,7 +166,7 @@ class KitchenScene:
     ) -> float:
         """Arrange everything once; gives how much is wrong with the picture."""
         together = None if steady else household.near
-        where = (key, 0 if steady else attempt)
+        self._where = where = (key, 0 if steady else attempt)
         poses = self.spots.place(household, where, together=together, fixed=fixed)
         rng = chance_array(self.seed, 0, "look", look, self.view, attempt)
         if self.view == "overview":
@@ -241,7 +242,8 @@ class KitchenScene:
                 model.body_pos[self._body[name]] = poses[name].position
                 model.body_quat[self._body[name]] = quaternion(poses[name].axes)
         low, high = np.radians(self._door.range)
-        angle = rng.uniform(0.5, 0.85) * high if household.opened else low
+        turn = chance_array(self.seed, 0, "door", *self._where).uniform(0.5, 0.85)
+        angle = turn * high if household.opened else low
         data.qpos[self._joint["fridge/door_joint"]] = angle
         self._switch_tv(household.turned_on)
         mj.mj_kinematics(model, data)

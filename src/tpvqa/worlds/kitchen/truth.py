@@ -22,6 +22,8 @@ ENOUGH: Mapping[str, int] = {
     "hand": 60,
 }
 """Pixels of a 224 × 224 picture from which a person knows the thing."""
+CLEARLY: Mapping[str, int] = {"plate": 900, "bread": 700, "apple": 400, "knife": 220}
+"""As many of a held thing in a good picture; less is still known."""
 NOTHING = 3
 """Up to this many pixels nobody sees."""
 REFERENCE = 224
@@ -110,6 +112,7 @@ def objections(household: Household, pixels: Mapping[str, int], *, size: int) ->
     if "plate" in wanted and not household.clean and not household.upon("plate"):
         wanted["dirt"] = 1.0
     lacking = sum(w for x, w in wanted.items() if pixels.get(x, 0) < ENOUGH[x] * scale)
+    lacking += sum(0.5 for x in household.held.values() if pixels.get(x, 0) < CLEARLY[x] * scale)
     surplus = sum(
         1.0
         for x in (*ITEMS, "tv", "sink", "fridge")
