@@ -16,7 +16,9 @@ from tpvqa.tasks import shipped_tasks
 PER_TASK, PER_SAMPLE = 40, 11  # 3 × 40 + 18 × 11 = 318 states
 
 
-def judge(task: Task, states: list[State], folder: Path, *, search: str, val: bool) -> tuple[int, int]:
+def judge(
+    task: Task, states: list[State], folder: Path, *, search: str, val: bool
+) -> tuple[int, int]:
     """Plan from every state, compare with the judges; how many had a plan and how many none."""
     planner = FastDownward()
 
@@ -26,7 +28,9 @@ def judge(task: Task, states: list[State], folder: Path, *, search: str, val: bo
         own.mkdir()
         result = planner.plan(task, state)
         assert isinstance(result, Plan | Unsolvable), result
-        assert isinstance(result, Plan) == solvable(task, state, own, search=search), sorted(map(str, state))
+        assert isinstance(result, Plan) == solvable(task, state, own, search=search), sorted(
+            map(str, state)
+        )
         if isinstance(result, Unsolvable):
             return False
         assert validate(task, result.actions, state).valid

@@ -86,7 +86,7 @@ def task_from_text(
     objects_by_type = {
         kind: tuple(things) for kind, things in description["objects_by_type"].items()
     }
-    return Task(
+    task = Task(
         name=description["name"],
         domain_name=description["domain_name"],
         objects=dict(description["objects"]),
@@ -113,6 +113,12 @@ def task_from_text(
         problem_text=problem,
         **_grounded(description),
     )
+    if task.axioms:
+        try:
+            task.derivation(task.init)  # so that axioms which cannot be layered are told now
+        except PDDLError as error:
+            raise PDDLError(str(error), file=domain_path or "(domain)") from None
+    return task
 
 
 def grounded_parts(task: Task, state: State) -> dict[str, Any]:
@@ -155,7 +161,10 @@ def _described(
         path = paths[part == "problem"]
         raise PDDLError(message, file=path or f"({part})", line=line)
     if "outcome" in reply:
-        raise PlannerError(f"the task cannot be grounded: {reply['outcome']['reason']}")
+        reason = f"the task cannot be grounded: {reply['outcome']['reason']}"
+        if reply["outcome"]["kind"] == "memory":
+            raise PlannerError(reason)
+        raise PDDLError(reason, file=paths[0] or "(domain)")
     description: dict[str, Any] = reply["task"]
     return description
 

@@ -67,6 +67,9 @@ def read_block(text: str) -> Block:
             closed = open_blocks.pop()
             if open_blocks:
                 open_blocks[-1].append(closed)
+            elif closed[:1] != ["define"]:
+                start = str(closed[0]) if closed else ")"
+                raise LispError(f"expected '(define …)', got '({start}'", closed.line)
             else:
                 result = closed
         else:

@@ -60,38 +60,44 @@ def read(domain_text: str, problem_text: str) -> Any:
     try:
         task = parsing_functions.parse_task(blocks["domain"], blocks["problem"])
     except _LocatedError as error:
-        raise _explained(error) from None
+        raise _explained(error, blocks) from None
     except (ParseError, ValueError) as error:
         raise ReadingError(str(error), "domain", None) from None
     except RecursionError:
         raise ReadingError("the parentheses are nested too deeply", "domain", None) from None
     except (AssertionError, AttributeError, IndexError, KeyError, TypeError) as error:
-        part, line = _innermost(error.__traceback__, blocks)
+        part, line = _innermost(error.__traceback__)
         raise ReadingError(
             f"the translator cannot make sense of this definition ({type(error).__name__} {error})",
             part,
             line,
         ) from None
     _check_types(task, blocks)
-    _check_derived(task, blocks)
-    _check_names(task, blocks)
+    _check_derived(task)
+    _check_names(task)
+    _check_costs(task)
     return task
 
 
-def _explained(error: _LocatedError) -> ReadingError:
+def _explained(error: _LocatedError, blocks: dict[str, Block]) -> ReadingError:
+    if "duplicate object" in error.message:
+        name = error.message.split(":")[1].split(",")[0].strip()
+        part, line = _find(name, dict(reversed(blocks.items())))
+        message = f"the object {name!r} is declared twice; expected it once"
+        return ReadingError(message, part, line)
     layers = " / ".join(layer.removeprefix("Parsing ") for layer in error.layers[1:4])
     message = " ".join(error.message.replace("Reason: ", "").split()).rstrip(".")
     if error.item is not None and not isinstance(error.item, ParseError):
         message += f": got {_shown(error.item)}"
-    near = _similar(error)
-    if near:
-        message += f" (did you mean {near!r}?)"
+    message += _names_that_exist(error)
     if error.syntax:
         message += f"; expected {error.syntax}"
     if layers:
         message += f" [in {layers}]"
-    part, line = _innermost(error.__traceback__, {})
-    if error.layers:
+    part, line = _innermost(error.__traceback__)
+    if "does not match the name specified" in error.message:
+        part, line = _find(":domain", blocks)
+    elif error.layers:
         part = "problem" if error.layers[0] == "Parsing problem" else "domain"
     elif "problem" in error.message:
         part = "problem"
@@ -103,9 +109,10 @@ def _shown(item: object) -> str:
     return repr(text if len(text) <= 80 else text[:77] + "…")
 
 
-def _similar(error: _LocatedError) -> str | None:
+def _names_that_exist(error: _LocatedError) -> str:
+    """What may have been meant by an unknown name."""
     if not isinstance(error.item, str):
-        return None
+        return ""
     known: set[str] = set()
     trace = error.__traceback__
     while trace is not None:
@@ -117,11 +124,14 @@ def _similar(error: _LocatedError) -> str | None:
         elif "predicate name" in error.message:
             known = set(names.get("predicate_dict", known))
         trace = trace.tb_next
-    near = get_close_matches(error.item, [str(name) for name in known], n=1)
-    return near[0] if near else None
+    names = sorted(str(name) for name in known)
+    near = get_close_matches(error.item, names, n=1)
+    if near:
+        return f" (did you mean {near[0]!r}?)"
+    return f"; expected one of: {', '.join(names[:12])}" if names else ""
 
 
-def _innermost(trace: TracebackType | None, blocks: dict[str, Block]) -> tuple[str, int | None]:
+def _innermost(trace: TracebackType | None) -> tuple[str, int | None]:
     """The part and the line that the parser was reading when it gave up."""
     line, part = None, "domain"
     while trace is not None:
@@ -176,7 +186,7 @@ def _check_types(task: Any, blocks: dict[str, Block]) -> None:
                 )
 
 
-def _check_derived(task: Any, blocks: dict[str, Block]) -> None:
+def _check_derived(task: Any) -> None:
     """Derived facts follow from axioms; nothing else may make them true."""
     derived = {axiom.name for axiom in task.axioms}
     predicates = {predicate.name: predicate for predicate in task.predicates}
@@ -215,7 +225,7 @@ def _check_derived(task: Any, blocks: dict[str, Block]) -> None:
             )
 
 
-def _check_names(task: Any, blocks: dict[str, Block]) -> None:
+def _check_names(task: Any) -> None:
     """Two actions of one name would make a plan ambiguous."""
     seen: set[str] = set()
     for action in task.actions:
@@ -226,6 +236,34 @@ def _check_names(task: Any, blocks: dict[str, Block]) -> None:
                 line_of(action.name),
             )
         seen.add(action.name)
+
+
+def _check_costs(task: Any) -> None:
+    """The translator does not compare how functions are used with how they are given values."""
+    things = {thing.name for thing in task.objects}
+    for action in task.actions:
+        called = action.cost.expression if action.cost else None
+        if not isinstance(called, pddl.PrimitiveNumericExpression):
+            continue
+        known = things | {parameter.name for parameter in action.parameters}
+        for word in called.args:
+            if word not in known:
+                raise ReadingError(
+                    f"the cost of the action {str(action.name)!r} speaks of {str(word)!r}; "
+                    "expected one of its parameters or an object",
+                    "domain",
+                    line_of(word),
+                )
+        for fact in task.init:
+            if not isinstance(fact, pddl.Assign) or fact.fluent.symbol != called.symbol:
+                continue
+            if len(fact.fluent.args) != len(called.args):
+                raise ReadingError(
+                    f"the function {str(called.symbol)!r} has {len(fact.fluent.args)} arguments "
+                    f"here, but {len(called.args)} in the cost of the action {str(action.name)!r}",
+                    "problem",
+                    line_of(fact.fluent.symbol),
+                )
 
 
 def _find(word: str, blocks: dict[str, Block]) -> tuple[str, int | None]:

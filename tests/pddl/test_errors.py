@@ -1,0 +1,177 @@
+"""Bad input: file, line, what is wrong and what was expected."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.pddl.feature_domains import SAMPLES
+from tpvqa.errors import PDDLError, UnknownNameError
+from tpvqa.pddl import load_task, task_from_text
+
+DOMAIN = """(define (domain lamps)
+  (:requirements :typing :negative-preconditions)
+  (:types lamp)
+  (:predicates (lit ?l - lamp) (mended ?l - lamp))
+  (:action switch_on
+    :parameters (?l - lamp)
+    :precondition (not (lit ?l))
+    :effect (lit ?l)))
+"""
+PROBLEM = """(define (problem night)
+  (:domain lamps)
+  (:objects a b - lamp)
+  (:init (lit a))
+  (:goal (and (lit a)
+              (lit b))))
+"""
+
+BROKEN_DOMAINS = [
+    ("(lit ?l)))", "(lit ?l))", 1, r"a '\)' is missing.*\(define"),
+    ("(lit ?l)))", "(lit ?l))))", 8, r"'\)' stands after the end.*too many"),
+    ("(not (lit ?l))", "(not (lid ?l))", 7, "lid.*did you mean 'lit'"),
+    ("(not (lit ?l))", "(not (lit ?l ?l))", 7, "arity 1 used with 2 arguments"),
+    ("(not (lit ?l))", "(not (lit ?k))", 7, "Undefined variable"),
+    ("(not (lit ?l))", "(not)", 7, "'not' expects exactly one argument"),
+    ("(?l - lamp)\n", "(?l - lamb)\n", 6, "type 'lamb'.*not declared.*did you mean 'lamp'"),
+    (":negative-preconditions", ":negative", 2, "requirement.*:negative-preconditions"),
+    (":effect (lit ?l)", ":effects (lit ?l)", 8, "':effect'"),
+    (":effect (lit ?l)", ":effect (increase (fuel) 1)", 8, "increase"),
+    ("(:predicates", "(:predicatez", 4, ":predicates"),
+    ("(lit ?l - lamp)", "(lit l - lamp)", 4, "variable.*'?'"),
+    ("(define (domain lamps)", "(domain lamps)", 1, "define"),
+    ("lit ?l))", "lit ?l) ü)", 7, "'ü'.*ASCII"),
+    (
+        "    :effect (lit ?l)))",
+        "    :effect (lit ?l))\n  (:action switch_on :parameters () :effect (and)))",
+        None,
+        None,
+    ),
+]
+BROKEN_PROBLEMS = [
+    ("(lit b))))", "(lit c))))", 6, "Undefined object.*'c'.*expected one of: a, b"),
+    ("(:init (lit a))", "(:init (lit a b))", 4, "arity 1 used with 2 arguments"),
+    ("(:init (lit a))", "(:init (lit lamp1))", 4, "Undefined object.*'lamp1'"),
+    ("(:init (lit a))", "(:init (lit a) (not (lit a)))", 4, "true and false"),
+    ("(:domain lamps)", "(:domain lamp)", 2, "lamp.*does not match"),
+    ("a b - lamp", "a b - lump", 3, "type 'lump'.*not declared.*'lamp'"),
+    ("a b - lamp", "a a b - lamp", 3, "'a' is declared twice"),
+    ("(:goal (and (lit a)\n              (lit b)))", "", None, "goal"),
+    ("(lit b))))", "(lit b)))\n  (:metric maximize (total-cost)))", 7, "minimize"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "line", "message"), BROKEN_DOMAINS)
+def test_a_broken_domain(
+    tmp_path: Path, old: str, new: str, line: int | None, message: str | None
+) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    assert old in DOMAIN
+    domain.write_text(DOMAIN.replace(old, new))
+    problem.write_text(PROBLEM)
+    if message is None:
+        load_task(domain, problem)  # an action without effects is dropped, as Fast Downward does
+        return
+    with pytest.raises(PDDLError, match=message) as caught:
+        load_task(domain, problem)
+    assert caught.value.file == domain
+    assert caught.value.line == line
+    assert str(caught.value).startswith(f"{domain}:{line}: ")
+
+
+@pytest.mark.parametrize(("old", "new", "line", "message"), BROKEN_PROBLEMS)
+def test_a_broken_problem(
+    tmp_path: Path, old: str, new: str, line: int | None, message: str
+) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    assert old in PROBLEM
+    domain.write_text(DOMAIN)
+    problem.write_text(PROBLEM.replace(old, new))
+    with pytest.raises(PDDLError, match=message) as caught:
+        load_task(domain, problem)
+    assert caught.value.file == problem
+    if line is not None:
+        assert caught.value.line == line
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (
+            "(:action switch_on :parameters () :effect (lit a))",
+            "Undefined object",
+        ),
+        (
+            "(:action switch_on :parameters (?l - lamp) :effect (lit ?l))",
+            "two actions of the name 'switch_on'",
+        ),
+        ("(:derived (lit ?l - lamp) (mended ?l))", "changes the derived predicate 'lit'"),
+        ("(:derived (shining ?l - lamp) (lit ?l))", "'shining' is not declared"),
+        (
+            "(:derived (mended ?l - lamp) (not (mended ?l)))",
+            "depends on its own negation",
+        ),
+    ],
+)
+def test_definitions_that_contradict_each_other(more: str, message: str) -> None:
+    domain = DOMAIN.rstrip().removesuffix(")") + f"\n  {more})"
+    with pytest.raises(PDDLError, match=message):
+        task_from_text(domain, PROBLEM.replace("(lit b))))", "(mended b))))"))
+
+
+def test_a_derived_fact_in_the_initial_state() -> None:
+    domain = DOMAIN.rstrip().removesuffix(")") + "(:derived (mended ?l - lamp) (lit ?l)))"
+    with pytest.raises(PDDLError, match="derived fact 'mended'"):
+        task_from_text(domain, PROBLEM.replace("(:init", "(:init (mended a)"))
+
+
+def test_empty_and_missing_files(tmp_path: Path) -> None:
+    there = tmp_path / "there.pddl"
+    there.write_text("; nothing\n")
+    with pytest.raises(PDDLError, match="the file is empty"):
+        load_task(there, there)
+    with pytest.raises(PDDLError, match="no such domain file"):
+        load_task(tmp_path / "gone.pddl", there)
+    with pytest.raises(PDDLError, match="no such problem file"):
+        load_task(there, tmp_path / "gone.pddl")
+    with pytest.raises(PDDLError, match="folder"):
+        load_task(tmp_path, there)
+    with pytest.raises(PDDLError, match="name its problem too"):
+        load_task(there)
+
+
+def test_an_unknown_task_is_told_the_nearest() -> None:
+    with pytest.raises(UnknownNameError, match="Did you mean 'eat_apple'"):
+        load_task("eat_aple")
+
+
+def test_comments_may_hold_anything_and_a_byte_order_mark_is_skipped(tmp_path: Path) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    domain.write_bytes(b"\xef\xbb\xbf; k\xc3\xbcche\r\n" + DOMAIN.encode())
+    problem.write_bytes(b"; \xfc latin\n" + PROBLEM.encode())
+    assert load_task(domain, problem).name == "night"
+
+
+@st.composite
+def damaged(draw: st.DrawFn) -> tuple[str, str]:
+    """A task with some words of its text removed, doubled or swapped for others."""
+    sample = draw(st.sampled_from(SAMPLES))
+    texts = [sample.domain, sample.problem]
+    which = draw(st.integers(0, 1))
+    words = texts[which].replace("(", " ( ").replace(")", " ) ").split()
+    for _ in range(draw(st.integers(1, 3))):
+        at = draw(st.integers(0, len(words) - 1))
+        other = draw(st.sampled_from([[], [words[at]] * 2, [draw(st.sampled_from(words))]]))
+        words[at : at + 1] = other
+    texts[which] = " ".join(words)
+    return texts[0], texts[1]
+
+
+@settings(max_examples=300, deadline=None)
+@given(damaged())
+def test_damaged_text_is_read_or_refused_with_a_reason(texts: tuple[str, str]) -> None:
+    try:
+        task_from_text(*texts)
+    except PDDLError as error:
+        assert len(str(error)) > 20  # noqa: PT017  either outcome is fine
