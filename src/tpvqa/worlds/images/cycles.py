@@ -113,7 +113,7 @@ def unwrap(made: Any, size: list[float], spec: dict[str, Any]) -> None:
             across = []
             for k, times in ((u, repeat[0]), (v, repeat[1])):
                 extent = 2 * (size[k] or 1.0) if k < len(size) else 1.0
-                part = point[k] if uniform else point[k] / extent + 0.5
+                part = point[k] / 2 if uniform else point[k] / extent + 0.5
                 across.append(part * times)
             loop[layer].uv = across
 

@@ -14,7 +14,7 @@ from tpvqa.worlds.kitchen.household import atoms_of_interest
 TEST_SEEDS = 1_000_000_000
 """Kitchens from this seed on are for the test pictures: training uses lower ones only."""
 
-PER_STATE = 8
+PER_STATE = 6
 PER_PLANNED_STATE = 10
 """Of the states that the plan leads through: ten observations of each action's outcome."""
 

@@ -13,13 +13,14 @@ import random
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from tpvqa.chance import chance
 from tpvqa.worlds.kitchen.furniture import Furniture
+from tpvqa.worlds.kitchen.gl import load_mujoco
 from tpvqa.worlds.kitchen.scene import KitchenScene
 
+mujoco = load_mujoco()
 SHAPES = {
     mujoco.mjtGeom.mjGEOM_PLANE: "plane",
     mujoco.mjtGeom.mjGEOM_SPHERE: "sphere",
@@ -152,8 +153,8 @@ class _Writer:
                 "parts": self.parts,
                 "materials": self.materials,
                 "lights": _lights(scene.furniture, head, draw),
-                "background": {"colour": _tint(draw, 0.12), "strength": draw.uniform(0.1, 0.3)},
-                "exposure": draw.uniform(-0.2, 0.5),
+                "background": {"colour": _tint(draw, 0.12), "strength": draw.uniform(0.05, 0.18)},
+                "exposure": draw.uniform(-0.75, 0.05),
                 "seed": draw.randrange(2**31),
             }
         )
