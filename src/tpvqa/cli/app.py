@@ -4,7 +4,7 @@ import sys
 
 import typer
 
-from tpvqa.cli import plan, questions, run
+from tpvqa.cli import dataset, plan, questions, run
 from tpvqa.errors import TpvqaError
 
 app = typer.Typer(
@@ -17,6 +17,7 @@ app = typer.Typer(
 plan.register(app)
 questions.register(app)
 run.register(app)
+dataset.register(app)
 
 
 def main() -> None:

@@ -156,6 +156,41 @@ def show(
     typer.echo(f"wrote {out}")
 
 
+@dataset.command()
+def score(
+    vlm: Annotated[str, typer.Option(help="Who answers, e.g. embedded or openai:MODEL.")] = (
+        "embedded"
+    ),
+    pictures: Folder = None,
+    base_url: Annotated[str | None, typer.Option(help="Address of an OpenAI-like server.")] = None,
+    every_wording: Annotated[
+        bool, typer.Option("--every-wording", help="Ask in all wordings, not one.")
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Ask a VLM about every fact and action on every picture, and count what is right.
+
+    Known and held-out meshes apart; by way of asking, predicate, object and action: accuracy,
+    false positive and negative rate, AUROC, calibration error, hard negatives, and how often
+    "cannot see" is said rightly.
+    """
+    from tpvqa.plugins import Kind, make
+    from tpvqa.training import evaluate
+    from tpvqa.training.asking import Asking
+    from tpvqa.training.picture_cases import picture_cases
+    from tpvqa.training.recipe import Recipe
+    from tpvqa.worlds.images.manifest import load_pictures
+
+    asking = Asking.about(Recipe.read().task)
+    asked = make(Kind.VLM, vlm, **({} if base_url is None else {"base_url": base_url}))
+    cases = picture_cases(load_pictures(pictures))
+    rows = list(evaluate.score(asked, cases, asking, every_wording=every_wording))
+    if as_json:
+        typer.echo(json.dumps({"vlm": asked.name, **evaluate.as_json(rows, asking)}, indent=2))
+    else:
+        typer.echo(f"{asked.name}\n\n{evaluate.report(rows, asking)}")
+
+
 def _say_gaps(gaps: list[str]) -> None:
     if not gaps:
         return
