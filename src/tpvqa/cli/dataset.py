@@ -175,7 +175,7 @@ def score(
     "cannot see" is said rightly.
     """
     from tpvqa.plugins import Kind, make
-    from tpvqa.training import evaluate
+    from tpvqa.training import scoring
     from tpvqa.training.asking import Asking
     from tpvqa.training.picture_cases import picture_cases
     from tpvqa.training.recipe import Recipe
@@ -184,11 +184,11 @@ def score(
     asking = Asking.about(Recipe.read().task)
     asked = make(Kind.VLM, vlm, **({} if base_url is None else {"base_url": base_url}))
     cases = picture_cases(load_pictures(pictures))
-    rows = list(evaluate.score(asked, cases, asking, every_wording=every_wording))
+    rows = list(scoring.score(asked, cases, asking, every_wording=every_wording))
     if as_json:
-        typer.echo(json.dumps({"vlm": asked.name, **evaluate.as_json(rows, asking)}, indent=2))
+        typer.echo(json.dumps({"vlm": asked.name, **scoring.as_json(rows, asking)}, indent=2))
     else:
-        typer.echo(f"{asked.name}\n\n{evaluate.report(rows, asking)}")
+        typer.echo(f"{asked.name}\n\n{scoring.report(rows, asking)}")
 
 
 def _say_gaps(gaps: list[str]) -> None:

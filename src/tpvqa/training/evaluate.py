@@ -1,238 +1,37 @@
-"""Score a VLM on pictures whose facts are known: `python -m tpvqa.training.evaluate --help`.
+"""Score the embedded network: `python -m tpvqa.training.evaluate --help`.
 
-Needs no torch. Any VLM and any pictures: `score` takes cases, each an observation and what is
-true and visible in it.
+By default on the pictures that come with the package. Needs no torch.
 """
 
 import argparse
 import json
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
 from pathlib import Path
 
 from tpvqa.errors import TpvqaError
-from tpvqa.observation import Frame, Observation
-from tpvqa.pddl import literals
-from tpvqa.questions.question import Question, Way
 from tpvqa.training.asking import Asking
-from tpvqa.training.facts import Facts, FactTable
-from tpvqa.training.labels import Label, Labels
-from tpvqa.training.subjects import Subject, subject_of
-from tpvqa.training.wordings import wordings
-from tpvqa.vlm import VLM
-from tpvqa.vlm.answer import Answer, Reply
-from tpvqa.vlm.metrics import Metrics, Scored, measure
-
-
-@dataclass(frozen=True, slots=True)
-class Case:
-    """A picture to be asked about.
-
-    Attributes:
-        observation: The picture.
-        facts: Of every fact whether it is true and whether the picture shows it.
-        group: What it is reported under, e.g. "known meshes".
-    """
-
-    observation: Observation
-    facts: Facts
-    group: str = "all"
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """One scored answer and what it was about."""
-
-    group: str
-    subject: Subject
-    wording: int
-    scored: Scored
-
-
-def score(
-    vlm: VLM, cases: Iterable[Case], asking: Asking, *, every_wording: bool = False
-) -> Iterator[Row]:
-    """Ask about everything that can be asked, and set the answers beside the truth.
-
-    Things that are in a picture, but so small or hidden that one may or may not say so, are not
-    asked about.
-
-    Args:
-        vlm: Who answers.
-        cases: The pictures.
-        asking: What can be asked.
-        every_wording: Whether all wordings are asked, not only the package's own.
-    """
-    texts = {s: list(wordings(s))[: None if every_wording else 1] for s in asking.subjects}
-    for case in cases:
-        labels = Labels(FactTable.of([case.facts]), asking.actions).of(asking.subjects)[0]
-        asked = [
-            (subject, number, wording, label)
-            for subject, label in zip(asking.subjects, labels.tolist(), strict=True)
-            if label != Label.UNCLEAR
-            for number, wording in enumerate(texts[subject])
-        ]
-        questions = [Question(wording.text, _way(subject)) for subject, _, wording, _ in asked]
-        answers = vlm.ask(case.observation, questions)
-        for (subject, number, wording, label), answer in zip(asked, answers, strict=True):
-            truth = (label == Label.YES) != wording.inverted
-            scored = Scored(answer, truth, label != Label.CANNOT_SEE, label == Label.HARD_NO)
-            yield Row(case.group, subject, number, scored)
-
-
-def _way(subject: Subject) -> Way:
-    return Way.EFFECT if subject.form == "fact" else Way(subject.form)
-
-
-def by_way(asking: Asking) -> dict[str, Callable[[Row], bool]]:
-    """The ways of asking; facts that are both precondition and effect count in both."""
-    needed = {subject_of(x.atom) for a in asking.actions for x in literals(a.precondition)}
-    made = {subject_of(e.literal.atom) for a in asking.actions for e in a.effects}
-    return {
-        "preconditions": lambda row: row.subject in needed,
-        "effects": lambda row: row.subject in made,
-        **{way.value: _in_form(way) for way in (Way.POSSIBLE, Way.SUCCESSFUL, Way.DID)},
-    }
-
-
-def _in_form(way: Way) -> Callable[[Row], bool]:
-    return lambda row: row.subject.form == way
-
-
-def tables(rows: Sequence[Row], asking: Asking) -> Iterator[tuple[str, dict[str, Metrics]]]:
-    """Figures by way of asking, by predicate and by object, each with its heading."""
-    facts = [row for row in rows if row.subject.form == "fact"]
-    yield (
-        "way of asking",
-        {
-            name: measure(row.scored for row in rows if belongs(row))
-            for name, belongs in by_way(asking).items()
-        },
-    )
-    yield "predicate", _split(facts, lambda row: row.subject.name)
-    yield "object", _split(facts, lambda row: row.subject.arguments[0])
-    yield (
-        "action",
-        _split([r for r in rows if r.subject.form != "fact"], lambda row: row.subject.name),
-    )
-
-
-def _split(rows: Sequence[Row], key: Callable[[Row], str]) -> dict[str, Metrics]:
-    groups: dict[str, list[Scored]] = {}
-    for row in rows:
-        groups.setdefault(key(row), []).append(row.scored)
-    return {name: measure(groups[name]) for name in sorted(groups)}
-
-
-_COLUMNS = (
-    ("n", "visible"),
-    ("accuracy", "accuracy"),
-    ("balanced", "balanced_accuracy"),
-    ("FPR", "false_positive_rate"),
-    ("FNR", "false_negative_rate"),
-    ("AUROC", "auroc"),
-    ("ECE", "calibration_error"),
-    ("hard no", "hard_no"),
-    ("abstained", "abstained"),
-    ("hidden", "hidden"),
-    ("cannot see", "cannot_see_rightly"),
-)
-
-
-def as_markdown(heading: str, table: Mapping[str, Metrics]) -> str:
-    """A table of figures. Rates are over visible facts, "cannot see" over hidden ones."""
-    lines = [
-        f"| {heading} | " + " | ".join(name for name, _ in _COLUMNS) + " |",
-        "|---" * (len(_COLUMNS) + 1) + "|",
-    ]
-    for name, metrics in table.items():
-        cells = [_cell(getattr(metrics, field)) for _, field in _COLUMNS]
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return "\n".join(lines)
-
-
-def _cell(value: float | int | None) -> str:
-    if value is None:
-        return "–"
-    return str(value) if isinstance(value, int) else f"{value:.3f}"
-
-
-def no_household_answers(vlm: VLM, observations: Iterable[Observation], asking: Asking) -> str:
-    """On pictures that show nothing of the household: how often which answer comes.
-
-    Right are *no* for "Is there …?" and *cannot see* or *no* for all else.
-    """
-    lines = ["| question | yes | no | cannot see | unknown |", "|---|---|---|---|---|"]
-    counts: dict[str, list[Answer]] = {}
-    for observation in observations:
-        texts = {s: next(iter(wordings(s))).text for s in asking.subjects}
-        answers = vlm.ask(observation, [Question(t, _way(s)) for s, t in texts.items()])
-        for subject, answer in zip(texts, answers, strict=True):
-            name = subject.name if subject.form == "fact" else subject.form
-            counts.setdefault(name, []).append(answer)
-    for name, answers in counts.items():
-        shares = [
-            sum(answer.reply is reply for answer in answers) / len(answers)
-            for reply in (Reply.YES, Reply.NO, Reply.CANNOT_SEE, Reply.UNKNOWN)
-        ]
-        lines.append(f"| {name} | " + " | ".join(f"{share:.3f}" for share in shares) + " |")
-    return "\n".join(lines)
-
-
-def rendered(folder: Path, split: str, seeds: range, group: str) -> Iterator[Case]:
-    """Pictures that `render` made, as cases."""
-    from io import BytesIO
-
-    from PIL import Image
-
-    from tpvqa.training import shards
-    from tpvqa.training.data import in_words
-
-    for path in shards.finished(folder, split):
-        if int(path.stem.rsplit("-", 1)[1]) not in seeds:
-            continue
-        shard = shards.read(path)
-        table = in_words(shard)
-        for i, pixels in enumerate(shard.pixels):
-            buffer = BytesIO()
-            Image.fromarray(pixels).save(buffer, "PNG")
-            frame = Frame(f"{path.stem}-{i}", "front", buffer.getvalue(), "image/png")
-            pairs = zip(table.true[i].tolist(), table.visible[i].tolist(), strict=True)
-            facts = dict(zip(table.atoms, pairs, strict=True))
-            yield Case(Observation(i, 0.0, {"front": frame}), facts, group)
-
-
-def report(rows: Sequence[Row], asking: Asking) -> str:
-    """All tables, by group of pictures."""
-    parts = []
-    for group in dict.fromkeys(row.group for row in rows):
-        inside = [row for row in rows if row.group == group]
-        parts.append(f"## {group}")
-        parts += [as_markdown(heading, table) for heading, table in tables(inside, asking)]
-    return "\n\n".join(parts)
-
-
-def as_json(rows: Sequence[Row], asking: Asking) -> dict[str, object]:
-    """The same figures as plain JSON values."""
-    return {
-        group: {
-            heading: {name: asdict(metrics) for name, metrics in table.items()}
-            for heading, table in tables([r for r in rows if r.group == group], asking)
-        }
-        for group in dict.fromkeys(row.group for row in rows)
-    }
+from tpvqa.training.cases import photographs, rendered
+from tpvqa.training.picture_cases import picture_cases
+from tpvqa.training.recipe import Recipe
+from tpvqa.training.scoring import as_json, no_household_answers, report, score
+from tpvqa.vlm.embedded import EmbeddedVLM
+from tpvqa.worlds.images.manifest import load_pictures
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Score the embedded network on rendered pictures that it was not trained on."""
-    from tpvqa.training.recipe import Recipe
-    from tpvqa.vlm.embedded import EmbeddedVLM
-
+    """Score the embedded network."""
     parser = argparse.ArgumentParser(
         prog="python -m tpvqa.training.evaluate", description=(__doc__ or "").splitlines()[0]
     )
-    parser.add_argument("pictures", type=Path, help="the folder that `render` filled")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--pictures", type=Path, help="a picture set instead of the shipped one")
+    which.add_argument(
+        "--rendered", type=Path, help="a folder that `render` filled; parts kept from training"
+    )
+    which.add_argument(
+        "--photographs", type=Path, help="a folder of pictures that show no household"
+    )
     parser.add_argument("--weights", type=Path, default=None, help="instead of the shipped ones")
     parser.add_argument("--every-wording", action="store_true")
     parser.add_argument("--json", action="store_true")
@@ -240,18 +39,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         recipe = Recipe.read()
         asking = Asking.about(recipe.task)
-        seeds = range(recipe.validation_from, 1_000_000)
         vlm = EmbeddedVLM(folder=chosen.weights)
-        rows = [
-            row
-            for split, group in (("train", "known meshes"), ("held_out", "never-seen meshes"))
-            for row in score(
-                vlm,
-                rendered(chosen.pictures, split, seeds, group),
-                asking,
-                every_wording=chosen.every_wording,
-            )
-        ]
+        if chosen.photographs is not None:
+            print(no_household_answers(vlm, photographs(chosen.photographs), asking))
+            return 0
+        kept = range(recipe.validation_from, 1_000_000)
+        cases = (
+            picture_cases(load_pictures(chosen.pictures))
+            if chosen.rendered is None
+            else rendered(chosen.rendered, kept)
+        )
+        rows = list(score(vlm, cases, asking, every_wording=chosen.every_wording))
     except TpvqaError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

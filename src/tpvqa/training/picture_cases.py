@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Atom
-from tpvqa.training.evaluate import Case
+from tpvqa.training.scoring import Case
 from tpvqa.worlds.images.manifest import PictureSet
 
 GROUPS = {"known": "known meshes", "held_out": "held-out meshes"}

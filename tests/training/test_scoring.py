@@ -6,9 +6,9 @@ from tests.training.household import facts, shows
 from tpvqa.observation import Observation
 from tpvqa.questions import Question
 from tpvqa.training.asking import Asking
-from tpvqa.training.evaluate import Case, report, score, tables
 from tpvqa.training.facts import FactTable
 from tpvqa.training.labels import Label, Labels
+from tpvqa.training.scoring import Case, report, score, tables
 from tpvqa.training.wordings import wordings
 from tpvqa.vlm import Answer, Reply
 from tpvqa.worlds.kitchen.household import Household
