@@ -18,8 +18,7 @@ ROOM: Mapping[str, Use] = {"wall": "wall", "floor": "floor", "tiles": "wall"}
 """Surfaces of the room itself, and the kind of texture that each has."""
 ROOM_CHOICE = 3
 """Textures of each that a kitchen can be repainted with."""
-_NOT_LOOSE = {
-    *ITEMS,
+_FURNITURE = {
     "apple_half",
     "fridge",
     "tv",
@@ -30,6 +29,8 @@ _NOT_LOOSE = {
     "table",
     "gripper",
 }
+_AMBIGUOUS = {"fruits", "breadbox", "hotdog", "hamburger", "croissant"}
+"""Kinds in which a person may see an apple or bread: they are no distractors."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ def furnish(rng: np.random.Generator, split: Split, *, size: int) -> Furniture:
     models["gripper"] = pick("gripper")
     for fixture in ("table", "sink", "fridge", "tv", "tvstand", "counter", "wall_cabinet"):
         models[fixture] = pick(fixture)
-    clutter = [kind for kind in kinds() if kind not in _NOT_LOOSE]
+    clutter = [kind for kind in kinds() if kind not in {*ITEMS, *_FURNITURE, *_AMBIGUOUS}]
     loose = []
     for k in range(min(DISTRACTORS, 2 * len(clutter))):
         models[f"loose{k}"] = pick(clutter[int(rng.integers(len(clutter)))])
