@@ -23,6 +23,9 @@ DOMAIN = """
     :parameters (?l - lamp ?from ?to - room)
     :precondition (or (power) (lit ?l))
     :effect (and (not (in ?l ?from)) (in ?l ?to)))
+  (:action startle
+    :parameters (?l - lamp ?r - room)
+    :effect (when (dark ?r) (lit ?l)))
   (:action regrip
     :parameters (?l - lamp ?a ?b - room)
     :effect (and (not (held ?l ?a)) (held ?l ?b) (lit ?l))))
@@ -56,6 +59,14 @@ def test_conditional_effects_are_asked_where_their_condition_holds_before(task: 
     off = book.effects(switch, task.init - {Atom("power")})
     assert [(each.text, each.expected) for each in on] == [("Is the big lamp lit?", True)]
     assert [(each.text, each.expected) for each in off] == [("Is the big lamp lit?", False)]
+
+
+def test_a_condition_of_an_effect_may_be_a_derived_fact(task: Task) -> None:
+    book = QuestionBook.load(None, task)
+    startle = task.action("startle", ["desk1", "hall"])
+    assert [each.text for each in book.effects(startle, task.init)] == ["Is the desk 1 lit?"]
+    light = {Atom("lit", ("desk1",)), Atom("lit", ("big_lamp",))}
+    assert book.effects(startle, task.init | light) == ()
 
 
 def test_derived_facts_are_asked_and_nothing_twice(task: Task) -> None:
@@ -153,7 +164,7 @@ def test_the_ways_of_asking_about_an_action_can_be_reworded(task: Task, tmp_path
 
 def test_every_fallback_is_reported_once(task: Task, tmp_path: Path) -> None:
     bare = QuestionBook.load(None, task)
-    mentioned = [*task.predicates, "switch", "carry", "regrip"]
+    mentioned = [*task.predicates, "switch", "carry", "startle", "regrip"]
     for name in mentioned:
         assert sum(f" {name} " in notice or f" {name};" in notice for notice in bare.notices) == 1
     assert len(bare.notices) == len(mentioned)

@@ -122,6 +122,14 @@ def test_the_same_question_gets_the_same_answer_within_a_look(
         assert said(oracle, [number], [asked[n] for n in picked]) == [[first[0][n] for n in picked]]
 
 
+def test_two_facts_in_the_same_words_get_the_same_answer_within_a_look() -> None:
+    left, right = (Atom("in_hand", ("plate", hand)) for hand in ("left", "right"))
+    asked = [Question("Is the plate in a hand?", Way.EFFECT, atom=atom) for atom in (left, right)]
+    oracle = Oracle(Truth(left))
+    assert said(oracle, [0], asked) == [[True, True]]
+    assert said(oracle, [1], asked[::-1]) == [[False, False]]
+
+
 @given(PROBABILITY, st.integers(0, 5))
 def test_an_answer_does_not_depend_on_what_else_was_asked(accuracy: float, seed: int) -> None:
     alone = Oracle(Truth(), accuracy=accuracy, seed=seed)
