@@ -61,6 +61,17 @@ class Builder:
         )
         return name
 
+    def encoded(
+        self, name: str, data: bytes, paint: str, *, scale: float = 1.0, role: str = ""
+    ) -> None:
+        """A mesh that is already in MuJoCo's format as a part."""
+        file = f"/{name}.msh"
+        self.files[file] = data
+        size = () if scale == 1 else (scale, scale, scale)
+        self.parts.append(
+            Part(name=name, paint=paint, shape="mesh", mesh=file, size=size, role=role)
+        )
+
     def mesh(
         self,
         name: str,

@@ -15,6 +15,7 @@ from tpvqa.worlds.kitchen.assets import (
     vessels,
 )
 from tpvqa.worlds.kitchen.assets.family import Family
+from tpvqa.worlds.kitchen.assets.scanned import scanned_families
 
 FAMILIES: tuple[Family, ...] = (
     Family("plate", "plate-lathe", crockery.plate, fixed=6),
@@ -91,4 +92,5 @@ FAMILIES: tuple[Family, ...] = (
     Family("peeler", "peeler-own", utensils.peeler, held_out=True),
     Family("whisk", "whisk-own", utensils.whisk, held_out=True),
     Family("pencil_case", "pencil-case-own", utensils.pencil_case, held_out=True),
+    *scanned_families(),
 )

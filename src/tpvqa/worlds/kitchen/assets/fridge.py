@@ -74,7 +74,7 @@ def _shell(build: Builder, c: Cabinet, paint: str, inside: str, shelves: int, be
     ]
     build.mesh("lining", joined(lining), inside)
     glass = build.paint("shelf", (0.8, 0.9, 0.93, 0.5), specular=0.6, shininess=0.7)
-    edge = build.paint("edge", (0.9, 0.92, 0.93), emission=0.05)
+    trim = build.paint("edge", (0.9, 0.92, 0.93), emission=0.05)
     lamp = build.paint("lamp", (1, 1, 0.93), emission=0.9)
     usable = span - (WALL if c.high == c.z else 0)
     deep = d - 0.13
@@ -92,7 +92,7 @@ def _shell(build: Builder, c: Cabinet, paint: str, inside: str, shelves: int, be
                 box(w - 2 * WALL - 0.012, 0.012, 0.014).moved(
                     x=mid, y=0.02 - deep / 2, z=z - 0.003
                 ),
-                edge,
+                trim,
             )
             build.solid("box", ((w - 2 * WALL) / 2, deep / 2, 0.004), (mid, 0.02, z + 0.004))
             z += 0.008

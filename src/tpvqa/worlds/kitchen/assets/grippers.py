@@ -98,8 +98,8 @@ def _fin_ray(rng: Generator, length: float) -> tuple[Mesh, Mesh]:
     inner = [[0, 0.002, TIP], [0, 0.002, -length]]
     outer = [[0, 0.004, TIP], [0, deep, -length]]
     bars = [
-        tube(np.linspace(*inner, 3), wide / 2, steps=4, flat=0.3),
-        tube(np.linspace(*outer, 3), wide / 2, steps=4, flat=0.3),
+        tube(np.linspace(inner[0], inner[1], 3), wide / 2, steps=4, flat=0.3),
+        tube(np.linspace(outer[0], outer[1], 3), wide / 2, steps=4, flat=0.3),
     ]
     for share in np.linspace(0.3, 0.92, 5):
         z = TIP - share * (length + TIP)

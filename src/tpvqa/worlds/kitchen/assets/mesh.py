@@ -94,8 +94,7 @@ def encode(mesh: Mesh, *, crease: float = 40.0) -> bytes:
     flat = cross / area[:, None]
     # Corners at the same place share their normal unless their faces are too far apart, so a
     # seam in the texture is not an edge.
-    _, place = np.unique(np.round(mesh.points, 6), axis=0, return_inverse=True)
-    place = place.reshape(-1)
+    _, place = np.unique(_key(mesh.points * 1e5, 20), return_inverse=True)
     at = place[faces].reshape(-1)
     face = np.repeat(np.arange(len(faces)), 3)
     order = np.argsort(at, kind="stable")
@@ -116,8 +115,8 @@ def encode(mesh: Mesh, *, crease: float = 40.0) -> bytes:
     normals = np.empty_like(normal)
     normals[order] = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-20)
     index = faces.reshape(-1)
-    rows = np.concatenate([index[:, None].astype(np.float64), np.round(normals, 3) + 0.0], axis=1)
-    _, unique, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    rows = (index.astype(np.int64) << 33) + _key(normals * 500, 11)
+    _, unique, inverse = np.unique(rows, return_index=True, return_inverse=True)
     points, uv = mesh.points[index[unique]], mesh.uv[index[unique]]
     header = np.array([len(unique)] * 3 + [len(faces)], np.int32)
     flipped = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
@@ -130,3 +129,39 @@ def encode(mesh: Mesh, *, crease: float = 40.0) -> bytes:
             inverse.reshape(-1, 3).astype(np.int32).tobytes(),
         ]
     )
+
+
+def _key(values: Floats, bits: int) -> Ints:
+    """One number for each row of three, equal for rows that round to the same."""
+    whole = np.round(values).astype(np.int64) + (1 << (bits - 1))
+    return np.asarray((whole[:, 0] << 2 * bits) + (whole[:, 1] << bits) + whole[:, 2])
+
+
+def cut(mesh: Mesh) -> tuple[Mesh, Floats]:
+    """The half with y <= 0, and the points where the surface was cut (y = 0)."""
+    y = mesh.points[:, 1]
+    points, uv, faces = list(mesh.points), list(mesh.uv), []
+    rim: dict[tuple[int, int], int] = {}
+
+    def crossing(a: int, b: int) -> int:
+        key = (min(a, b), max(a, b))
+        if key not in rim:
+            share = y[a] / (y[a] - y[b])
+            rim[key] = len(points)
+            points.append(mesh.points[a] + share * (mesh.points[b] - mesh.points[a]))
+            uv.append(mesh.uv[a] + share * (mesh.uv[b] - mesh.uv[a]))
+        return rim[key]
+
+    inside = y <= 0
+    kept = mesh.faces[inside[mesh.faces].all(axis=1)]
+    for face in mesh.faces[inside[mesh.faces].any(axis=1) & ~inside[mesh.faces].all(axis=1)]:
+        loop: list[int] = []
+        for k in range(3):
+            a, b = int(face[k]), int(face[(k + 1) % 3])
+            if inside[a]:
+                loop.append(a)
+            if inside[a] != inside[b]:
+                loop.append(crossing(a, b))
+        faces += [[loop[0], loop[k], loop[k + 1]] for k in range(1, len(loop) - 1)]
+    half = Mesh.of(points, [*kept.tolist(), *faces], np.array(uv))
+    return half, half.points[sorted(rim.values())]

@@ -2,8 +2,10 @@
 
 import colorsys
 from io import BytesIO
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from numpy.random import Generator
 from PIL import Image
 
@@ -70,7 +72,9 @@ def clouds(
     return np.asarray(total / max(total.max(), 1e-9))
 
 
-def mix(low: Colour | Floats, high: Colour | Floats, amount: Floats) -> Floats:
+def mix(
+    low: Colour | Floats, high: Colour | Floats, amount: npt.NDArray[np.floating[Any]]
+) -> Floats:
     """From `low` (amount 0) to `high` (amount 1), for each pixel."""
     a = np.clip(amount, 0, 1)[..., None]
     return np.asarray(np.asarray(low) * (1 - a) + np.asarray(high) * a)

@@ -69,10 +69,6 @@ def box(x: float, y: float, z: float, *, bevel: float = 0.0, uv_scale: float | N
                 p = np.zeros(3)
                 p[axis], p[i], p[j] = sign * half[axis], si * (half[i] - b), sj * (half[j] - b)
                 points.append(p)
-    at = {
-        tuple(np.sign(p) * (np.abs(p) >= half - 1e-12)) + tuple(np.sign(p)): k
-        for k, p in enumerate(points)
-    }
     corners = np.array(points)
     quads: list[list[int]] = [[4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3] for k in range(6)]
     tris: list[list[int]] = []
@@ -99,8 +95,9 @@ def box(x: float, y: float, z: float, *, bevel: float = 0.0, uv_scale: float | N
                             by_side[(j, ends[0])],
                         ]
                     )
-    del at
-    out_points, out_uv, faces = [], [], []
+    out_points: list[Floats] = []
+    out_uv: list[Floats] = []
+    faces: list[list[int]] = []
     for loop in [*quads, *tris]:
         ring = corners[loop]
         normal = np.cross(ring[1] - ring[0], ring[2] - ring[0])

@@ -68,7 +68,7 @@ STONES: tuple[Colour, ...] = (
 
 
 def _flat(colour: Colour) -> Floats:
-    return np.ones((SIZE, SIZE, 3)) * np.array(colour)
+    return np.full((SIZE, SIZE, 3), colour, dtype=np.float64)
 
 
 def _cells(rows: int, columns: int, shift: float = 0.0) -> tuple[Floats, Floats, Floats, Floats]:
