@@ -146,8 +146,7 @@ def _environment() -> dict[str, str]:
                 "Fast Downward is not installed; install it: pip install up-fast-downward"
             )
         folders.append(str(Path(locations[0]).resolve().parent))
-    paths = [*dict.fromkeys(folders), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(dict.fromkeys(folders))}
 
 
 class Workers:
@@ -155,29 +154,45 @@ class Workers:
 
     Args:
         keep: So many idle workers stay for the next calls.
+        limit: So many are at work at once; further callers wait.
     """
 
-    def __init__(self, *, keep: int = 4):
-        self._keep = keep
+    def __init__(self, *, keep: int = 8, limit: int = 16):
+        self._keep, self._limit = keep, limit
+        self._free = threading.Semaphore(limit)
         self._lock = threading.Lock()
         self._idle: list[Worker] = []
         self._lent: set[Worker] = set()
 
     @contextlib.contextmanager
-    def lend(self, key: str) -> Iterator[Worker]:
+    def lend(self, key: str, *, end: float | None) -> Iterator[Worker]:
         """A worker for one call, preferably one that already knows the task.
 
         A worker whose call ended with an exception is killed, as what it is doing is not known.
+
+        Args:
+            key: The task.
+            end: When the caller's time is over, by `time.monotonic`.
+
+        Raises:
+            WorkerTimedOut: All workers were at work until then.
         """
-        worker = self._take(key)
+        if not self._free.acquire(
+            timeout=None if end is None else max(0.0, end - time.monotonic())
+        ):
+            raise WorkerTimedOut
         try:
-            yield worker
-        except BaseException:
-            with self._lock:
-                self._lent.discard(worker)
-            worker.kill()
-            raise
-        self._give_back(worker)
+            worker = self._take(key)
+            try:
+                yield worker
+            except BaseException:
+                with self._lock:
+                    self._lent.discard(worker)
+                worker.kill()
+                raise
+            self._give_back(worker)
+        finally:
+            self._free.release()
 
     def _take(self, key: str) -> Worker:
         with self._lock:
@@ -218,7 +233,7 @@ class Workers:
 
     def forget(self) -> None:
         """In a forked child: the parent's workers are not ours."""
-        self._lock = threading.Lock()
+        self._lock, self._free = threading.Lock(), threading.Semaphore(self._limit)
         for worker in (*self._idle, *self._lent):
             worker.forget()
         self._idle, self._lent = [], set()
@@ -259,7 +274,7 @@ def ask_worker(
     reasons: list[str] = []
     while len(reasons) < 2:
         try:
-            with WORKERS.lend(key) as worker:
+            with WORKERS.lend(key, end=end) as worker:
                 full = {**request, "key": key, "domain": domain, "problem": problem}
                 short = {**request, "key": key}
                 reply = worker.call(short if key in worker.known else full, end=end)

@@ -60,15 +60,11 @@ class Worker:
                 continue
             data = os.read(0, 1 << 20)
             if not data:
-                self._leave()
+                os._exit(0)  # the searches end with this process
             *lines, rest = (rest + data).split(b"\n")
             for line in lines:
                 self._busy = True
                 self._requests.put(line)
-
-    def _leave(self) -> None:
-        self._searcher.kill()
-        os._exit(0)
 
     def _send(self, message: dict[str, Any]) -> None:
         view = memoryview(json.dumps(message).encode() + b"\n")
@@ -77,7 +73,7 @@ class Worker:
                 while view:
                     view = view[os.write(self._replies, view) :]
         except BrokenPipeError:
-            self._leave()
+            os._exit(0)
 
     def _answer(self, request: dict[str, Any]) -> dict[str, Any]:
         try:

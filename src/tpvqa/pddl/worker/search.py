@@ -1,8 +1,9 @@
 """One call of the `downward` binary: a SAS+ text goes in, a plan or a reason comes out.
 
-Nothing is written to disk: text, plan and log are files in memory that the two processes share.
+Nothing is written to disk: the text goes through a pipe, plan and log are files in memory.
 """
 
+import contextlib
 import ctypes
 import os
 import resource
@@ -53,13 +54,75 @@ def find_downward() -> Path:
     )
 
 
-def _memory_file(name: str, content: bytes = b"") -> int:
-    number = os.memfd_create(name, os.MFD_CLOEXEC)
-    view = memoryview(content)
-    while view:
-        view = view[os.write(number, view) :]
-    os.lseek(number, 0, os.SEEK_SET)
-    return number
+class _Child:
+    """A `downward` process that waits for its task on standard input."""
+
+    def __init__(self, binary: str, search: str, memory: int | None, in_child: Callable[[], None]):
+        self.search, self.memory = search, memory
+        self._plan = os.memfd_create("plan")
+        self._log = os.memfd_create("log")
+        self._process = subprocess.Popen(
+            [binary, "--search", search, "--internal-plan-file", f"/dev/fd/{self._plan}"],
+            stdin=subprocess.PIPE,
+            stdout=self._log,
+            stderr=self._log,
+            cwd="/",
+            pass_fds=(self._plan,),
+            bufsize=0,
+            preexec_fn=in_child,
+        )
+        assert self._process.stdin is not None
+        self._input = self._process.stdin
+        os.set_blocking(self._input.fileno(), False)
+        self._handle = os.pidfd_open(self._process.pid)
+        if memory is not None:
+            limit = memory << 20
+            resource.prlimit(self._process.pid, resource.RLIMIT_AS, (limit, limit))
+
+    def fits(self, search: str, memory: int | None) -> bool:
+        """Whether it still waits, for such a search."""
+        return (search, memory) == (self.search, self.memory) and self._process.poll() is None
+
+    def feed(self, text: bytes, end: float | None) -> None:
+        """Write the task; stops early where the process or the time ends."""
+        view = memoryview(text)
+        poll = select.poll()
+        poll.register(self._input.fileno(), select.POLLOUT)
+        with contextlib.suppress(BrokenPipeError):
+            while view and poll.poll(_milliseconds_until(end)):
+                view = view[os.write(self._input.fileno(), view) :]
+        self._input.close()
+
+    def wait(self, end: float | None) -> bool:
+        """Wait until the process ends; False where the time is over first."""
+        poll = select.poll()
+        poll.register(self._handle, select.POLLIN)
+        if not poll.poll(_milliseconds_until(end)):
+            return False
+        self._process.wait()
+        return True
+
+    def outcome(self) -> Outcome:
+        """How the search ended, once the process has."""
+        plan, log = _contents(self._plan), _contents(self._log)
+        return _outcome(self._process.returncode, plan, log, self.memory)
+
+    def kill(self) -> None:
+        """End the process, if it still runs."""
+        if self._process.poll() is None:
+            self._process.kill()
+
+    def close(self) -> None:
+        """End the process and let go of everything."""
+        self.kill()
+        self._process.wait()
+        self._input.close()
+        for number in (self._plan, self._log, self._handle):
+            os.close(number)
+
+
+def _milliseconds_until(end: float | None) -> float | None:
+    return None if end is None else max(0.0, (end - time.monotonic()) * 1000)
 
 
 def _contents(number: int) -> str:
@@ -71,30 +134,35 @@ def _contents(number: int) -> str:
 
 
 class Searcher:
-    """Runs searches, one after the other, and can be told to stop from another thread."""
+    """Runs searches, one after the other.
+
+    Starting `downward` takes longer than a small search. So the next process is started while one
+    searches, and waits for its task.
+    """
 
     def __init__(self) -> None:
         self._binary = str(find_downward())
-        libc = ctypes.CDLL(None, use_errno=True)
-        self._prctl: Callable[[int, int], int] = libc.prctl
+        self._prctl: Callable[[int, int], int] = ctypes.CDLL(None).prctl
         self._own = os.getpid()
-        self._child: subprocess.Popen[bytes] | None = None
+        self._waiting: _Child | None = None
 
     def _in_child(self) -> None:
         self._prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
         if os.getppid() != self._own:
             os._exit(1)
 
-    def kill(self) -> None:
-        """End the search that is running, if one is."""
-        child = self._child
-        if child is not None and child.poll() is None:
-            child.kill()
+    def _take(self, search: str, memory: int | None) -> _Child:
+        child, self._waiting = self._waiting, None
+        if child is not None:
+            if child.fits(search, memory):
+                return child
+            child.close()
+        return _Child(self._binary, search, memory, self._in_child)
 
     def run(
         self, text: bytes, search: str, *, seconds: float | None, memory: int | None
     ) -> Outcome:
-        """Search for a plan.
+        """Search for a plan; a search that crashes is tried once more.
 
         Args:
             text: The SAS+ task.
@@ -102,49 +170,20 @@ class Searcher:
             seconds: The time limit; None for none.
             memory: The limit of the search's memory in MiB; None for none.
         """
-        task = _memory_file("task", text)
-        plan = _memory_file("plan")
-        log = _memory_file("log")
-        try:
-            self._child = subprocess.Popen(
-                [self._binary, "--search", search, "--internal-plan-file", f"/dev/fd/{plan}"],
-                stdin=task,
-                stdout=log,
-                stderr=log,
-                cwd="/",
-                pass_fds=(plan,),
-                preexec_fn=self._in_child,
-            )
-            if memory is not None:
-                limit = memory << 20
-                resource.prlimit(self._child.pid, resource.RLIMIT_AS, (limit, limit))
-            if not self._wait(seconds):
-                return Outcome("timeout")
-            return _outcome(self._child.returncode, _contents(plan), _contents(log), memory)
-        finally:
-            self.kill()
-            if self._child is not None:
-                self._child.wait()
-            for number in (task, plan, log):
-                os.close(number)
+        end = None if seconds is None else time.monotonic() + seconds
+        outcome = self._once(text, search, end, memory)
+        if outcome.kind == "crash":
+            outcome = self._once(text, search, end, memory)
+        return outcome
 
-    def _wait(self, seconds: float | None) -> bool:
-        """Wait for the child; False where the time is over."""
-        assert self._child is not None
-        handle = os.pidfd_open(self._child.pid)
+    def _once(self, text: bytes, search: str, end: float | None, memory: int | None) -> Outcome:
+        child = self._take(search, memory)
         try:
-            poll = select.poll()
-            poll.register(handle, select.POLLIN)
-            end = None if seconds is None else time.monotonic() + seconds
-            while True:
-                left = None if end is None else (end - time.monotonic()) * 1000
-                if left is not None and left <= 0:
-                    return False
-                if poll.poll(left):
-                    self._child.wait()
-                    return True
+            child.feed(text, end)
+            self._waiting = _Child(self._binary, search, memory, self._in_child)
+            return child.outcome() if child.wait(end) else Outcome("timeout")
         finally:
-            os.close(handle)
+            child.close()
 
 
 def _outcome(code: int, plan: str, log: str, memory: int | None) -> Outcome:
