@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from tpvqa.worlds.kitchen.layout import Footprint, Layout, Stand
 from tpvqa.worlds.kitchen.rotation import Array, about_x, about_y, looking
 
+LEAN = 0.1
+"""How far the robot's head may be over low furniture, metres."""
 Ball = tuple[Array, float]
 """Centre and radius of a ball around a thing."""
 
@@ -85,14 +87,14 @@ def front_of(stand: Stand) -> float:
     return stand.yaw - math.pi / 2
 
 
-def standing_room(layout: Layout, position: Array, *, lean: float) -> bool:
+def standing_room(layout: Layout, position: Array) -> bool:
     """Whether the robot can have its head there. It may lean a little over low furniture."""
     x, y = float(position[0]), float(position[1])
     if not (abs(x) < layout.width / 2 - 0.15 and -layout.depth + 0.15 < y < -0.15):
         return False
     here = np.array([[x, y]])
     footprints: Sequence[Footprint] = layout.footprints
-    return not any(footprint.blocks(here, -lean)[0] for footprint in footprints)
+    return not any(footprint.blocks(here, -LEAN)[0] for footprint in footprints)
 
 
 def candidate(approach: Approach, rng: np.random.Generator, side: float, aside: float) -> Shot:
@@ -133,10 +135,10 @@ def overview(layout: Layout, rng: np.random.Generator) -> Shot:
     return Shot(position, looking(middle - position), float(rng.uniform(66, 74)))
 
 
-def faults(shot: Shot, wanted: Wanted, layout: Layout, *, lean: float) -> float:
+def faults(shot: Shot, wanted: Wanted, layout: Layout) -> float:
     """How much is wrong with a shot; 0 is good."""
     wrong = 0.0
-    if not standing_room(layout, shot.position, lean=lean):
+    if not standing_room(layout, shot.position):
         wrong += 100.0
     if wanted.outside:
         centres = np.array([centre for centre, _ in wanted.outside])
@@ -162,7 +164,6 @@ def choose(
     *,
     side: float = 0.0,
     aside: float = 0.0,
-    lean: float = 0.1,
     tries: int = 60,
 ) -> tuple[Shot, float]:
     """The first good shot among random ones, else the least bad; and how bad it is."""
@@ -170,7 +171,7 @@ def choose(
     least = math.inf
     for _ in range(tries):
         shot = candidate(approach, rng, side, aside)
-        wrong = faults(shot, wanted, layout, lean=lean)
+        wrong = faults(shot, wanted, layout)
         if wrong < least:
             best, least = shot, wrong
         if wrong <= 0:

@@ -83,7 +83,7 @@ def holding(
     closing, along = _unit(grasp.axis), _unit(grasp.approach)
     own = np.stack([np.cross(closing, along), closing, along], axis=1)
     top = own.T @ np.array([0.0, 0.0, 1.0])
-    turn = float(rng.uniform(-0.45, 0.45))
+    turn = float(rng.uniform(-0.35, 0.35))
     if np.hypot(top[0], top[1]) > 0.2:  # the top is not along the fingers: turn it to the robot
         turn -= float(np.arctan2(top[1], top[0]))
     axes = hand.axes @ about_z(turn)
@@ -98,14 +98,12 @@ def holding(
 
 
 def _grasp(model: Model, rng: np.random.Generator) -> Grasp:
-    """The preferred grasp; a loaf is held from above or from below."""
+    """The preferred grasp; bread is mostly held by its side, so that its top is in view."""
     if not model.grasps:
         raise ValueError(f"{model.name} cannot be held: it has no grasp")
-    grasp = model.grasps[0]
-    x, y, z = grasp.approach
-    if model.kind == "bread" and abs(z) > 0.9 and rng.random() < 0.7:
-        return Grasp(grasp.offset, grasp.axis, (x, y, -z), grasp.width)
-    return grasp
+    if model.kind == "bread" and rng.random() < 0.75:
+        return model.grasps[-1]
+    return model.grasps[0]
 
 
 def _unit(vector: ArrayLike) -> Array:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from tpvqa.chance import chance_array
 from tpvqa.errors import UnknownNameError, WorldError
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.kitchen.cameras import Shot, choose, overview
+from tpvqa.worlds.kitchen.cameras import Shot, Wanted, choose, faults, overview
 from tpvqa.worlds.kitchen.drawing import Drawing
 from tpvqa.worlds.kitchen.furniture import furnish
 from tpvqa.worlds.kitchen.gl import load_mujoco
@@ -186,7 +186,11 @@ class KitchenScene:
         aside = 0.0
         if len(household.held) == 1:
             aside = 0.2 if "left" in household.held else -0.2
-        return choose(found, wanted, self.furniture.layout, rng, side=side, aside=aside)
+        layout = self.furniture.layout
+        shot, wrong = choose(found, wanted, layout, rng, side=side, aside=aside)
+        if wrong > 0:  # what must stay out is counted by its pixels: walls may hide it
+            wrong = faults(shot, Wanted(inside=wanted.inside), layout)
+        return shot, wrong
 
     def _set_scene(
         self,
@@ -227,7 +231,13 @@ class KitchenScene:
                 continue
             if item == "apple" and household.halved:
                 held = item in household.hand_of
-                pair = halves(placed[item], self.furniture.models["half"], rng, held=held)
+                pair = halves(
+                    placed[item],
+                    self.furniture.models["apple"],
+                    rng,
+                    robot=shot.position,
+                    held=held,
+                )
                 for name, pose in zip(("half_a", "half_b"), pair, strict=True):
                     data.mocap_pos[self._mocap[name]] = pose.position
                     data.mocap_quat[self._mocap[name]] = quaternion(pose.axes)

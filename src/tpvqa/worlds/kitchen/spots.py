@@ -12,7 +12,7 @@ from tpvqa.worlds.kitchen.falling import come_to_rest
 from tpvqa.worlds.kitchen.furniture import Furniture
 from tpvqa.worlds.kitchen.household import Household
 from tpvqa.worlds.kitchen.layout import Area, Stand
-from tpvqa.worlds.kitchen.rotation import Array, about_x, about_z
+from tpvqa.worlds.kitchen.rotation import Array, about_y, about_z
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,14 +194,38 @@ class Spots:
             yield area, area.stand.point(rng.uniform(-x, x), rng.uniform(-y, y))
 
 
-def halves(pose: Pose, model: Model, rng: np.random.Generator, *, held: bool) -> tuple[Pose, Pose]:
-    """The two halves of a cut apple around the place of the whole one, faces in view."""
-    apart = model.extent[0] * (0.5 if held else 0.6)
-    along = np.array([0.0, 1.0, 0.0]) if held else np.array([1.0, 0.0, 0.0])
-    first = Pose(pose.position - pose.axes @ along * apart, pose.axes @ about_z(rng.uniform(0, 6)))
-    tilt = about_x(float(rng.uniform(-0.3, 0.3)) if not held else 0.0)
-    second = Pose(
-        pose.position + pose.axes @ (along * apart + [0, 0, 0.012 * (not held)]),
-        pose.axes @ tilt @ about_z(rng.uniform(0, 6)),
+def halves(
+    pose: Pose, whole: Model, rng: np.random.Generator, *, robot: Array, held: bool
+) -> tuple[Pose, Pose]:
+    """The two halves of a cut apple around the place of the whole one, faces in view.
+
+    Args:
+        pose: Of the whole apple.
+        whole: The apple.
+        rng: Varies how they lie.
+        robot: Where it is seen from; the halves lean that way.
+        held: In a hand, where both keep the apple's own direction.
+    """
+    half = whole.half or whole
+    height = half.extent[2]
+    if held:
+        apart = pose.axes @ np.array([0.0, 0.5 * whole.extent[0], 0.0])
+        turns = [pose.axes @ about_z(rng.uniform(0, 6)) for _ in range(2)]
+        return Pose(pose.position - apart, turns[0]), Pose(pose.position + apart, turns[1])
+    middle = pose.position + pose.axes @ np.array([0, 0, whole.extent[2] / 2])
+    ground = middle - [0, 0, whole.extent[2] / 2]
+    away = robot - middle
+    facing = math.atan2(away[1], away[0])
+    steep = math.atan2(math.hypot(away[0], away[1]), max(float(away[2]), 0.05))
+    side = facing + math.pi / 2 + rng.uniform(-0.6, 0.6)
+    apart = (
+        np.array([math.cos(side), math.sin(side), 0.0]) * whole.extent[0] * rng.uniform(0.55, 0.8)
     )
-    return first, second
+    found = []
+    for sign, lean in ((-1, rng.uniform(0.1, 0.5)), (1, rng.uniform(0.4, 0.8))):
+        # It rolls on its round back, about the middle of its face, towards the robot.
+        turn = about_z(facing + rng.uniform(-0.5, 0.5)) @ about_y(lean * steep)
+        axes = turn @ about_z(rng.uniform(0, 6))
+        up = np.array([0, 0, height])
+        found.append(Pose(ground + sign * apart + up - axes @ up, axes))
+    return found[0], found[1]
