@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.pddl.feature_domains import SAMPLES
-from tpvqa.pddl import Task, load_task, processes, task_from_text, validate
+from tpvqa.pddl import Action, Task, load_task, processes, task_from_text, validate
 from tpvqa.planning import Crashed, Plan, TimedOut
 from tpvqa.planning.fast_downward import FastDownward
 
@@ -234,7 +234,7 @@ def test_eight_threads_get_their_own_plans() -> None:
     planner = FastDownward()
     alone = [planner.plan(task) for task in tasks]
 
-    def replan(task: Task) -> list[tuple[object, ...]]:
+    def replan(task: Task) -> list[tuple[Action, ...]]:
         plans = []
         for _ in range(15):
             plan = planner.plan(task)

@@ -1,0 +1,167 @@
+"""`tpvqa plan` and `tpvqa tasks` as a user types them."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.pddl.feature_domains import EXHAUSTED
+from tests.planning.test_processes import HARD_DOMAIN, alive, children, eventually, hard_problem
+
+
+def tpvqa(*words: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "tpvqa", *words], cwd=cwd, capture_output=True, text=True
+    )
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with spaces in its name, which has to stay as it is."""
+    folder = tmp_path / "my own folder"
+    folder.mkdir()
+    return folder
+
+
+def test_a_shipped_task(folder: Path) -> None:
+    done = tpvqa("plan", "clean_dishes", cwd=folder)
+    assert done.returncode == 0
+    lines = done.stdout.splitlines()
+    assert lines[0].strip() == "1. find(plate, tv)"
+    assert lines[-1].startswith("cost 4, fast-downward, ")
+    assert os.listdir(folder) == []
+
+
+def test_json(folder: Path) -> None:
+    done = tpvqa("plan", "eat_apple", "--json", "--optimal", cwd=folder)
+    assert done.returncode == 0
+    result = json.loads(done.stdout)
+    assert set(result) == {"plan", "cost", "planner", "seconds"}
+    assert result["plan"][1] == {"name": "open", "arguments": ["fridge"]}
+    assert result["cost"] == 7
+    assert result["planner"] == "fast-downward-optimal"
+    assert 0 < result["seconds"] < 60
+
+
+def test_own_files_and_another_state(folder: Path) -> None:
+    (folder / "my domain.pddl").write_text(EXHAUSTED.domain)
+    (folder / "my problem.pddl").write_text(EXHAUSTED.problem)
+    files = ("my domain.pddl", "my problem.pddl")
+    done = tpvqa("plan", *files, cwd=folder)
+    assert done.returncode == 3
+    assert "There is no plan: " in done.stderr
+    assert done.stdout == ""
+    (folder / "state.txt").write_text("(fresh m)\n(fresh d)\n")
+    done = tpvqa("plan", *files, "--from-state", "state.txt", "--json", cwd=folder)
+    assert done.returncode == 0
+    assert {step["name"] for step in json.loads(done.stdout)["plan"]} == {"light"}
+    (folder / "state.txt").write_text("(fresh m)\n(fresh z)\n")
+    done = tpvqa("plan", *files, "--from-state", "state.txt", cwd=folder)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: state.txt:2: (fresh z): there is no object 'z'")
+
+
+def test_unsolvable_as_json(folder: Path) -> None:
+    (folder / "state.json").write_text('["(near tv)", "(free left)"]')
+    done = tpvqa("plan", "eat_apple", "--from-state", "state.json", "--json", cwd=folder)
+    assert done.returncode == 3
+    result = json.loads(done.stdout)
+    assert (result["plan"], result["result"]) == (None, "unsolvable")
+    assert result["reason"]
+
+
+def test_a_goal_that_holds(folder: Path) -> None:
+    (folder / "state.txt").write_text("(halved apple)")
+    done = tpvqa("plan", "eat_apple", "--from-state", "state.txt", cwd=folder)
+    assert done.returncode == 0
+    assert "already holds" in done.stdout
+
+
+@pytest.mark.parametrize("extra", [(), ("--json",)])
+def test_the_time_limit(folder: Path, extra: tuple[str, ...]) -> None:
+    (folder / "domain.pddl").write_text(HARD_DOMAIN)
+    (folder / "problem.pddl").write_text(hard_problem())
+    words = ("plan", "domain.pddl", "problem.pddl", "--optimal", "--timeout", "4", *extra)
+    start = time.monotonic()
+    done = tpvqa(*words, cwd=folder)
+    assert done.returncode == 4
+    assert time.monotonic() - start < 30
+    if extra:
+        assert json.loads(done.stdout)["result"] == "timed out"
+        assert json.loads(done.stdout)["limit"] == 4
+    else:
+        assert "Timed out after 4 s" in done.stderr
+
+
+def test_a_crash(folder: Path) -> None:
+    """Where the search keeps dying, the exit code says so."""
+    (folder / "domain.pddl").write_text(HARD_DOMAIN)
+    (folder / "problem.pddl").write_text(hard_problem())
+    words = [sys.executable, "-m", "tpvqa", "plan", "domain.pddl", "problem.pddl", "--optimal"]
+    process = subprocess.Popen(words, cwd=folder, stderr=subprocess.PIPE, text=True)
+    end = time.monotonic() + 60
+    while process.poll() is None and time.monotonic() < end:
+        for worker in children(process.pid):
+            for search in children(worker):
+                os.kill(search, signal.SIGSEGV)
+        time.sleep(0.05)
+    assert process.returncode == 5
+    assert process.stderr is not None
+    assert "The planner crashed" in process.stderr.read()
+    process.stderr.close()
+
+
+def test_ctrl_c_leaves_nothing_behind(folder: Path) -> None:
+    (folder / "domain.pddl").write_text(HARD_DOMAIN)
+    (folder / "problem.pddl").write_text(hard_problem())
+    before = sorted(os.listdir(folder))
+    words = [sys.executable, "-m", "tpvqa", "plan", "domain.pddl", "problem.pddl", "--optimal"]
+    process = subprocess.Popen(words, cwd=folder, stderr=subprocess.PIPE, text=True)
+    assert eventually(lambda: any(children(child) for child in children(process.pid)))
+    (worker,) = children(process.pid)
+    searches = children(worker)
+    process.send_signal(signal.SIGINT)
+    _, message = process.communicate(timeout=30)
+    assert process.returncode == 130, message
+    assert "Traceback" not in message
+    assert eventually(lambda: not any(map(alive, [worker, *searches])))
+    assert sorted(os.listdir(folder)) == before
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("eat_aple",), "Did you mean 'eat_apple'"),
+        (("gone.pddl", "gone.pddl"), "gone.pddl: there is no such domain file"),
+        (("gone.pddl",), "a domain alone is no task"),
+        (("eat_apple", "--timeout", "soon"), "timeout"),
+        (("eat_apple", "--from-state", "gone"), "gone: the state cannot be read"),
+    ],
+)
+def test_bad_input(folder: Path, words: tuple[str, ...], message: str) -> None:
+    done = tpvqa("plan", *words, cwd=folder)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_help_names_the_exit_codes(folder: Path) -> None:
+    text = " ".join(tpvqa("plan", "--help", cwd=folder).stdout.split())
+    assert "Exit codes: 0 a plan was found, 2 bad input, 3 no plan exists, 4 timed out" in text
+
+
+def test_tasks(folder: Path) -> None:
+    done = tpvqa("tasks", cwd=folder)
+    assert done.returncode == 0
+    assert "serve_breakfast  (household)" in done.stdout
+    assert "on(bread, plate), turned_on(tv)" in done.stdout
+    listed = json.loads(tpvqa("tasks", "--json", cwd=folder).stdout)
+    assert [entry["name"] for entry in listed] == ["clean_dishes", "eat_apple", "serve_breakfast"]
+    assert listed[1]["goal"] == ["halved(apple)"]
+    assert listed[1]["objects"]["apple"] == "fruit"
+    assert Path(listed[1]["problem"]).is_file()

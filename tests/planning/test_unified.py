@@ -1,0 +1,71 @@
+"""Problems of the unified-planning library."""
+
+import subprocess
+import sys
+
+import pytest
+
+from tpvqa.errors import PDDLError
+from tpvqa.pddl import validate
+from tpvqa.planning import Plan
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.unified import task_from_problem
+
+shortcuts = pytest.importorskip("unified_planning.shortcuts")
+
+
+def robot() -> "shortcuts.Problem":  # type: ignore[valid-type]
+    """A robot that moves between places and may carry one thing."""
+    up = shortcuts
+    place, thing = up.UserType("Place"), up.UserType("Thing")
+    here = up.Fluent("here", up.BoolType(), p=place)
+    at = up.Fluent("at", up.BoolType(), x=thing, p=place)
+    held = up.Fluent("held", up.BoolType(), x=thing)
+    move = up.InstantaneousAction("move", a=place, b=place)
+    move.add_precondition(here(move.a))
+    move.add_precondition(up.Not(up.Equals(move.a, move.b)))
+    move.add_effect(here(move.a), False)
+    move.add_effect(here(move.b), True)
+    take = up.InstantaneousAction("take", x=thing, p=place)
+    take.add_precondition(up.And(here(take.p), at(take.x, take.p)))
+    take.add_effect(at(take.x, take.p), False)
+    take.add_effect(held(take.x), True)
+    problem = up.Problem("errand")
+    for fluent in (here, at, held):
+        problem.add_fluent(fluent, default_initial_value=False)
+    problem.add_actions([move, take])
+    home, shop = problem.add_object("home", place), problem.add_object("shop", place)
+    milk = problem.add_object("milk", thing)
+    problem.set_initial_value(here(home), True)
+    problem.set_initial_value(at(milk, shop), True)
+    problem.add_goal(up.And(held(milk), here(home)))
+    return problem
+
+
+def test_a_problem_becomes_a_task_that_can_be_planned() -> None:
+    task = task_from_problem(robot())
+    plan = FastDownward(optimal=True).plan(task)
+    assert isinstance(plan, Plan)
+    assert [str(a) for a in plan.actions] == ["move(home, shop)", "take(milk, shop)"] + [
+        "move(shop, home)"
+    ]
+    assert validate(task, plan.actions).valid
+
+
+def test_what_pddl_cannot_say_is_refused() -> None:
+    problem = robot()
+    fuel = shortcuts.Fluent("fuel", shortcuts.RealType())
+    problem.add_fluent(fuel, default_initial_value=3)
+    problem.action("move").add_precondition(shortcuts.GT(fuel, 1))
+    with pytest.raises(PDDLError):
+        task_from_problem(problem)
+
+
+def test_the_extra_is_named_where_it_is_missing() -> None:
+    script = (
+        "import sys; sys.modules['unified_planning'] = None\n"
+        "from tpvqa.planning.unified import task_from_problem\n"
+        "task_from_problem(None)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert "pip install 'tpvqa[up]'" in done.stderr
