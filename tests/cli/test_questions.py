@@ -99,6 +99,8 @@ def test_they_are_printed_as_json(tpvqa: Run) -> None:
         "expected": "no",
         "fact": "(on apple fridge)",
     } in pick_up["questions"]
+    assert [entry["fact"] for entry in pick_up["not_asked"]] == ["(free left)", "(not (free left))"]
+    assert all(entry["because"] for entry in pick_up["not_asked"])
 
 
 def test_in_a_terminal_they_stand_in_a_table() -> None:

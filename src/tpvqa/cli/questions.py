@@ -11,7 +11,7 @@ import typer
 from tpvqa.cli.plan import CRASHED, TIMED_OUT, UNSOLVABLE
 
 if TYPE_CHECKING:
-    from tpvqa.pddl import Action, Task
+    from tpvqa.pddl import Action, Literal, Task
     from tpvqa.questions import Question, QuestionBook
     from tpvqa.vlm import Answer
 
@@ -149,8 +149,10 @@ def _steps(
 def _print_json(
     task: "Task", book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]"
 ) -> None:
-    actions: list[dict[str, Any]] = [
-        {
+    actions: list[dict[str, Any]] = []
+    state = task.init
+    for action, asked in steps:
+        entry = {
             "name": action.name,
             "arguments": list(action.arguments),
             "say": book.say(action),
@@ -164,10 +166,19 @@ def _print_json(
                 }
                 for question in asked
             ],
+            "not_asked": [
+                {"fact": _pddl(literal), "because": reason}
+                for literal, reason in book.unasked(action, state).items()
+            ],
         }
-        for action, asked in steps
-    ]
+        actions.append(entry)
+        state = task.apply(state, action)
     print(json.dumps({"task": task.name, "actions": actions, "notices": book.notices}, indent=1))
+
+
+def _pddl(literal: "Literal") -> str:
+    fact = literal.atom.pddl()
+    return fact if literal.positive else f"(not {fact})"
 
 
 def _print_lines(book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]") -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from tpvqa.pddl import Action, Condition, Disjunction, Literal, State, Task, holds
+from tpvqa.pddl import Action, Condition, Disjunction, Literal, State, Task, holds, supporting
 from tpvqa.questions import fallback
 from tpvqa.questions.question import Question, Way
 from tpvqa.questions.template import Template
@@ -95,6 +95,13 @@ class QuestionBook:
         # What is both deleted and added holds afterwards.
         left = (each for each in happening if each.positive or each.atom not in added)
         return self._ask((each for each in left if self.asked(each, action)), Way.EFFECT, action)
+
+    def unasked(self, action: Action, state: State) -> dict[Literal, str]:
+        """The literals of an action that no camera shows, each with the reason."""
+        resting = supporting(action.precondition, self.task.extend(state))
+        everything = [*resting, *(effect.literal for effect in action.effects)]
+        reasons = {literal: self.why_not(literal, action) for literal in everything}
+        return {literal: reason for literal, reason in reasons.items() if reason is not None}
 
     # Whole actions
 
