@@ -14,6 +14,9 @@ from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
 
 
+UNHURRIED = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+
+
 @pytest.fixture(scope="module")
 def task() -> Task:
     return load_task("eat_apple")
@@ -135,7 +138,7 @@ def harmless(task: Task, folder: Path, text: str | bytes) -> None:
         found.possible(action)
 
 
-@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=300, suppress_health_check=UNHURRIED)
 @given(text=st.text() | st.binary())
 @example(text="!!python/object/apply:os.system ['true']")
 @example(text="? !!set {a, b}\n: !!timestamp x")
@@ -144,7 +147,7 @@ def test_no_text_at_all_gives_another_error(task: Task, tmp_path: Path, text: st
     harmless(task, tmp_path, text)
 
 
-@settings(max_examples=500, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=500, suppress_health_check=UNHURRIED)
 @given(content=st.dictionaries(SECTIONS, VALUES, max_size=4))
 def test_no_yaml_of_any_shape_gives_another_error(
     task: Task, tmp_path: Path, content: dict[str, object]
@@ -152,7 +155,7 @@ def test_no_yaml_of_any_shape_gives_another_error(
     harmless(task, tmp_path, yaml.safe_dump(content, allow_unicode=True))
 
 
-@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=200, suppress_health_check=UNHURRIED)
 @given(
     st.integers(0, 1800),
     st.integers(0, 6),

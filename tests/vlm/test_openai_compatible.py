@@ -110,13 +110,10 @@ def test_the_request_carries_pictures_question_and_no_option_before_the_question
 
 
 def test_requests_run_side_by_side_but_no_more_than_allowed() -> None:
-    texts = [f"Is it {number}?" for number in range(12)]
-    with ChatServer(lambda *_: 0.9, script=always(Act(wait=0.1))) as server:
-        started = time.monotonic()
+    texts = [f"Is it {number}?" for number in range(8)]
+    with ChatServer(lambda *_: 0.9, script=always(Act(wait=0.4))) as server:
         ask(server, *texts, concurrency=3)
-        seconds = time.monotonic() - started
     assert server.most_at_once == 3
-    assert seconds < 12 * 0.1
 
 
 def test_the_same_question_is_asked_once_within_a_look_and_again_at_the_next() -> None:
@@ -170,20 +167,20 @@ def test_a_failure_is_not_remembered_within_the_look() -> None:
 
 
 def test_what_is_late_is_unknown_and_the_rest_is_answered() -> None:
-    slow: Script = lambda r, _: Act(wait=2.0) if "clean" in r.question else None  # noqa: E731
+    slow: Script = lambda r, _: Act(wait=60.0) if "clean" in r.question else None  # noqa: E731
     with ChatServer(scripted, script=slow) as server:
         started = time.monotonic()
-        late, fine = ask(server, "Is the plate clean?", "Is the fridge open?", deadline=0.8)
+        late, fine = ask(server, "Is the plate clean?", "Is the fridge open?", deadline=2.0)
         seconds = time.monotonic() - started
     assert late.reply is Reply.UNKNOWN
     assert "late" in late.text
     assert fine.reply is Reply.NO
-    assert seconds < 1.5
+    assert seconds < 30
 
 
 def test_a_hanging_request_is_tried_again() -> None:
-    with ChatServer(scripted, script=at_first(Act(wait=3.0))) as server:
-        (answer,) = ask(server, "Is the plate clean?", request_timeout=0.3)
+    with ChatServer(scripted, script=at_first(Act(wait=60.0))) as server:
+        (answer,) = ask(server, "Is the plate clean?", request_timeout=1.5)
     assert answer.reply is Reply.YES
 
 
@@ -450,7 +447,7 @@ except KeyboardInterrupt:
 
 
 def test_an_interrupt_ends_waiting_at_once() -> None:
-    with ChatServer(scripted, script=always(Act(wait=30.0))) as server:
+    with ChatServer(scripted, script=always(Act(wait=60.0))) as server:
         started = time.monotonic()
         done = subprocess.run(
             [sys.executable, "-c", ASK_SLOWLY, server.url],
@@ -461,4 +458,4 @@ def test_an_interrupt_ends_waiting_at_once() -> None:
         )
         seconds = time.monotonic() - started
     assert (done.stdout, done.stderr) == ("interrupted\n", "")
-    assert seconds < 20
+    assert seconds < 40
