@@ -1,7 +1,15 @@
 """The things in the kitchen: meshes, materials and textures in many variants."""
 
 from tpvqa.worlds.kitchen.assets.dirt import soiled
-from tpvqa.worlds.kitchen.assets.library import Split, draw, families, kinds, models
+from tpvqa.worlds.kitchen.assets.library import (
+    Split,
+    distractors,
+    draw,
+    families,
+    kinds,
+    lookalikes,
+    models,
+)
 from tpvqa.worlds.kitchen.assets.model import (
     Grasp,
     Joint,
@@ -26,10 +34,12 @@ __all__ = [
     "Split",
     "Surface",
     "Texture",
+    "distractors",
     "draw",
     "draw_texture",
     "families",
     "kinds",
+    "lookalikes",
     "models",
     "soiled",
 ]

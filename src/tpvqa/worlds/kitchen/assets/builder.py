@@ -45,7 +45,7 @@ class Builder:
         """A new material; gives its name back."""
         file = None
         if texture is not None:
-            file = f"/{name}.png"
+            file = f"~{name}.png"
             self.files[file] = texture
         r, g, b, *rest = (float(value) for value in colour)
         self.paints.append(
@@ -65,7 +65,7 @@ class Builder:
         self, name: str, data: bytes, paint: str, *, scale: float = 1.0, role: str = ""
     ) -> None:
         """A mesh that is already in MuJoCo's format as a part."""
-        file = f"/{name}.msh"
+        file = f"~{name}.msh"
         self.files[file] = data
         size = () if scale == 1 else (scale, scale, scale)
         self.parts.append(
@@ -85,7 +85,7 @@ class Builder:
         crease: float = 40.0,
     ) -> None:
         """A mesh as a part."""
-        file = f"/{name}.msh"
+        file = f"~{name}.msh"
         self.files[file] = encode(mesh, crease=crease)
         self.parts.append(
             Part(

@@ -24,10 +24,45 @@ from tpvqa.worlds.kitchen.assets.model import Model
 
 Split = Literal["train", "held_out", "all"]
 
+MAIN = (
+    "plate",
+    "bread",
+    "apple",
+    "apple_half",
+    "knife",
+    "tv",
+    "fridge",
+    "sink",
+    "table",
+    "counter",
+    "wall_cabinet",
+    "tvstand",
+    "gripper",
+)
+"""What a kitchen is made of and what the tasks are about; all other kinds just stand about."""
+
+LOOKALIKES = {
+    "plate": ("lid", "saucer", "bowl", "pan", "tray"),
+    "bread": ("box", "croissant", "sponge", "potato", "cake", "pencil_case"),
+    "apple": ("orange", "tomato", "lemon", "ball", "pear", "potato"),
+    "knife": ("spoon", "fork", "spatula", "remote", "peeler", "whisk"),
+}
+"""For each thing that is handled, kinds that a careless eye takes for it."""
+
 
 def kinds() -> tuple[str, ...]:
     """All kinds of things, in the library's order."""
     return tuple(dict.fromkeys(family.kind for family in FAMILIES))
+
+
+def distractors(*, split: Split = "all") -> tuple[str, ...]:
+    """The kinds that just stand about and have variants in this split."""
+    return tuple(kind for kind in kinds() if kind not in MAIN and families(kind, split=split))
+
+
+def lookalikes(kind: str, *, split: Split = "all") -> tuple[str, ...]:
+    """The kinds that may be taken for this one, and have variants in this split."""
+    return tuple(other for other in LOOKALIKES.get(kind, ()) if families(other, split=split))
 
 
 def families(kind: str, *, split: Split = "all") -> tuple[Family, ...]:

@@ -154,6 +154,7 @@ class Model:
         solids: What physics sees.
         mass: In kilograms, for the sum of the solids.
         files: Bytes of the meshes and textures by name, for `MjModel.from_xml_string(assets=…)`.
+            No name has a slash: MuJoCo looks only at what follows the last one.
         joints: Bodies that move.
         surfaces: Where things can stand.
         grasps: Ways of holding it, the preferred one first; none for what stays where it is.

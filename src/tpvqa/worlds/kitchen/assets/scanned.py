@@ -17,7 +17,17 @@ from tpvqa.worlds.kitchen.assets.model import Grasp, Model, Vec
 from tpvqa.worlds.kitchen.assets.paint import Colour, one_of
 from tpvqa.worlds.kitchen.assets.television import screen
 
-WEIGHTS = {"plate": 0.5, "knife": 1.0, "bread": 1.0, "apple": 0.5, "tv": 0.5}
+WEIGHTS = {
+    "plate": 0.4,
+    "apple": 0.4,
+    "tv": 0.25,
+    "table": 0.2,
+    "counter": 0.2,
+    "sink": 0.3,
+    "tvstand": 0.3,
+    "wall_cabinet": 0.4,
+}
+"""How often a scanned training thing is drawn, against 1 for a procedural family."""
 STAND_ON = ("table", "counter", "tvstand")
 
 
@@ -255,8 +265,9 @@ def scanned_families() -> tuple[Family, ...]:
     for entry in pack.index():
         kind, name, held = str(entry["kind"]), str(entry["name"]), bool(entry["held_out"])
         make = partial(scanned, entry=entry)
-        found.append(Family(kind, name, make, held, WEIGHTS.get(kind, 0.7), fixed=1))
+        weight = 1.0 if held else WEIGHTS.get(kind, 0.7)
+        found.append(Family(kind, name, make, held, weight, fixed=1))
         if kind == "apple":
             halves = partial(_apple_half, entry=entry)
-            found.append(Family("apple_half", f"{name}-half", halves, held, 0.5, fixed=1))
+            found.append(Family("apple_half", f"{name}-half", halves, held, weight, fixed=1))
     return tuple(found)

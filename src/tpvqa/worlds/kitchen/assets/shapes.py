@@ -1,10 +1,12 @@
 """Basic shapes as meshes: turned on a lathe, cut out of a sheet, swept along a curve, boxes."""
 
 from collections.abc import Sequence
+from functools import cache
+from itertools import product
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Mesh, joined
+from tpvqa.worlds.kitchen.assets.mesh import Floats, Ints, Mesh
 
 
 def lathe(
@@ -33,7 +35,7 @@ def lathe(
     return Mesh(points, uv, _grid(steps + 1, n))
 
 
-def _grid(rows: int, columns: int) -> "np.ndarray[tuple[int, ...], np.dtype[np.int64]]":
+def _grid(rows: int, columns: int) -> Ints:
     i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
     a = (i * columns + j).reshape(-1)
     b, c, d = a + columns, a + columns + 1, a + 1
@@ -57,66 +59,67 @@ def box(x: float, y: float, z: float, *, bevel: float = 0.0, uv_scale: float | N
         y: Depth.
         z: Height.
         bevel: Width of the cut.
-        uv_scale: Texture repeats per metre; None puts the whole texture on each side.
+        uv_scale: Texture repeats per metre, the grain along x, or up on sides seen from along x;
+            None puts the whole texture on each side.
     """
     half = np.array([x, y, z]) / 2
-    b = min(bevel, 0.49 * min(x, y, z))
-    points: list[Floats] = []
+    cut = min(bevel, 0.49 * min(x, y, z))
+    signs, inner, side, faces = _box_pattern(cut > 0)
+    points = signs * (half - cut * inner)
+    i, j = np.array([1, 0, 0])[side], np.array([2, 2, 1])[side]
+    rows = np.arange(len(points))
+    flat = np.stack([points[rows, i], points[rows, j]], 1)
+    whole = 1 / (2 * np.stack([half[i], half[j]], 1))
+    uv = 0.5 + flat * whole if uv_scale is None else flat * uv_scale
+    return Mesh(points + np.array([0.0, 0.0, half[2]]), uv, faces)
+
+
+@cache
+def _box_pattern(bevelled: bool) -> tuple[Floats, Floats, Ints, Ints]:
+    """Corners of all faces of a box: signs, which coordinates are cut back, main side; faces."""
+    corner = {
+        (axis, s): (np.array(s, float), np.array([float(k != axis) for k in range(3)]))
+        for axis in range(3)
+        for s in product((-1, 1), repeat=3)
+    }
+    loops: list[list[tuple[int, tuple[int, ...]]]] = []
     for axis in range(3):
         i, j = (axis + 1) % 3, (axis + 2) % 3
-        for sign in (1.0, -1.0):
-            for si, sj in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-                p = np.zeros(3)
-                p[axis], p[i], p[j] = sign * half[axis], si * (half[i] - b), sj * (half[j] - b)
-                points.append(p)
-    corners = np.array(points)
-    quads: list[list[int]] = [[4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3] for k in range(6)]
-    tris: list[list[int]] = []
-    if b > 0:
-        by_side = {}
-        for k, p in enumerate(corners):
-            by_side[(k // 8, tuple(np.sign(p).astype(int)))] = k
-        signs = [(sx, sy, sz) for sx in (1, -1) for sy in (1, -1) for sz in (1, -1)]
-        tris += [[by_side[(a, s)] for a in range(3)] for s in signs]
+        for sign in (-1, 1):
+            ring = []
+            for si, sj in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+                s = [0, 0, 0]
+                s[axis], s[i], s[j] = sign, si, sj
+                ring.append((axis, tuple(s)))
+            loops.append(ring)
+    if bevelled:
         for axis in range(3):
             i, j = (axis + 1) % 3, (axis + 2) % 3
-            for si in (1, -1):
-                for sj in (1, -1):
-                    ends = []
-                    for end in (1, -1):
-                        s = [0, 0, 0]
-                        s[axis], s[i], s[j] = end, si, sj
-                        ends.append((s[0], s[1], s[2]))
-                    quads.append(
-                        [
-                            by_side[(i, ends[0])],
-                            by_side[(i, ends[1])],
-                            by_side[(j, ends[1])],
-                            by_side[(j, ends[0])],
-                        ]
-                    )
-    out_points: list[Floats] = []
-    out_uv: list[Floats] = []
+            for si, sj in product((-1, 1), repeat=2):
+                ends = []
+                for end in (-1, 1):
+                    s = [0, 0, 0]
+                    s[axis], s[i], s[j] = end, si, sj
+                    ends.append(tuple(s))
+                loops.append([(i, ends[0]), (i, ends[1]), (j, ends[1]), (j, ends[0])])
+        loops += [[(a, s) for a in range(3)] for s in product((-1, 1), repeat=3)]
+    signs: list[Floats] = []
+    inner: list[Floats] = []
+    side: list[int] = []
     faces: list[list[int]] = []
-    for loop in [*quads, *tris]:
-        ring = corners[loop]
-        normal = np.cross(ring[1] - ring[0], ring[2] - ring[0])
-        if normal @ ring.mean(axis=0) < 0:
-            ring = ring[::-1]
+    for loop in loops:
+        ring_points = [corner[key][0] * (1 - 0.1 * corner[key][1]) for key in loop]
+        normal = np.cross(ring_points[1] - ring_points[0], ring_points[2] - ring_points[0])
+        if normal @ np.mean(ring_points, axis=0) < 0:
+            loop = loop[::-1]
             normal = -normal
-        start = len(out_points)
-        out_points += list(ring)
-        out_uv += list(_side_uv(ring, int(np.argmax(np.abs(normal))), half, uv_scale))
-        faces += [[start, start + k, start + k + 1] for k in range(1, len(ring) - 1)]
-    return Mesh.of(out_points, faces, np.array(out_uv)).moved(z=half[2])
-
-
-def _side_uv(ring: Floats, axis: int, half: Floats, scale: float | None) -> Floats:
-    # Grain runs along x, or up where a side is seen from along x.
-    i, j = {0: (1, 2), 1: (0, 2), 2: (0, 1)}[axis]
-    if scale is None:
-        return np.stack([0.5 + ring[:, i] / (2 * half[i]), 0.5 + ring[:, j] / (2 * half[j])], 1)
-    return ring[:, [i, j]] * scale
+        start = len(signs)
+        for key in loop:
+            signs.append(corner[key][0])
+            inner.append(corner[key][1])
+            side.append(int(np.argmax(np.abs(normal))))
+        faces += [[start, start + k, start + k + 1] for k in range(1, len(loop) - 1)]
+    return np.array(signs), np.array(inner), np.array(side), np.array(faces)
 
 
 def slab(outline: Floats, low: float, high: float, *, bevel: float = 0.0) -> Mesh:
@@ -222,8 +225,3 @@ def disc(radius: float, *, thickness: float = 0.001, steps: int = 32) -> Mesh:
     """A flat round sheet on the origin with the texture seen from above."""
     angle = np.linspace(0, 2 * np.pi, steps, endpoint=False)
     return slab(radius * np.stack([np.cos(angle), np.sin(angle)], 1), 0.0, thickness)
-
-
-def stack(*meshes: Mesh) -> Mesh:
-    """Several meshes as one."""
-    return joined(meshes)
