@@ -53,7 +53,7 @@ def test_dirt_that_is_covered_is_not_seen() -> None:
 def test_the_fridge_hides_what_is_in_it_until_the_robot_looks_inside() -> None:
     household = Household(near="fridge", where=_at("fridge").where, opened=True)
     assert not _shown(household, {"fridge": 20_000}, "on(apple,fridge)").visible
-    assert _shown(household, {"fridge": 20_000}, "opened(fridge)").visible
+    assert _shown(household, {"fridge": 20_000, "inside": 4000}, "opened(fridge)").visible
 
 
 def test_thresholds_grow_with_the_picture() -> None:

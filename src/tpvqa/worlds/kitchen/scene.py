@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from tpvqa.chance import chance_array
 from tpvqa.errors import UnknownNameError, WorldError
 from tpvqa.pddl import Atom, State
+from tpvqa.worlds.kitchen.assets import Part
 from tpvqa.worlds.kitchen.cameras import Shot, Wanted, choose, faults, overview
 from tpvqa.worlds.kitchen.drawing import Drawing
 from tpvqa.worlds.kitchen.furniture import furnish
@@ -22,12 +23,19 @@ from tpvqa.worlds.kitchen.spots import Pose, Spots, halves
 from tpvqa.worlds.kitchen.truth import Shown, objections, shown
 from tpvqa.worlds.kitchen.viewpoints import approach
 
-ATTEMPTS = 8
+ATTEMPTS = 12
 """Arrangements that are tried for one picture."""
 VIEWS = ("front", "left", "right", "overview")
 HIDDEN = 4
 """The geom group that is not drawn."""
-LABELS = ("nothing", *ITEMS, *FIXTURES, "screen", "dirt", *HANDS)
+OPAQUE = 0.9
+"""Materials of less are seen through."""
+LABELS = ("nothing", *ITEMS, *FIXTURES, "screen", "dirt", "inside", *HANDS)
+
+
+def _inner(part: Part) -> bool:
+    """Whether a part of the fridge shows only while the door is open."""
+    return not part.body and part.paint in ("inside", "shelf", "edge", "lamp")
 
 
 class KitchenScene:
@@ -98,6 +106,8 @@ class KitchenScene:
             return "counter"
         if thing == "tv" and part in {p.name for p in models["tv"].parts_with("screen")}:
             return "screen"
+        if thing == "fridge" and part in {p.name for p in models["fridge"].parts if _inner(p)}:
+            return "inside"
         if thing == "sink":
             wet = {p.name for role in ("basin", "tap") for p in models["sink"].parts_with(role)}
             return "sink" if not wet or part in wet else "counter"
@@ -311,11 +321,17 @@ class KitchenScene:
         """How many pixels of a picture of the last arrangement show each thing."""
         self._arranged()
         if self._counts is None:
+            # Segmentation takes glass for opaque, so it is left out.
+            glass = self.model.mat_rgba[self.model.geom_matid, 3] < OPAQUE
+            drawn = self.model.geom_group[glass].copy()
+            self.model.geom_group[glass] = HIDDEN
             by_geom = self._drawing.counts(self.data, self._camera, self.size)
+            self.model.geom_group[glass] = drawn
             sums = np.bincount(self._label, weights=by_geom, minlength=len(LABELS))
             counts = {name: int(n) for name, n in zip(LABELS, sums, strict=True)}
             counts["plate"] += counts["dirt"]
             counts["tv"] += counts["screen"]
+            counts["fridge"] += counts["inside"]
             self._counts = counts
         return self._counts
 

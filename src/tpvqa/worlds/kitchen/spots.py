@@ -9,7 +9,7 @@ import numpy as np
 from tpvqa.chance import chance_array
 from tpvqa.worlds.kitchen.assets import Model
 from tpvqa.worlds.kitchen.falling import come_to_rest
-from tpvqa.worlds.kitchen.furniture import Furniture
+from tpvqa.worlds.kitchen.furniture import Furniture, hinge_side
 from tpvqa.worlds.kitchen.household import Household
 from tpvqa.worlds.kitchen.layout import Area, Stand
 from tpvqa.worlds.kitchen.rotation import Array, about_y, about_z
@@ -55,7 +55,7 @@ class Spots:
             "floor": list(layout.floors),
             "sink": [self._inside("sink", "basin", 0.7)],
             "fridge": [
-                self._inside("fridge", surface.name, 0.8)
+                self._inside("fridge", surface.name, 0.8, hinge_side(models["fridge"]))
                 for surface in models["fridge"].surfaces
                 if surface.name.startswith("shelf") and 0.45 < surface.pos[2] < 1.35
             ],
@@ -66,11 +66,15 @@ class Spots:
             "tv", Stand(top[0], top[1], layout.tv_stand.yaw, top[2]), (0.55, 0.1)
         )
 
-    def _inside(self, fixture: str, surface_name: str, around: float) -> Area:
+    def _inside(self, fixture: str, surface_name: str, around: float, side: float = 0.0) -> Area:
+        """A surface of a fixture; its half towards one side where the other is to stay free."""
         surface = self.furniture.models[fixture].surface(surface_name)
         stand: Stand = getattr(self.furniture.layout, fixture)
-        at = stand.point(*surface.pos)
         half = (max(surface.half[0] - 0.1, 0.03), max(surface.half[1] - 0.1, 0.03))
+        if side:
+            half = (half[0] / 2, half[1])
+        x, y, z = surface.pos
+        at = stand.point(x + side * half[0], y, z)
         return Area(fixture, Stand(at[0], at[1], stand.yaw, at[2]), half, around)
 
     def place(

@@ -19,6 +19,7 @@ ENOUGH: Mapping[str, int] = {
     "tv": 900,
     "screen": 600,
     "dirt": 14,
+    "inside": 350,
     "hand": 60,
 }
 """Pixels of a 224 × 224 picture from which a person knows the thing."""
@@ -44,7 +45,8 @@ def shown(
 
     Args:
         household: The true state.
-        pixels: How many pixels show each thing: items, fixtures, "screen", "dirt" and the hands.
+        pixels: How many pixels show each thing: items, fixtures, "screen", "dirt",
+            "inside" (of the fridge) and the hands.
         size: Height of the picture that was counted.
         first_person: False for a camera that is not the robot's own.
     """
@@ -76,9 +78,10 @@ def shown(
         for place in SUPPORTS:
             if place != item:
                 found[Atom("on", (item, place))] = _on(household, item, place, seen, first_person)
+    fridge_seen = seen("fridge") and (not household.opened or seen("inside"))
     dirt_seen = seen("plate") and (household.clean or seen("dirt"))
     return found | {
-        Atom("opened", ("fridge",)): Shown(household.opened, seen("fridge")),
+        Atom("opened", ("fridge",)): Shown(household.opened, fridge_seen),
         Atom("turned_on", ("tv",)): Shown(household.turned_on, seen("screen")),
         Atom("clean", ("plate",)): Shown(household.clean, dirt_seen),
         Atom("halved", ("apple",)): Shown(household.halved, seen("apple")),
@@ -113,6 +116,8 @@ def objections(household: Household, pixels: Mapping[str, int], *, size: int) ->
         wanted["dirt"] = 1.0
     lacking = sum(w for x, w in wanted.items() if pixels.get(x, 0) < ENOUGH[x] * scale)
     lacking += sum(0.5 for x in household.held.values() if pixels.get(x, 0) < CLEARLY[x] * scale)
+    if "fridge" in wanted and household.opened:
+        lacking += float(pixels.get("inside", 0) < 3 * ENOUGH["inside"] * scale)
     surplus = sum(
         1.0
         for x in (*ITEMS, "tv", "sink", "fridge")

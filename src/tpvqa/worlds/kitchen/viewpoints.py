@@ -175,6 +175,6 @@ def _fridge(household: Household, furniture: Furniture, rng: np.random.Generator
     if household.opened:
         hinge = hinge_side(furniture.models["fridge"])
         return Approach(
-            target, front + hinge * 0.65, 0.3, (1.0, 1.5), (1.3, 1.6), (0.15, -0.1, 0.2)
+            target, front + hinge * 0.4, 0.45, (1.15, 1.6), (1.3, 1.6), (0.15, -0.1, 0.2)
         )
     return Approach(target, front, 0.6, (0.9, 1.4), (1.25, 1.55), (0.2, -0.1, 0.25))
