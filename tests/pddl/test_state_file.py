@@ -65,5 +65,5 @@ def test_static_facts_may_be_left_out_and_derived_ones_must(tmp_path: Path) -> N
     path.write_text(json.dumps(["(table a)", "(table b)", "(on c a)"]))
     assert read_state(path, task) >= {Atom.parse("block a"), Atom.parse("on c a")}
     path.write_text("(table a)\n(clear a)")
-    with pytest.raises(PDDLError, match=":2: .*clear is derived"):
+    with pytest.raises(PDDLError, match=r":2: .*clear is derived"):
         read_state(path, task)

@@ -18,7 +18,7 @@ from typing import Any
 from tpvqa.errors import PlannerError
 
 SILENCE = 10.0
-"""Seconds without a heartbeat after which a busy worker counts as hung."""
+"""Seconds without a heartbeat after which a worker that does nothing counts as hung."""
 
 
 class WorkerDied(Exception):  # noqa: N818
@@ -106,8 +106,9 @@ class Worker:
                 wait = min(wait, end - time.monotonic())
             if wait <= 0:
                 raise WorkerTimedOut
+            before = self._processor_ticks()
             if not poll.poll(wait * 1000):
-                if wait == SILENCE:
+                if wait == SILENCE and not self._makes_progress(before):
                     raise WorkerDied(f"it gave no sign of life for {SILENCE:g} s")
                 continue
             data = os.read(self._replies, 1 << 20)
@@ -116,6 +117,25 @@ class Worker:
             parts.append(data)
         line, self._rest = b"".join(parts).split(b"\n", 1)
         return line
+
+    def _processor_ticks(self) -> int:
+        with contextlib.suppress(OSError):
+            words = Path(f"/proc/{self.pid}/stat").read_text().rsplit(")", 1)[1].split()
+            return int(words[11]) + int(words[12])
+        return 0
+
+    def _makes_progress(self, ticks: int) -> bool:
+        """Whether it has worked since, or only waits for a processor or a disk.
+
+        On a machine with too much to do a healthy worker can be silent for long.
+        """
+        if self._processor_ticks() != ticks:
+            return True
+        with contextlib.suppress(OSError):
+            for stat in Path(f"/proc/{self.pid}/task").glob("*/stat"):
+                if stat.read_text().rsplit(")", 1)[1].split()[0] in "RD":
+                    return True
+        return False
 
     def kill(self) -> None:
         """End the process and whatever it started, at once."""
