@@ -9,7 +9,7 @@ from tpvqa.training.labels import Label
 from tpvqa.training.network import Network
 from tpvqa.training.validate import logits
 
-_MOST = 400
+_MOST = 100
 
 
 def temperature(network: Network, asking: Asking, pictures: Pictures) -> float:

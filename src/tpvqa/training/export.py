@@ -21,6 +21,7 @@ from tpvqa.errors import TpvqaError
 from tpvqa.training.asking import Asking
 from tpvqa.training.calibrate import temperature
 from tpvqa.training.data import Pictures
+from tpvqa.training.memory import keep_memory
 from tpvqa.training.network import SIDE, ImageEncoder, Network, QuestionHead, normalise
 from tpvqa.vlm.embedded.weights import DESCRIPTION, HEAD, IMAGE, SHIPPED
 
@@ -168,6 +169,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=SHIPPED)
     parser.add_argument("--reference", type=Path, default=None, help="where test cases go")
     chosen = parser.parse_args(arguments)
+    keep_memory()
     try:
         data = torch.load(chosen.checkpoint, map_location="cpu")["recipe"]
         asking = Asking.about(data["task"])

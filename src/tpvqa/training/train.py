@@ -5,7 +5,6 @@ takes in pictures while another process still renders them.
 """
 
 import argparse
-import ctypes
 import json
 import math
 import os
@@ -25,6 +24,7 @@ from tpvqa.training.asking import Asking
 from tpvqa.training.augment import augmented
 from tpvqa.training.backbone import pretrained
 from tpvqa.training.data import Pictures
+from tpvqa.training.memory import keep_memory
 from tpvqa.training.network import Network
 from tpvqa.training.recipe import DEFAULT, Recipe
 from tpvqa.training.sampling import Sampler
@@ -56,7 +56,7 @@ class Run:
     def __init__(self, recipe: Recipe, folder: Path, words: int, *, threads: int):
         torch.set_num_threads(threads)
         torch.manual_seed(recipe.seed)
-        _keep_memory()
+        keep_memory()
         self.recipe, self.folder = recipe, folder
         folder.mkdir(parents=True, exist_ok=True)
         backbone = pretrained(frozen=recipe.frozen_blocks)
@@ -155,16 +155,6 @@ def _groups(net: Network, recipe: Recipe) -> Iterator[dict[str, object]]:
         rate = recipe.head_rate * recipe.backbone_rate * max(size, 1e-3)
         yield {"params": [parameter], "peak": rate, "lr": 0.0, "weight_decay": 0.0}
     yield {"params": head, "peak": recipe.head_rate, "lr": 0.0}
-
-
-def _keep_memory() -> None:
-    """Let glibc keep freed memory: a third of a step was the kernel clearing fresh pages."""
-    try:
-        libc = ctypes.CDLL("libc.so.6")
-        libc.mallopt(-4, 0)  # M_MMAP_MAX: no mappings of their own for large blocks
-        libc.mallopt(-1, 2**31 - 1)  # M_TRIM_THRESHOLD
-    except (OSError, AttributeError):
-        pass
 
 
 def train(

@@ -10,8 +10,8 @@ from tpvqa.training.labels import Label
 from tpvqa.training.network import Network, normalise
 from tpvqa.training.wordings import wordings
 
-_MOST = 400
-_BATCH = 16
+_MOST = 200
+_BATCH = 4
 
 
 def logits(
