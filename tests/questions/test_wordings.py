@@ -13,7 +13,6 @@ from tpvqa.pddl import Literal, Task, load_task
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
 
-
 UNHURRIED = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 
 
