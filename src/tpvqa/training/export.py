@@ -21,6 +21,7 @@ from tpvqa.errors import TpvqaError
 from tpvqa.training.asking import Asking
 from tpvqa.training.calibrate import temperature
 from tpvqa.training.data import Pictures
+from tpvqa.training.graphs import tidy
 from tpvqa.training.memory import keep_memory
 from tpvqa.training.network import SIDE, ImageEncoder, Network, QuestionHead, normalise
 from tpvqa.vlm.embedded.weights import DESCRIPTION, HEAD, IMAGE, SHIPPED
@@ -88,29 +89,7 @@ def _graph(
             output_names=[output],
             dynamic_axes=axes,
         )
-    _halve(path)
-
-
-def _halve(path: Path) -> None:
-    """Store large weights as 16-bit floats, widened again when the graph is loaded."""
-    import onnx
-    from onnx import TensorProto, helper, numpy_helper
-
-    model = onnx.load(str(path))
-    widened = []
-    for tensor in model.graph.initializer:
-        if tensor.data_type != TensorProto.FLOAT or len(tensor.raw_data) < 1024:
-            continue
-        name = tensor.name
-        small = numpy_helper.from_array(
-            numpy_helper.to_array(tensor).astype(np.float16), f"{name}/half"
-        )
-        tensor.CopyFrom(small)
-        widened.append(helper.make_node("Cast", [f"{name}/half"], [name], to=TensorProto.FLOAT))
-    for place, node in enumerate(widened):
-        model.graph.node.insert(place, node)
-    onnx.checker.check_model(model)
-    onnx.save(model, str(path))
+    tidy(path)
 
 
 def describe(

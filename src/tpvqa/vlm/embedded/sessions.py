@@ -26,6 +26,7 @@ class Sessions:
         options.intra_op_num_threads = threads
         options.inter_op_num_threads = 1
         options.log_severity_level = 3
+        options.add_session_config_entry("session.intra_op.allow_spinning", "0")
 
         def load(name: str) -> Any:
             return onnxruntime.InferenceSession(
