@@ -67,7 +67,7 @@ class Cycles:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._log,
-            start_new_session=True,  # Ctrl-C ends it through `close`, not in the midst of a file
+            process_group=0,  # Ctrl-C ends it through `close`, not in the midst of a file
         )
         self._answer()
 

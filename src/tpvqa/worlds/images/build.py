@@ -4,17 +4,18 @@ The manifest names only pictures that are whole on disk, and is replaced in one 
 of them, so a build can be stopped at any moment and goes on where it was.
 """
 
-import contextlib
 import json
 import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from io import BytesIO
+from itertools import groupby
 from multiprocessing import get_context
+from multiprocessing.util import Finalize
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,9 @@ from tpvqa.errors import PictureSetError
 from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Picture, Renderer, digest
 from tpvqa.worlds.images.recipe import FACTS, TRIES, Job, objection
 from tpvqa.worlds.kitchen.layout import Split
+
+if TYPE_CHECKING:
+    from tpvqa.worlds.kitchen.scene import KitchenScene
 
 SIDE = 224
 QUALITY = 85
@@ -47,7 +51,7 @@ class Settings:
     renderer: Renderer
     blender: Path | None = None
     samples: int = 8
-    size: int = 256
+    size: int = SIDE
     threads: int = 1
 
 
@@ -141,18 +145,10 @@ def _made(missing: Sequence[Job], settings: Settings, workers: int) -> Iterator[
         workers, mp_context=get_context("spawn"), initializer=_start, initargs=(settings,)
     )
     try:
-        waiting: set[Future[Made]] = set()
-        queue = iter(missing)
-        while True:
-            for job in queue:
-                waiting.add(pool.submit(_work, job))
-                if len(waiting) > 2 * workers:
-                    break
-            if not waiting:
-                return
-            finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-            for future in finished:
-                yield future.result()
+        kitchens = groupby(missing, key=lambda job: job.seed)
+        futures = [pool.submit(_work, list(sharing)) for _, sharing in kitchens]
+        for future in as_completed(futures):
+            yield from future.result()
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
@@ -164,11 +160,12 @@ def _start(settings: Settings) -> None:
     global _maker
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends its workers
     _maker = _Maker(settings)
+    Finalize(None, _maker.close, exitpriority=0)  # worker processes run no `atexit`
 
 
-def _work(job: Job) -> Made:
+def _work(sharing: Sequence[Job]) -> list[Made]:
     assert _maker is not None
-    return _maker.make(job)
+    return [_maker.make(job) for job in sharing]
 
 
 class _Maker:
@@ -177,11 +174,18 @@ class _Maker:
     def __init__(self, settings: Settings):
         self._settings = settings
         self._cycles: Any = None
+        self._scene: KitchenScene | None = None
 
     def __enter__(self) -> "_Maker":
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End Blender and free the canvas."""
+        if self._scene is not None:
+            self._scene.close()
         if self._cycles is not None:
             self._cycles.close()
 
@@ -191,33 +195,42 @@ class _Maker:
         Raises:
             PictureSetError: None of the job's kitchens can.
         """
-        from tpvqa.worlds.kitchen.scene import KitchenScene
-
         reasons = []
         for seed in range(job.seed, job.seed + TRIES):
-            state = chance(seed, 0, "true state").choice(job.states)
-            split: Split = "train" if job.meshes == "known" else "held_out"
-            with contextlib.closing(KitchenScene(seed=seed, split=split, size=SIDE)) as scene:
-                for look in range(LOOKS):
-                    scene.arrange(state, look=look)
-                    shown = scene.shown()
-                    reason = objection(
-                        job,
-                        state,
-                        {atom: shown[atom].true for atom in FACTS},
-                        {atom: shown[atom].visible for atom in FACTS},
-                    )
-                    if reason is None:
-                        seen = frozenset(atom.pddl() for atom in FACTS if shown[atom].visible)
-                        data = _encoded(self._render(scene))
-                        return Made(job, data, self._picture(job, seed, data, state, seen))
-                    reasons.append(f"kitchen {seed}, look {look}: {reason}")
+            state = chance(seed, job.turn, "true state").choice(job.states)
+            scene = self._kitchen(seed, job)
+            scene.repaint(job.turn)
+            for look in range(job.turn * LOOKS, (job.turn + 1) * LOOKS):
+                scene.arrange(state, look=look)
+                shown = scene.shown()
+                reason = objection(
+                    job,
+                    state,
+                    {atom: shown[atom].true for atom in FACTS},
+                    {atom: shown[atom].visible for atom in FACTS},
+                )
+                if reason is None:
+                    seen = frozenset(atom.pddl() for atom in FACTS if shown[atom].visible)
+                    data = _encoded(self._render(scene, look))
+                    return Made(job, data, self._picture(job, seed, look, data, state, seen))
+                reasons.append(f"kitchen {seed}, look {look}: {reason}")
         raise PictureSetError(
             f"No kitchen shows {job.key[0]} well. The last tries: {'; '.join(reasons[-3:])}"
         )
 
+    def _kitchen(self, seed: int, job: Job) -> "KitchenScene":
+        """The last kitchen, or another: jobs that share one come after each other."""
+        from tpvqa.worlds.kitchen.scene import KitchenScene
+
+        split: Split = "train" if job.meshes == "known" else "held_out"
+        if self._scene is None or (self._scene.seed, self._scene.split) != (seed, split):
+            if self._scene is not None:
+                self._scene.close()
+            self._scene = KitchenScene(seed=seed, split=split, size=SIDE)
+        return self._scene
+
     def _picture(
-        self, job: Job, seed: int, data: bytes, state: Any, seen: frozenset[str]
+        self, job: Job, seed: int, look: int, data: bytes, state: Any, seen: frozenset[str]
     ) -> Picture:
         visible, number = job.key
         sha256 = digest(data)
@@ -229,6 +242,7 @@ class _Maker:
             renderer=self._settings.renderer,
             meshes=job.meshes,
             seed=seed,
+            look=look,
             visible=visible,
             number=number,
             state=tuple(atom.pddl() for atom in sorted(state)),
@@ -236,7 +250,7 @@ class _Maker:
             shows=job.shows,
         )
 
-    def _render(self, scene: Any) -> NDArray[np.uint8]:
+    def _render(self, scene: "KitchenScene", look: int) -> NDArray[np.uint8]:
         if self._settings.renderer == "mujoco":
             pixels: NDArray[np.uint8] = scene.render()
             return pixels
@@ -250,7 +264,7 @@ class _Maker:
                 samples=self._settings.samples,
                 threads=self._settings.threads,
             )
-        rendered: NDArray[np.uint8] = self._cycles.render(scene_arrays(scene))
+        rendered: NDArray[np.uint8] = self._cycles.render(scene_arrays(scene, look=look))
         return rendered
 
 

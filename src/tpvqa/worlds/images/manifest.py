@@ -50,6 +50,7 @@ class Picture(_Model):
         meshes: "known": objects as in training, in new kitchens; "held_out": objects, grippers
             and dirt that training never saw.
         seed: Of the kitchen.
+        look: Of the arrangement and the camera in it.
         visible: What the camera shows, as `visible.describe` writes it.
         number: Tells it from others that show the same, from 0.
         state: The facts that are true in it, as PDDL atoms; all others are false.
@@ -64,6 +65,7 @@ class Picture(_Model):
     renderer: Renderer
     meshes: Meshes
     seed: int
+    look: int = 0
     visible: str
     number: int
     state: tuple[str, ...]

@@ -18,6 +18,9 @@ PER_STATE = 6
 PER_PLANNED_STATE = 10
 """Of the states that the plan leads through: ten observations of each action's outcome."""
 
+SHARING = 5
+"""Pictures of different states that share a kitchen: making one takes as long as some pictures."""
+
 FACTS = atoms_of_interest()
 
 
@@ -30,6 +33,7 @@ class Job:
         number: Tells it from others that show the same, from 0.
         meshes: Which objects; every other picture of a state has held-out ones.
         seed: Its first kitchen; further tries take the following ones.
+        turn: Which of the pictures of that kitchen it is: has colours and looks of its own.
         states: The true states that look like this.
         shows: The actions that it is an observation of.
     """
@@ -38,6 +42,7 @@ class Job:
     number: int
     meshes: Meshes
     seed: int
+    turn: int
     states: tuple[State, ...] = field(repr=False)
     shows: tuple[Shows, ...] = field(repr=False)
 
@@ -67,13 +72,14 @@ def jobs(tasks: Sequence[Reachable]) -> list[Job]:
                 visible=visible,
                 number=number,
                 meshes="known" if number % 2 == 0 else "held_out",
-                seed=TEST_SEEDS + (place * PER_PLANNED_STATE + number) * TRIES,
+                seed=TEST_SEEDS + (place // SHARING * PER_PLANNED_STATE + number) * TRIES,
+                turn=place % SHARING,
                 states=tuple(sorted(classes[visible], key=sorted)),
                 shows=observations(visible, tasks),
             )
             for number in range(count)
         ]
-    return sorted(made, key=lambda job: (job.number, job.seed))
+    return sorted(made, key=lambda job: (job.number, job.seed, job.turn))
 
 
 def objection(

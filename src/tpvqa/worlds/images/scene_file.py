@@ -36,14 +36,15 @@ GLOW = 0.3
 """Emission from which a surface is a light of its own (a screen, a lamp)."""
 
 
-def scene_arrays(scene: KitchenScene) -> dict[str, Any]:
+def scene_arrays(scene: KitchenScene, *, look: int) -> dict[str, Any]:
     """The arrays of a scene file.
 
     Args:
         scene: An arranged kitchen.
+        look: What it was arranged for; decides lights and finish, with the kitchen.
     """
     model = scene.model
-    writer = _Writer(model, scene.data, chance(scene.seed, 0, "cycles"))
+    writer = _Writer(model, scene.data, chance(scene.seed, look, "cycles"))
     for geom in range(model.ngeom):
         if model.geom_group[geom] < DRAWN:
             writer.add(geom)
