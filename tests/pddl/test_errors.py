@@ -146,6 +146,12 @@ def test_an_unknown_task_is_told_the_nearest() -> None:
         load_task("eat_aple")
 
 
+def test_blocks_nested_without_end() -> None:
+    deep = "(and " * 5000 + "(lit a)" + ")" * 5000
+    with pytest.raises(PDDLError, match="nested more than"):
+        task_from_text(DOMAIN, PROBLEM.replace("(and (lit a)\n              (lit b))", deep))
+
+
 def test_comments_may_hold_anything_and_a_byte_order_mark_is_skipped(tmp_path: Path) -> None:
     domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
     domain.write_bytes(b"\xef\xbb\xbf; k\xc3\xbcche\r\n" + DOMAIN.encode())

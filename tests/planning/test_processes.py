@@ -17,6 +17,8 @@ from tpvqa.pddl import Action, Task, load_task, processes, task_from_text, valid
 from tpvqa.planning import Crashed, Plan, TimedOut
 from tpvqa.planning.fast_downward import FastDownward
 
+pytestmark = pytest.mark.slow
+
 # Solvable, but neither quickly (a permutation of many tiles) nor in little memory.
 _TILES = 24
 HARD_DOMAIN = """(define (domain tiles) (:requirements :strips)

@@ -89,8 +89,11 @@ class Worker:
         poll = select.poll()
         poll.register(self._requests, select.POLLOUT)
         while view:
+            before = self._processor_ticks()
             if not poll.poll(SILENCE * 1000):
-                raise WorkerDied("it took no request")
+                if not self._makes_progress(before):
+                    raise WorkerDied("it took no request")
+                continue
             try:
                 view = view[os.write(self._requests, view) :]
             except BrokenPipeError:

@@ -31,8 +31,12 @@ def described_groups(
         state: Its fluent atoms.
     """
     kept: list[Group] = []
-    found = sorted(_laws(task), key=_size) + sorted(_reached(grounding, state), key=_size)
-    for atoms, exactly_one in found:
+    for atoms, exactly_one in sorted(_laws(task), key=_size):
+        if not any(atoms <= other and (one or not exactly_one) for other, one in kept):
+            kept.append((atoms, exactly_one))
+    proved = [atoms for atoms, exactly_one in kept if exactly_one]
+    others = [group for group in grounding.mutex_groups if not any(group <= p for p in proved)]
+    for atoms, exactly_one in sorted(_reached(grounding, others, state), key=_size):
         if not any(atoms <= other and (one or not exactly_one) for other, one in kept):
             kept.append((atoms, exactly_one))
     return sorted((sorted(atoms), exactly_one) for atoms, exactly_one in kept)
@@ -114,10 +118,14 @@ def _group_key(literal: Any, invariant: Any) -> tuple[str, ...]:
     return tuple(values[number] for number in range(invariant.arity()))
 
 
-def _reached(grounding: Grounding, state: frozenset[AtomKey]) -> Iterator[Group]:
+def _reached(
+    grounding: Grounding, groups: Sequence[frozenset[AtomKey]], state: frozenset[AtomKey]
+) -> Iterator[Group]:
+    if not groups:
+        return
     added = {key_of(fact) for action in grounding.actions for _, fact in action.add_effects}
     possible = [action for action in grounding.actions if _possible(action, grounding.mutex_groups)]
-    for group in grounding.mutex_groups:
+    for group in groups:
         if group & added:
             exactly_one = len(group & state) == 1
             yield group, exactly_one and all(_keeps(action, group) for action in possible)

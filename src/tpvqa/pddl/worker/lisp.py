@@ -3,6 +3,9 @@
 from collections.abc import Iterator
 
 
+_DEEPEST = 150
+
+
 class Word(str):
     """A word of PDDL, in lower case, with the line it stands in."""
 
@@ -59,6 +62,8 @@ def read_block(text: str) -> Block:
                 "file (is there a ')' too many before it?)",
                 word.line,
             )
+        if len(open_blocks) > _DEEPEST:
+            raise LispError(f"blocks are nested more than {_DEEPEST} deep", word.line)
         if word == "(":
             open_blocks.append(Block(word.line))
         elif not open_blocks:
