@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.assets import Model, draw, families, kinds, soiled
+from tpvqa.worlds.kitchen.assets import Model, distractors, draw, families, soiled
 from tpvqa.worlds.kitchen.assets.textures import Use, draw_texture
 from tpvqa.worlds.kitchen.household import HANDS, ITEMS
 from tpvqa.worlds.kitchen.layout import Layout, Split, Stand, draw_layout
@@ -18,17 +18,6 @@ ROOM: Mapping[str, Use] = {"wall": "wall", "floor": "floor", "tiles": "wall"}
 """Surfaces of the room itself, and the kind of texture that each has."""
 ROOM_CHOICE = 3
 """Textures of each that a kitchen can be repainted with."""
-_FURNITURE = {
-    "apple_half",
-    "fridge",
-    "tv",
-    "tvstand",
-    "sink",
-    "counter",
-    "wall_cabinet",
-    "table",
-    "gripper",
-}
 _AMBIGUOUS = {"fruits", "breadbox", "hotdog", "hamburger", "croissant"}
 """Kinds in which a person may see an apple or bread: they are no distractors."""
 
@@ -74,7 +63,7 @@ def furnish(rng: np.random.Generator, split: Split, *, size: int) -> Furniture:
     models["gripper"] = pick("gripper")
     for fixture in ("table", "sink", "fridge", "tv", "tvstand", "counter", "wall_cabinet"):
         models[fixture] = pick(fixture)
-    clutter = [kind for kind in kinds() if kind not in {*ITEMS, *_FURNITURE, *_AMBIGUOUS}]
+    clutter = [kind for kind in distractors(split=split) if kind not in _AMBIGUOUS]
     loose = []
     for k in range(min(DISTRACTORS, 2 * len(clutter))):
         models[f"loose{k}"] = pick(clutter[int(rng.integers(len(clutter)))])

@@ -1,7 +1,6 @@
 """One random kitchen that can be put into any state of the household and looked at."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,14 +8,14 @@ from numpy.typing import NDArray
 from tpvqa.chance import chance_array
 from tpvqa.errors import UnknownNameError, WorldError
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.kitchen.assets import Part
 from tpvqa.worlds.kitchen.cameras import Shot, Wanted, choose, faults, overview
 from tpvqa.worlds.kitchen.drawing import Drawing
 from tpvqa.worlds.kitchen.furniture import furnish
 from tpvqa.worlds.kitchen.gl import load_mujoco
 from tpvqa.worlds.kitchen.grippers import Hand, empty_hand, forearm, holding
-from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, ITEMS, Household
+from tpvqa.worlds.kitchen.household import HANDS, ITEMS, Household
 from tpvqa.worlds.kitchen.layout import Split
+from tpvqa.worlds.kitchen.names import Names
 from tpvqa.worlds.kitchen.paintwork import Paintwork
 from tpvqa.worlds.kitchen.rotation import Array, quaternion
 from tpvqa.worlds.kitchen.spots import Pose, Spots, halves
@@ -30,12 +29,6 @@ HIDDEN = 4
 """The geom group that is not drawn."""
 OPAQUE = 0.9
 """Materials of less are seen through."""
-LABELS = ("nothing", *ITEMS, *FIXTURES, "screen", "dirt", "inside", *HANDS)
-
-
-def _inner(part: Part) -> bool:
-    """Whether a part of the fridge shows only while the door is open."""
-    return not part.body and part.paint in ("inside", "shelf", "edge", "lamp")
 
 
 class KitchenScene:
@@ -61,8 +54,10 @@ class KitchenScene:
         )
         self.data = mj.MjData(self.model)
         self.spots = Spots(self.furniture, seed)
-        self._names()
-        self._paintwork = Paintwork(self.model, self._material, self._geom)
+        self._names = Names(self.model, self.furniture.models)
+        self._group = self.model.geom_group.copy()
+        self._camera = mj.mj_name2id(self.model, mj.mjtObj.mjOBJ_CAMERA, "robot")
+        self._paintwork = Paintwork(self.model, self._names.material, self._names.geom)
         self._door = self.furniture.models["fridge"].joints[0]
         self._drawing = Drawing(self.model, size)
         self._household: Household | None = None
@@ -72,48 +67,6 @@ class KitchenScene:
         self.wrong = 0.0
         self.view = "front"
         self.repaint(0)
-
-    def _names(self) -> None:
-        mj, model = self._mujoco, self.model
-
-        def names(kind: Any, count: int) -> list[str]:
-            return [mj.mj_id2name(model, kind, k) or "" for k in range(count)]
-
-        kinds = mj.mjtObj
-        self._body = {n: k for k, n in enumerate(names(kinds.mjOBJ_BODY, model.nbody))}
-        self._material = {n: k for k, n in enumerate(names(kinds.mjOBJ_MATERIAL, model.nmat))}
-        self.geom_names = names(kinds.mjOBJ_GEOM, model.ngeom)
-        self._geom = {n: k for k, n in enumerate(self.geom_names) if n}
-        joints = names(kinds.mjOBJ_JOINT, model.njnt)
-        self._joint = {n: int(model.jnt_qposadr[k]) for k, n in enumerate(joints)}
-        self._group = model.geom_group.copy()
-        self._camera = mj.mj_name2id(model, kinds.mjOBJ_CAMERA, "robot")
-        self._mocap = {n: int(model.body_mocapid[k]) for n, k in self._body.items()}
-        self._label = np.array([LABELS.index(self._label_of(n)) for n in self.geom_names])
-        dirt = LABELS.index("dirt")
-        self._geoms_of: dict[str, list[int]] = {}
-        for k, name in enumerate(self.geom_names):
-            if self._group[k] < 3:
-                thing = "dirt" if self._label[k] == dirt else name.split("/")[0]
-                self._geoms_of.setdefault(thing, []).append(k)
-
-    def _label_of(self, geom: str) -> str:
-        thing, _, part = geom.partition("/")
-        models = self.furniture.models
-        if thing in ("half_a", "half_b"):
-            return "apple"
-        if thing.startswith("counter"):
-            return "counter"
-        if thing == "tv" and part in {p.name for p in models["tv"].parts_with("screen")}:
-            return "screen"
-        if thing == "fridge" and part in {p.name for p in models["fridge"].parts if _inner(p)}:
-            return "inside"
-        if thing == "sink":
-            wet = {p.name for role in ("basin", "tap") for p in models["sink"].parts_with(role)}
-            return "sink" if not wet or part in wet else "counter"
-        if part in {p.name for p in models["plate"].parts_with("dirt")} and thing == "plate":
-            return "dirt"
-        return thing if thing in LABELS else "nothing"
 
     def repaint(self, number: int) -> None:
         """Give walls, floor and furniture other colours. 0 is how the kitchen was made."""
@@ -215,7 +168,7 @@ class KitchenScene:
         model.cam_fovy[self._camera] = shot.fovy
         self._paintwork.light(rng)
         self._shadow = bool(rng.random() < 0.6)
-        drawn = set(self._geoms_of) - set(ITEMS) - {"half_a", "half_b", "dirt", *HANDS}
+        drawn = set(self._names.geoms_of) - set(ITEMS) - {"half_a", "half_b", "dirt", *HANDS}
         drawn -= {name for name in self.furniture.loose if name not in poses}
         placed = dict(poses)
         if self.view != "overview":
@@ -249,8 +202,8 @@ class KitchenScene:
                     held=held,
                 )
                 for name, pose in zip(("half_a", "half_b"), pair, strict=True):
-                    data.mocap_pos[self._mocap[name]] = pose.position
-                    data.mocap_quat[self._mocap[name]] = quaternion(pose.axes)
+                    data.mocap_pos[self._names.mocap[name]] = pose.position
+                    data.mocap_quat[self._names.mocap[name]] = quaternion(pose.axes)
                 drawn |= {"half_a", "half_b"}
                 continue
             drawn.add(item)
@@ -259,12 +212,12 @@ class KitchenScene:
             drawn.add("dirt")
         for name in self.furniture.loose:
             if name in poses:
-                model.body_pos[self._body[name]] = poses[name].position
-                model.body_quat[self._body[name]] = quaternion(poses[name].axes)
+                model.body_pos[self._names.body[name]] = poses[name].position
+                model.body_quat[self._names.body[name]] = quaternion(poses[name].axes)
         low, high = np.radians(self._door.range)
         turn = chance_array(self.seed, 0, "door", *self._where).uniform(0.5, 0.85)
         angle = turn * high if household.opened else low
-        data.qpos[self._joint["fridge/door_joint"]] = angle
+        data.qpos[self._names.joint["fridge/door_joint"]] = angle
         self._switch_tv(household.turned_on)
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)
@@ -277,7 +230,7 @@ class KitchenScene:
         model, data = self.model, self.data
         hidden = np.full(model.ngeom, HIDDEN)
         for name in drawn:
-            geoms = self._geoms_of[name]
+            geoms = self._names.geoms_of[name]
             hidden[geoms] = self._group[geoms]
         bounded = model.geom_rbound > 0
         in_view = shot.sees(data.geom_xpos, model.geom_rbound + 0.15)
@@ -286,21 +239,21 @@ class KitchenScene:
 
     def _switch_tv(self, on: bool) -> None:
         tv = self.furniture.models["tv"]
-        material = self._material[tv.material("screen_on" if on else "screen_off")]
+        material = self._names.material[tv.material("screen_on" if on else "screen_off")]
         for part in tv.parts_with("screen"):
-            self.model.geom_matid[self._geom[f"tv/{part.name}"]] = material
+            self.model.geom_matid[self._names.geom[f"tv/{part.name}"]] = material
 
     def _put(self, body: str, pose: Pose) -> None:
-        joint = self.model.body_jntadr[self._body[body]]
+        joint = self.model.body_jntadr[self._names.body[body]]
         address = self.model.jnt_qposadr[joint]
         self.data.qpos[address : address + 3] = pose.position
         self.data.qpos[address + 3 : address + 7] = quaternion(pose.axes)
 
     def _set_hand(self, side: str, hand: Hand, shot: Shot) -> None:
-        self.data.mocap_pos[self._mocap[side]] = hand.tip
-        self.data.mocap_quat[self._mocap[side]] = quaternion(hand.axes)
+        self.data.mocap_pos[self._names.mocap[side]] = hand.tip
+        self.data.mocap_quat[self._names.mocap[side]] = quaternion(hand.axes)
         for joint in self.furniture.models["gripper"].joints:
-            address = self._joint[f"{side}/{joint.body}_joint"]
+            address = self._names.joint[f"{side}/{joint.body}_joint"]
             if joint.kind == "ball":
                 wrist = np.array(joint.pos)
                 axes = forearm(side, hand, wrist, shot.axes, shot.position)
@@ -327,12 +280,7 @@ class KitchenScene:
             self.model.geom_group[glass] = HIDDEN
             by_geom = self._drawing.counts(self.data, self._camera, self.size)
             self.model.geom_group[glass] = drawn
-            sums = np.bincount(self._label, weights=by_geom, minlength=len(LABELS))
-            counts = {name: int(n) for name, n in zip(LABELS, sums, strict=True)}
-            counts["plate"] += counts["dirt"]
-            counts["tv"] += counts["screen"]
-            counts["fridge"] += counts["inside"]
-            self._counts = counts
+            self._counts = self._names.by_thing(by_geom)
         return self._counts
 
     def shown(self) -> Mapping[Atom, Shown]:
