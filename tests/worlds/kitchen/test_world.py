@@ -104,8 +104,8 @@ def test_a_restored_world_is_the_unbroken_one(task: Task) -> None:
 
 
 def test_a_specification_names_the_split(task: Task) -> None:
-    made = KitchenWorld.from_spec("train", simulation=_simulation(task))
-    assert made.scene.split == "train"
+    made = KitchenWorld.from_spec("held_out", simulation=_simulation(task))
+    assert made.scene.split == "held_out"
     made.close()
     with pytest.raises(PluginError, match="held_out"):
         KitchenWorld.from_spec("everything", simulation=_simulation(task))

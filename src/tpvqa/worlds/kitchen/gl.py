@@ -20,7 +20,7 @@ def load_mujoco() -> Any:
         WorldError: It is, but its graphics library is not there.
     """
     if "mujoco" not in sys.modules and "MUJOCO_GL" not in os.environ and sys.platform == "linux":
-        os.environ["MUJOCO_GL"] = "osmesa"
+        os.environ["MUJOCO_GL"] = _software_or_not()
     os.environ.setdefault("LP_NUM_THREADS", "2")
     try:
         import mujoco
@@ -31,6 +31,13 @@ def load_mujoco() -> Any:
     except (ImportError, AttributeError, RuntimeError, OSError) as error:
         raise WorldError(f"MuJoCo cannot draw ({error}). {_REMEDY}") from error
     return mujoco
+
+
+def _software_or_not() -> str:
+    """OSMesa where it is installed: its pictures are the same everywhere. Else a GPU's EGL."""
+    from ctypes.util import find_library
+
+    return "osmesa" if find_library("OSMesa") or not find_library("EGL") else "egl"
 
 
 def cannot_draw(error: BaseException) -> WorldError:
