@@ -1,5 +1,6 @@
 """One random kitchen that can be put into any state of the household and looked at."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -58,7 +59,6 @@ class KitchenScene:
         self._group = self.model.geom_group.copy()
         self._camera = mj.mj_name2id(self.model, mj.mjtObj.mjOBJ_CAMERA, "robot")
         self._paintwork = Paintwork(self.model, self._names.material, self._names.geom)
-        self._door = self.furniture.models["fridge"].joints[0]
         self._drawing = Drawing(self.model, size)
         self._household: Household | None = None
         self._counts: Mapping[str, int] | None = None
@@ -144,7 +144,9 @@ class KitchenScene:
     def _shoot(
         self, household: Household, poses: Mapping[str, Pose], rng: np.random.Generator
     ) -> tuple[Shot, float]:
-        found, wanted = approach(household, self.spots, poses, rng)
+        found, wanted = approach(
+            household, self.spots, poses, rng, door=self._door_angle(household)
+        )
         side = {"left": -1.0, "right": 1.0}.get(self.view, 0.0)
         aside = 0.0
         if len(household.held) == 1:
@@ -214,16 +216,19 @@ class KitchenScene:
             if name in poses:
                 model.body_pos[self._names.body[name]] = poses[name].position
                 model.body_quat[self._names.body[name]] = quaternion(poses[name].axes)
-        low, high = np.radians(self._door.range)
-        turn = chance_array(self.seed, 0, "door", *self._where).uniform(0.5, 0.85)
-        angle = turn * high if household.opened else low
-        data.qpos[self._names.joint["fridge/door_joint"]] = angle
+        data.qpos[self._names.joint["fridge/door_joint"]] = self._door_angle(household)
         self._switch_tv(household.turned_on)
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)
         mj.mj_camlight(model, data)
         self._draw_only(drawn, shot)
         self._counts = None
+
+    def _door_angle(self, household: Household) -> float:
+        if not household.opened:
+            return 0.0
+        turn = chance_array(self.seed, 0, "door", *self._where).uniform(80, 115)
+        return math.radians(min(float(turn), self.furniture.models["fridge"].joints[0].range[1]))
 
     def _draw_only(self, drawn: set[str], shot: Shot) -> None:
         """Hide what is not there, and spare the renderer what the camera cannot see."""

@@ -50,8 +50,18 @@ def approach(
     spots: Spots,
     poses: Mapping[str, Pose],
     rng: np.random.Generator,
+    *,
+    door: float = 0.0,
 ) -> tuple[Approach, Wanted]:
-    """How the robot looks at what it stands before."""
+    """How the robot looks at what it stands before.
+
+    Args:
+        household: The true state.
+        spots: The kitchen's places.
+        poses: Where the items lie.
+        rng: Varies the point looked at.
+        door: How far the fridge's door is open, radians.
+    """
     furniture = spots.furniture
     subject = household.subject
     exempt = (
@@ -74,10 +84,10 @@ def approach(
             subject = household.where[subject]
             while subject in household.where:
                 subject = household.where[subject]
-            found = _fixture(household, spots, poses, HOMES[subject], rng)
+            found = _fixture(household, spots, poses, HOMES[subject], rng, door)
             seen.add(HOMES[subject])
         elif support == "fridge" and not household.opened:
-            found = _fixture(household, spots, poses, "fridge", rng)
+            found = _fixture(household, spots, poses, "fridge", rng, door)
             seen.add("fridge")
         else:
             item_ball = ball(poses[subject], furniture, subject)
@@ -85,7 +95,7 @@ def approach(
             found = _item(spots, support, poses[subject], item_ball)
             seen.add(support)
     else:
-        found = _fixture(household, spots, poses, subject, rng)
+        found = _fixture(household, spots, poses, subject, rng, door)
         if household.near == subject and subject in ("table", "counter", "floor"):
             inside += [ball(poses[x], furniture, x) for x in household.upon(subject)]
         if subject == "fridge":
@@ -131,6 +141,7 @@ def _fixture(
     poses: Mapping[str, Pose],
     fixture: str,
     rng: np.random.Generator,
+    door: float,
 ) -> Approach:
     furniture, layout = spots.furniture, spots.furniture.layout
     if fixture == "tv":
@@ -145,7 +156,7 @@ def _fixture(
         )
         return Approach(target, front_of(layout.sink), 0.4, (0.45, 0.75), (1.4, 1.65))
     if fixture == "fridge":
-        return _fridge(household, furniture, rng)
+        return _fridge(household, furniture, rng, door)
     lying = [poses[x].position for x in household.upon(fixture)]
     areas = spots.areas[fixture]
     if household.near == fixture and lying:
@@ -167,14 +178,15 @@ def _fixture(
     return Approach(target, front, 0.6, (0.45 + back, 0.75 + back), (1.3, 1.5))
 
 
-def _fridge(household: Household, furniture: Furniture, rng: np.random.Generator) -> Approach:
+def _fridge(
+    household: Household, furniture: Furniture, rng: np.random.Generator, door: float
+) -> Approach:
     layout = furniture.layout
     _, depth, height = furniture.models["fridge"].extent
     target: Array = layout.fridge.point(0, -depth / 2, float(rng.uniform(0.62, 0.72)) * height)
     front = front_of(layout.fridge)
     if household.opened:
-        hinge = hinge_side(furniture.models["fridge"])
-        return Approach(
-            target, front + hinge * 0.4, 0.45, (1.15, 1.6), (1.3, 1.6), (0.15, -0.1, 0.2)
-        )
+        # From a little beyond the door's own plane it hides one half of the inside, not the other.
+        beside = hinge_side(furniture.models["fridge"]) * (door - math.pi / 2 + 0.36)
+        return Approach(target, front + beside, 0.2, (1.15, 1.6), (1.3, 1.6), (0.15, -0.1, 0.2))
     return Approach(target, front, 0.6, (0.9, 1.4), (1.25, 1.55), (0.2, -0.1, 0.25))
