@@ -27,6 +27,8 @@ from furniture_list import CC0, CCBY, ITEMS, KATOR, SCOPIA, Item
 from PIL import Image
 
 TRIANGLES = 3000
+WHOLE = 600
+"""Parts with fewer triangles stay as they are: thinning would tear holes into boxes."""
 PICTURE = 256
 LICENCES = {
     CC0: "CC0-1.0",
@@ -151,6 +153,8 @@ def thinned(
     new_points, new_faces = fast_simplification.simplify(
         old_points.astype(np.float32), old_faces.astype(np.int32), 1 - goal / len(faces)
     )
+    # Thinning can throw single points far out.
+    new_points = np.clip(new_points, old_points.min(0), old_points.max(0))
     if uv is None:
         return new_points, new_faces, np.zeros((len(new_points), 2))
     old = old_points[old_faces]
@@ -304,7 +308,7 @@ def convert(
             p = points[np.unique(faces)]
             screen = [p.min(0).tolist(), p.max(0).tolist()]
             continue
-        goal = max(int(len(faces) * share), min(len(faces), 24))
+        goal = len(faces) if len(faces) <= WHOLE else max(int(len(faces) * share), WHOLE // 2)
         if goal < 0.95 * len(faces):
             new_points, new_faces, new_uv = thinned(points, faces, uv, goal)
         else:

@@ -163,5 +163,7 @@ def cut(mesh: Mesh) -> tuple[Mesh, Floats]:
             if inside[a] != inside[b]:
                 loop.append(crossing(a, b))
         faces += [[loop[0], loop[k], loop[k + 1]] for k in range(1, len(loop) - 1)]
-    half = Mesh.of(points, [*kept.tolist(), *faces], np.array(uv))
-    return half, half.points[sorted(rim.values())]
+    places = np.array(points)
+    used, index = np.unique([*kept.tolist(), *faces], return_inverse=True)
+    half = Mesh(places[used], np.array(uv)[used], index.reshape(-1, 3))
+    return half, places[sorted(rim.values())]

@@ -1,6 +1,7 @@
 """Vessels that stand about in a kitchen, among them what may be taken for a plate."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.random import Generator
@@ -354,7 +355,8 @@ def teapot(rng: Generator) -> Model:
     )
     handle = _handle(0.8 * r, -0.5 * r, 0.5 * r, 0.6 * r, 0.008).turned(2, 180).moved(z=0.85 * r)
     build.mesh("body", joined([lathe(body, steps=28), knob, spout, handle]), "glaze", crease=50)
-    return finish(build, "teapot", r, 1.6 * r + 0.02, 0.7)
+    pot = finish(build, "teapot", r, 1.6 * r + 0.02, 0.7)
+    return replace(pot, extent=(3.2 * r, 2 * r, pot.extent[2]))
 
 
 def cutting_board(rng: Generator) -> Model:
