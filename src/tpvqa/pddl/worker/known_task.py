@@ -113,7 +113,9 @@ class KnownTask:
         if template is None:
             return Outcome("unsolvable", reason="the goal asks for facts that exclude each other")
         search = searches["simple" if template.simple else "other"]
-        left = None if end is None else max(0.0, end - time.monotonic())
+        left = None if end is None else end - time.monotonic()
+        if left is not None and left <= 0:
+            return Outcome("timeout")
         return searcher.run(template.fill(fluent), search, seconds=left, memory=memory)
 
     def _split(self, atoms: Iterable[AtomKey]) -> tuple[frozenset[AtomKey], frozenset[AtomKey]]:
