@@ -29,7 +29,7 @@ _PUBLIC = {
     "run_episode": "tpvqa.loop",
 }
 
-__all__ = [  # noqa: PLE0604
+__all__ = [
     "__version__",
     *sorted(_PUBLIC),
 ]

@@ -9,7 +9,7 @@ from tpvqa.pddl.processes import WORKERS
 from tpvqa.planning import Crashed, Plan, Planner, TimedOut, Unsolvable
 from tpvqa.planning.fast_downward import FastDownward
 
-PAPER = {
+PAPER: dict[str, list[tuple[str, ...]]] = {
     "clean_dishes": [
         ("find", "plate"),
         ("pick_up", "plate"),

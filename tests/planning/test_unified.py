@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from typing import Any
 
 import pytest
 
@@ -14,7 +15,7 @@ from tpvqa.planning.unified import task_from_problem
 shortcuts = pytest.importorskip("unified_planning.shortcuts")
 
 
-def robot() -> "shortcuts.Problem":  # type: ignore[valid-type]
+def robot() -> Any:
     """A robot that moves between places and may carry one thing."""
     up = shortcuts
     place, thing = up.UserType("Place"), up.UserType("Thing")
