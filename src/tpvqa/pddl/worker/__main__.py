@@ -1,14 +1,13 @@
 """The worker's loop: a request a line on standard input, a reply a line on standard output.
 
-A thread reads the requests. So the worker notices at any moment that the package's process is
-gone (end of file), also while it grounds or searches; and the thread's heartbeats tell a worker
+A thread watches beside it. So the worker notices at any moment that the package's process is gone
+(the pipe hangs up), also while it grounds or searches; and the thread's heartbeats tell a worker
 that is busy from one that hangs.
 """
 
 import ctypes
 import json
 import os
-import queue
 import select
 import signal
 import sys
@@ -35,36 +34,34 @@ class Worker:
     def __init__(self, replies: int):
         self._replies = replies
         self._writing = threading.Lock()
-        self._requests: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self._searcher = Searcher()
         self._tasks: OrderedDict[str, KnownTask] = OrderedDict()
         self._busy = False
 
     def run(self) -> None:
         """Read and answer; does not return."""
-        threading.Thread(target=self._listen, daemon=True).start()
-        while True:
-            request = json.loads(self._requests.get())
-            reply = self._answer(request)
-            self._busy = False
-            self._send({"id": request["id"], **reply})
-
-    def _listen(self) -> None:
+        threading.Thread(target=self._watch, daemon=True).start()
         rest = b""
-        poll = select.poll()
-        poll.register(0, select.POLLIN)
         while True:
-            if not poll.poll(_HEARTBEAT * 1000):
-                if self._busy:
-                    self._send({})
-                continue
             data = os.read(0, 1 << 20)
             if not data:
                 os._exit(0)  # the searches end with this process
             *lines, rest = (rest + data).split(b"\n")
             for line in lines:
                 self._busy = True
-                self._requests.put(line)
+                request = json.loads(line)
+                reply = self._answer(request)
+                self._busy = False
+                self._send({"id": request["id"], **reply})
+
+    def _watch(self) -> None:
+        poll = select.poll()
+        poll.register(0, 0)  # nothing but the end of the pipe
+        while True:
+            if poll.poll(_HEARTBEAT * 1000):
+                os._exit(0)
+            if self._busy:
+                self._send({})
 
     def _send(self, message: dict[str, Any]) -> None:
         view = memoryview(json.dumps(message).encode() + b"\n")

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 
-
 _DEEPEST = 150
 
 
