@@ -136,6 +136,8 @@ class Trial:
             context["truth"] = truth
         self.monitor: Monitor = make(Kind.MONITOR, config.monitor, **context)
         self.vlm: VLM = vlm or make(Kind.VLM, config.vlm, **context)
+        if vlm is None and hasattr(self.vlm, "close"):
+            self._closing.append(self.vlm.close)
         self.parts = Parts(self.task, self.book, planner, self.world, self.vlm)
 
     def started(self) -> Started:
