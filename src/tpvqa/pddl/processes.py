@@ -38,11 +38,12 @@ class Worker:
             # The signal comes when the *thread* that started the worker ends; only the main one
             # lives as long as the process.
             command.append("--die-with-parent")
+        self._errors = os.memfd_create("errors")
         self._process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
+            stderr=self._errors,
             cwd="/",
             env=_environment(),
             start_new_session=True,
@@ -97,7 +98,7 @@ class Worker:
             try:
                 view = view[os.write(self._requests, view) :]
             except BrokenPipeError:
-                raise WorkerDied("it ended") from None
+                raise WorkerDied(self._how_it_ended()) from None
 
     def _line(self, end: float | None) -> bytes:
         parts = [self._rest]
@@ -116,10 +117,20 @@ class Worker:
                 continue
             data = os.read(self._replies, 1 << 20)
             if not data:
-                raise WorkerDied("it ended")
+                raise WorkerDied(self._how_it_ended())
             parts.append(data)
         line, self._rest = b"".join(parts).split(b"\n", 1)
         return line
+
+    def _how_it_ended(self) -> str:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(1.0)
+        code = self._process.returncode
+        how = f"was killed by signal {-code}" if code and code < 0 else "ended"
+        size = os.lseek(self._errors, 0, os.SEEK_END)
+        last = os.pread(self._errors, 2000, max(0, size - 2000)).decode(errors="replace")
+        said = [line.strip() for line in last.splitlines() if line.strip()]
+        return f"it {how}" + (f" ({said[-1]})" if said else "")
 
     def _processor_ticks(self) -> int:
         with contextlib.suppress(OSError):
@@ -152,6 +163,9 @@ class Worker:
         for stream in (self._process.stdin, self._process.stdout):
             if stream is not None:
                 stream.close()
+        if self._errors >= 0:
+            os.close(self._errors)
+            self._errors = -1
 
 
 def _environment() -> dict[str, str]:

@@ -17,7 +17,9 @@ from tpvqa.pddl.worker.search import Outcome, Searcher
 _KEPT_STATES = 8
 """So many states outside the first grounding widen the second one before it starts anew."""
 
-options.set_options(["domain", "problem", "--keep-unreachable-facts"])
+options.set_options(
+    ["domain", "problem", "--keep-unreachable-facts", "--invariant-generation-max-time", "30"]
+)
 
 
 @contextlib.contextmanager
