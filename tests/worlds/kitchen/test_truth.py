@@ -6,7 +6,7 @@ from tpvqa.pddl import Atom
 from tpvqa.worlds.kitchen.household import Household
 from tpvqa.worlds.kitchen.truth import Shown, objections, shown
 
-SEEN = {"left": 500, "right": 500, "table": 20_000, "plate": 900, "dirt": 200}
+SEEN = {"left": 500, "right": 500, "table": 20_000, "floor": 9000, "plate": 900, "dirt": 200}
 
 
 def _at(near: str, *, held: Mapping[str, str] | None = None, **where: str) -> Household:
@@ -74,3 +74,4 @@ def test_a_good_picture_has_no_objections_and_a_bad_one_has() -> None:
     assert objections(household, SEEN | {"plate": 10}, size=224) > 0
     assert objections(household, SEEN | {"bread": 300}, size=224) > 0
     assert objections(household, SEEN | {"tv": 300}, size=224) > 0
+    assert objections(household, SEEN | {"floor": 0}, size=224) > 0

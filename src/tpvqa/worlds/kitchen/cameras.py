@@ -11,7 +11,9 @@ from tpvqa.worlds.kitchen.layout import Footprint, Layout, Stand
 from tpvqa.worlds.kitchen.rotation import Array, about_x, about_y, looking
 
 LEAN = 0.1
-"""How far the robot's head may be over low furniture, metres."""
+"""How far the robot's head may be over low furniture, metres; so far from it when bent down."""
+BENT = 1.1
+"""Below this the head is no higher than the furniture, near enough."""
 Ball = tuple[Array, float]
 """Centre and radius of a ball around a thing."""
 
@@ -93,8 +95,9 @@ def standing_room(layout: Layout, position: Array) -> bool:
     if not (abs(x) < layout.width / 2 - 0.15 and -layout.depth + 0.15 < y < -0.15):
         return False
     here = np.array([[x, y]])
+    margin = -LEAN if position[2] > BENT else LEAN
     footprints: Sequence[Footprint] = layout.footprints
-    return not any(footprint.blocks(here, -LEAN)[0] for footprint in footprints)
+    return not any(footprint.blocks(here, margin)[0] for footprint in footprints)
 
 
 def candidate(approach: Approach, rng: np.random.Generator, side: float, aside: float) -> Shot:

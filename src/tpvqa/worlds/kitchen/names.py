@@ -10,7 +10,7 @@ from tpvqa.worlds.kitchen.assets import Model, Part
 from tpvqa.worlds.kitchen.gl import load_mujoco
 from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, ITEMS
 
-LABELS = ("nothing", *ITEMS, *FIXTURES, "screen", "dirt", "inside", *HANDS)
+LABELS = ("nothing", *ITEMS, *FIXTURES, "screen", "dirt", "inside", "room", *HANDS)
 DRAWN = 3
 """Geoms of this group and above are not drawn."""
 
@@ -73,6 +73,8 @@ def _label(geom: str, models: Mapping[str, Model]) -> str:
     thing, _, part = geom.partition("/")
     if thing in ("half_a", "half_b"):
         return "apple"
+    if thing.startswith(("wall_", "tiles", "ceiling")):
+        return "room"
     if thing.startswith("counter"):
         return "counter"
     if thing == "tv" and part in {p.name for p in models["tv"].parts_with("screen")}:

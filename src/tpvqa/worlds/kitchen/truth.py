@@ -25,6 +25,16 @@ ENOUGH: Mapping[str, int] = {
 """Pixels of a 224 × 224 picture from which a person knows the thing."""
 CLEARLY: Mapping[str, int] = {"plate": 900, "bread": 700, "apple": 400, "knife": 220}
 """As many of a held thing in a good picture; less is still known."""
+CONTEXT: Mapping[str, tuple[str, ...]] = {
+    "table": ("floor", "room", "counter"),
+    "counter": ("floor", "room"),
+    "floor": ("room", "table", "counter", "fridge", "sink", "tv"),
+}
+"""What tells a level surface from others: what is seen beyond its edge."""
+MAINLY = 0.2
+"""Share of a good picture of a surface that the surface takes."""
+SURROUNDINGS = 0.05
+"""Share of a good picture that shows it."""
 NOTHING = 3
 """Up to this many pixels nobody sees."""
 REFERENCE = 224
@@ -118,6 +128,12 @@ def objections(household: Household, pixels: Mapping[str, int], *, size: int) ->
     lacking += sum(0.5 for x in household.held.values() if pixels.get(x, 0) < CLEARLY[x] * scale)
     if "fridge" in wanted and household.opened:
         lacking += float(pixels.get("inside", 0) < 3 * ENOUGH["inside"] * scale)
+    level = support or subject
+    around = sum(pixels.get(x, 0) for x in CONTEXT.get(level, ()))
+    if level in CONTEXT and around < SURROUNDINGS * size * size:
+        lacking += 0.6
+    if near in CONTEXT and pixels.get(near, 0) < MAINLY * size * size:
+        lacking += 1.0
     surplus = sum(
         1.0
         for x in (*ITEMS, "tv", "sink", "fridge")

@@ -117,7 +117,7 @@ def _item(spots: Spots, support: str, pose: Pose, item_ball: Ball) -> Approach:
     layout = spots.furniture.layout
     target = item_ball[0]
     if support == "floor":
-        return Approach(target, 0.0, math.pi, (0.3, 0.5), (0.65, 0.9))
+        return Approach(target, 0.0, math.pi, (0.5, 0.85), (0.7, 1.0), (0.2, -0.1, 0.2))
     if support == "table":
         return Approach(target, 0.0, math.pi, (0.35, 0.6), (1.15, 1.35))
     if support == "counter":
@@ -170,7 +170,12 @@ def _fixture(
     back = 1.6 * spread
     if fixture == "floor":
         return Approach(
-            target, 0.0, math.pi, (0.35 + back, 0.7 + back), (0.75 + back / 2, 1.2 + back / 2)
+            target,
+            0.0,
+            math.pi,
+            (0.6 + back, 1.0 + back),
+            (0.8 + back / 2, 1.2 + back / 2),
+            (0.2, -0.15, 0.2),
         )
     if fixture == "table":
         return Approach(target, 0.0, math.pi, (0.4 + back, 0.7 + back), (1.2, 1.45))
