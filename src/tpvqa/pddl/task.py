@@ -39,6 +39,8 @@ class Task:
             that can be reached from the initial one.
         objects_by_type: The objects of each type, those of its subtypes included.
         functions: The values that action costs refer to.
+        reachable_atoms: See `atoms`.
+        reachable_actions: Name and arguments of the actions of `ground_actions`.
         domain_path: Where the domain was read from; None where it was not a file.
         problem_path: Where the problem was read from.
         domain_text: The text of the domain.

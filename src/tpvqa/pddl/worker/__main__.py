@@ -53,6 +53,7 @@ class Worker:
                 reply = self._answer(request)
                 self._busy = False
                 self._send({"id": request["id"], **reply})
+                self._searcher.prepare()
 
     def _watch(self) -> None:
         poll = select.poll()
@@ -92,7 +93,7 @@ class Worker:
         except MemoryError:
             return {"outcome": _as_json(Outcome("memory", reason="grounding ran out of memory"))}
         except Exception as error:  # noqa: BLE001  the translator asserts and raises many kinds
-            reason = f"the translator failed: {type(error).__name__} {error}".rstrip()
+            reason = f"the planning process failed: {type(error).__name__} {error}".rstrip()
             return {"outcome": _as_json(Outcome("crash", reason=reason))}
 
     def _task(self, request: dict[str, Any]) -> KnownTask | None:

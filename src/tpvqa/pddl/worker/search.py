@@ -136,8 +136,8 @@ def _contents(number: int) -> str:
 class Searcher:
     """Runs searches, one after the other.
 
-    Starting `downward` takes longer than a small search. So the next process is started while one
-    searches, and waits for its task.
+    Starting `downward` takes longer than a small search. So `prepare` starts the next process
+    between two calls, and it waits for its task.
     """
 
     def __init__(self) -> None:
@@ -145,6 +145,7 @@ class Searcher:
         self._prctl: Callable[[int, int], int] = ctypes.CDLL(None).prctl
         self._own = os.getpid()
         self._waiting: _Child | None = None
+        self._last: tuple[str, int | None] | None = None
 
     def _in_child(self) -> None:
         self._prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -153,11 +154,18 @@ class Searcher:
 
     def _take(self, search: str, memory: int | None) -> _Child:
         child, self._waiting = self._waiting, None
+        self._last = (search, memory)
         if child is not None:
             if child.fits(search, memory):
                 return child
             child.close()
         return _Child(self._binary, search, memory, self._in_child)
+
+    def prepare(self) -> None:
+        """Start the process of the next search, expecting one like the last."""
+        if self._waiting is None and self._last is not None:
+            with contextlib.suppress(OSError):  # no process to be had now; the next call will see
+                self._waiting = _Child(self._binary, *self._last, self._in_child)
 
     def run(
         self, text: bytes, search: str, *, seconds: float | None, memory: int | None
@@ -180,7 +188,6 @@ class Searcher:
         child = self._take(search, memory)
         try:
             child.feed(text, end)
-            self._waiting = _Child(self._binary, search, memory, self._in_child)
             return child.outcome() if child.wait(end) else Outcome("timeout")
         finally:
             child.close()
