@@ -109,7 +109,10 @@ def test_two_affirmed_alternatives_decide_nothing(at: Callable[..., Step]) -> No
 def test_an_initial_fact_is_looked_at_once_more_and_then_the_robot_acts(
     at: Callable[..., Step],
 ) -> None:
-    verdict, looks, _ = perform(TPVQA().before(at(0)), replies({}, Reply.NO))
+    monitor = TPVQA()
+    step = at(1, monitor)
+    verdict, looks, asked = perform(monitor.before(step), knowing("(near plate)"))
+    assert asked.count("Is the plate on the table?") == 2
     assert (verdict.decision, looks) == (Decision.GO_ON, 2)
     assert verdict.state is None
 
