@@ -4,11 +4,13 @@ The manifest names only pictures that are whole on disk, and is replaced in one 
 of them, so a build can be stopped at any moment and goes on where it was.
 """
 
+import fcntl
 import json
 import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from itertools import groupby
@@ -84,6 +86,36 @@ def build(
     Raises:
         PictureSetError: A picture could not be made, or the folder cannot be written to.
     """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with _alone(folder):
+            return _build(jobs, folder, settings, workers, progress or (lambda done, total: None))
+    except OSError as error:
+        raise PictureSetError(f"{folder}: cannot be written to ({error})") from error
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Let no other build into a folder; the lock ends with this process, however it ends."""
+    lock = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise PictureSetError(
+            f"{folder}: another build is at work there. Wait for it, or name another folder"
+        ) from None
+    finally:
+        os.close(lock)
+
+
+def _build(
+    jobs: Sequence[Job],
+    folder: Path,
+    settings: Settings,
+    workers: int,
+    progress: Callable[[int, int], None],
+) -> Manifest:
     wanted = {job.key: job for job in jobs}
     kept = {key: picture for key, picture in _existing(folder).items() if key in wanted}
     missing = [
@@ -92,20 +124,14 @@ def build(
         if job.key not in kept or not _current(kept[job.key], job, settings, folder)
     ]
     done = len(jobs) - len(missing)
-    if progress is not None:
+    progress(done, len(jobs))
+    for made in _made(missing, settings, workers):
+        kept[made.job.key] = made.picture
+        _replace(folder / made.picture.file, made.data)
+        _write(folder, kept)
+        done += 1
         progress(done, len(jobs))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for made in _made(missing, settings, workers):
-            kept[made.job.key] = made.picture
-            _replace(folder / made.picture.file, made.data)
-            _write(folder, kept)
-            done += 1
-            if progress is not None:
-                progress(done, len(jobs))
-        manifest = _write(folder, kept)
-    except OSError as error:
-        raise PictureSetError(f"{folder}: cannot be written to ({error})") from error
+    manifest = _write(folder, kept)
     listed = {picture.file for picture in manifest.pictures}
     for path in folder.glob("*.jpg"):
         if path.name not in listed:

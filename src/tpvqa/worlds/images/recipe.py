@@ -7,16 +7,15 @@ from dataclasses import dataclass, field
 from tpvqa.pddl import Atom, State
 from tpvqa.worlds.images.manifest import Meshes, Shows
 from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.verify import observations, settled
-from tpvqa.worlds.images.visible import VisibleState, describe, visible_state, without_hands
+from tpvqa.worlds.images.verify import PER_OUTCOME, PER_STATE, observations, settled
+from tpvqa.worlds.images.visible import VisibleState, describe, without_hands
 from tpvqa.worlds.kitchen.household import atoms_of_interest
 
 TEST_SEEDS = 1_000_000_000
 """Kitchens from this seed on are for the test pictures: training uses lower ones only."""
 
-PER_STATE = 6
-PER_PLANNED_STATE = 10
-"""Of the states that the plan leads through: ten observations of each action's outcome."""
+MOST = 10
+"""Pictures of one visible state at most: as many as one outcome of an action needs."""
 
 SHARING = 5
 """Pictures of different states that share a kitchen: making one takes as long as some pictures."""
@@ -59,25 +58,27 @@ TRIES = 100
 def jobs(tasks: Sequence[Reachable]) -> list[Job]:
     """All pictures of a set, in an order in which every beginning is spread evenly."""
     classes: dict[VisibleState, set[State]] = defaultdict(set)
-    planned: set[VisibleState] = set()
+    counts: dict[VisibleState, int] = defaultdict(lambda: PER_STATE)
     for task in tasks:
         for visible, states in task.classes().items():
             classes[visible].update(states)
-        planned.update(map(visible_state, task.path))
+        for kind in task.nominal:
+            for outcome in (task.after_success(kind), task.after_failure(kind)):
+                for visible in outcome:  # its states share the observations of an outcome
+                    counts[visible] = max(counts[visible], -(-PER_OUTCOME // len(outcome)))
     made = []
     for place, visible in enumerate(sorted(classes, key=describe)):
-        count = PER_PLANNED_STATE if visible in planned else PER_STATE
         made += [
             Job(
                 visible=visible,
                 number=number,
                 meshes="known" if number % 2 == 0 else "held_out",
-                seed=TEST_SEEDS + (place // SHARING * PER_PLANNED_STATE + number) * TRIES,
+                seed=TEST_SEEDS + (place // SHARING * MOST + number) * TRIES,
                 turn=place % SHARING,
                 states=tuple(sorted(classes[visible], key=sorted)),
                 shows=observations(visible, tasks),
             )
-            for number in range(count)
+            for number in range(counts[visible])
         ]
     return sorted(made, key=lambda job: (job.number, job.seed, job.turn))
 
