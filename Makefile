@@ -4,12 +4,13 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 DEMO := episodes/demo
+SEED ?= 3
 
 .PHONY: demo test lint types tests gl install install-dev clean
 
 demo: install
 	@rm -rf $(DEMO)
-	@$(BIN)/tpvqa run serve_breakfast --seed 3 --out $(DEMO)
+	@$(BIN)/tpvqa run serve_breakfast --seed $(SEED) --out $(DEMO) || [ $$? -eq 1 ]
 	@$(BIN)/tpvqa report $(DEMO) > /dev/null
 	@echo "report:  $$PWD/$(DEMO)/report.html  (open it in a browser)"
 
