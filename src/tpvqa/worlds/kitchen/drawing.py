@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.worlds.kitchen.gl import cannot_draw, load_mujoco
+from tpvqa.worlds.kitchen.gl import cannot_draw, load_mujoco, new_context
 
 
 class Drawing:
@@ -23,8 +23,8 @@ class Drawing:
     def __init__(self, model: Any, size: int):
         self._mujoco = mj = load_mujoco()
         self.size = size
+        self._gl = new_context(size)
         try:
-            self._gl = mj.GLContext(size, size)
             self._gl.make_current()
             self._context = mj.MjrContext(model, mj.mjtFontScale.mjFONTSCALE_100)
             mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN, self._context)

@@ -2,6 +2,8 @@
 
 import os
 import sys
+from functools import cache
+from importlib import import_module
 from typing import Any
 
 from tpvqa.errors import MissingExtraError, WorldError
@@ -31,6 +33,27 @@ def load_mujoco() -> Any:
     except (ImportError, AttributeError, RuntimeError, OSError) as error:
         raise WorldError(f"MuJoCo cannot draw ({error}). {_REMEDY}") from error
     return mujoco
+
+
+def new_context(size: int) -> Any:
+    """A graphics context for pictures of up to size × size, not yet current.
+
+    Raises:
+        WorldError: There is no graphics library.
+    """
+    mujoco = load_mujoco()
+    try:
+        return _context_class(mujoco)(size, size)
+    except Exception as error:
+        raise cannot_draw(error) from error
+
+
+@cache
+def _context_class(mujoco: Any) -> Any:
+    """MuJoCo's own choice where one was made; else ours, if MuJoCo was imported before it."""
+    if "MUJOCO_GL" in os.environ or sys.platform != "linux":
+        return mujoco.GLContext
+    return import_module(f"mujoco.{_software_or_not()}").GLContext
 
 
 def _software_or_not() -> str:
