@@ -53,7 +53,9 @@ def test_the_near_thing_is_in_view_and_no_other_item_is(scene: KitchenScene, nea
 
 def test_the_open_fridge_shows_its_apple_only_from_near_the_apple(scene: KitchenScene) -> None:
     scene.arrange(_state("fridge", "opened(fridge)"), look=0)
-    assert scene.pixels()["apple"] == 0
+    hidden = scene.pixels()["apple"] == 0
+    assert hidden or scene.wrong > 0  # a table may stand where the robot should: then it says so
+    assert scene.shown()[Atom.parse("near(apple)")].visible == hidden
     assert scene.shown()[Atom.parse("opened(fridge)")].visible
     scene.arrange(_state("apple", "opened(fridge)"), look=0)
     assert scene.pixels()["apple"] > 40
@@ -139,6 +141,18 @@ def test_dropped_things_lie_on_the_floor_and_rest(scene: KitchenScene) -> None:
         assert np.allclose(pose.axes @ pose.axes.T, np.eye(3), atol=1e-6)
         high = max(scene.furniture.models[item].extent)
         assert -0.02 < pose.position[2] < high, item
+
+
+def test_what_is_in_the_open_fridge_is_nearly_always_hidden() -> None:
+    state = _state("fridge", "opened(fridge)")
+    hidden = 0
+    for seed in range(4):
+        scene = KitchenScene(seed=seed)
+        for look in range(3):
+            scene.arrange(state, look=look)
+            hidden += scene.pixels()["apple"] == 0
+        scene.close()
+    assert hidden >= 10
 
 
 def test_training_pictures_repeat_and_mostly_show_what_they_are_about() -> None:
