@@ -126,9 +126,12 @@ def _build(
     done = len(jobs) - len(missing)
     progress(done, len(jobs))
     for made in _made(missing, settings, workers):
+        replaced = kept.get(made.job.key)
         kept[made.job.key] = made.picture
         _replace(folder / made.picture.file, made.data)
         _write(folder, kept)
+        if replaced is not None and replaced.file != made.picture.file:
+            (folder / replaced.file).unlink(missing_ok=True)
         done += 1
         progress(done, len(jobs))
     manifest = _write(folder, kept)
