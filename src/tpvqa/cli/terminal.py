@@ -22,6 +22,7 @@ from tpvqa.episodes.events import (
     Started,
 )
 from tpvqa.monitors import Decision
+from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 
 _REPLY_STYLE = {
@@ -185,6 +186,8 @@ class EpisodeView:
 def _answer_line(question: QuestionRecord, answer: AnswerRecord) -> str:
     style = _REPLY_STYLE[answer.reply]
     agrees = {Reply.YES: question.expected, Reply.NO: not question.expected}.get(answer.reply)
+    if question.way is Way.ALTERNATIVE:
+        agrees = None
     mark = {True: "[green]✓[/]", False: "[red]✗[/]", None: "[dim]·[/]"}[agrees]
     if answer.p_yes is None:
         chance = ""

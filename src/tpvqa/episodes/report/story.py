@@ -21,6 +21,7 @@ from tpvqa.episodes.events import (
     Started,
 )
 from tpvqa.errors import EpisodeError
+from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 
 
@@ -33,8 +34,10 @@ class Asking:
 
     @property
     def agrees(self) -> bool | None:
-        """Whether the answer agrees with what is expected; None where there is none."""
+        """Whether the answer agrees with what is expected; None where nothing is."""
         if self.answer is None or self.answer.reply not in (Reply.YES, Reply.NO):
+            return None
+        if self.question.way is Way.ALTERNATIVE:
             return None
         return (self.answer.reply is Reply.YES) == self.question.expected
 
