@@ -88,7 +88,10 @@ class Sampler:
             alike[subject.form, subject.name] = alike.get((subject.form, subject.name), 0) + 1
         for k, subject in enumerate(subjects):
             share = _share(subject) / alike[subject.form, subject.name]
+            hard = bool((self._labels[:, k] == Label.HARD_NO).any())
             for label, part in _ANSWERS.items():
+                if label is Label.NO and not hard:
+                    part += _ANSWERS[Label.HARD_NO]
                 # A little more than the count, so that a few odd pictures are not asked only this.
                 count = (self._labels[:, k] == label).sum() + 0.002 * len(self._labels)
                 weights[k, label] = share * part / count
