@@ -32,8 +32,7 @@ class EmbeddedVLM:
 
     Args:
         folder: Holds the network; the shipped one by default.
-        threads: CPU cores for one call. More than one helps only where they are free: waiting for
-            each other on a busy machine costs more than it gains.
+        threads: CPU cores for one call.
 
     Example:
         >>> vlm = EmbeddedVLM()
@@ -41,7 +40,7 @@ class EmbeddedVLM:
         'embedded'
     """
 
-    def __init__(self, *, folder: str | Path | None = None, threads: int = 1):
+    def __init__(self, *, folder: str | Path | None = None, threads: int = 2):
         self._folder = SHIPPED if folder is None else Path(folder)
         self._threads = threads
         self._lock = threading.Lock()
