@@ -81,11 +81,15 @@ def verify(pictures: PictureSet, tasks: Sequence[Reachable]) -> Report:
         for visible, states in task.classes().items():
             classes[visible] += states
     certain = {describe(v): settled(states, facts) for v, states in classes.items()}
+    tags = {
+        visible: set(observations(visible, tasks))
+        for visible in {picture.visible_state for picture in pictures.manifest.pictures}
+    }
     for picture in pictures.manifest.pictures:
         report.renderers[picture.renderer] += 1
         report.meshes[picture.meshes] += 1
         report.size += _check_file(pictures, picture, report.gaps)
-        _check_truth(picture, facts, certain, tasks, report.gaps)
+        _check_truth(picture, facts, certain, tags[picture.visible_state], report.gaps)
     names = Counter(picture.file for picture in pictures.manifest.pictures)
     report.gaps += [f"{name}: listed {n} times" for name, n in names.items() if n > 1]
     listed = set(names) | {MANIFEST}
@@ -123,7 +127,7 @@ def _check_truth(
     picture: Picture,
     facts: Sequence[Atom],
     certain: dict[str, dict[Atom, bool]],
-    tasks: Sequence[Reachable],
+    tags: set[Shows],
     gaps: list[str],
 ) -> None:
     unknown = picture.true_state - set(facts)
@@ -137,7 +141,7 @@ def _check_truth(
     odd = picture.seen - {atom.pddl() for atom in facts}
     if odd:
         gaps.append(f"{picture.file}: seen but not among the facts: {', '.join(sorted(odd))}")
-    if set(picture.shows) != set(observations(picture.visible_state, tasks)):
+    if set(picture.shows) != tags:
         gaps.append(f"{picture.file}: is not an observation of the actions that it names")
     sure = certain.get(picture.visible)
     if sure is None:
