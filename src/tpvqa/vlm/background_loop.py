@@ -27,7 +27,11 @@ class BackgroundLoop:
 
         An interrupt (Ctrl-C) while waiting cancels it.
         """
-        future = asyncio.run_coroutine_threadsafe(coroutine, self._started())
+        try:
+            future = asyncio.run_coroutine_threadsafe(coroutine, self._started())
+        except BaseException:
+            coroutine.close()
+            raise
         try:
             return future.result()
         except BaseException:
