@@ -1,8 +1,8 @@
 """The VLM behind a server, over real HTTP."""
 
 import asyncio
-import socket
 import signal
+import socket
 import subprocess
 import sys
 import time
