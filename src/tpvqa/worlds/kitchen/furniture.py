@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.assets import Model, distractors, draw, families, soiled
+from tpvqa.worlds.kitchen.assets import Model, distractors, draw, soiled
 from tpvqa.worlds.kitchen.assets.textures import Use, draw_texture
 from tpvqa.worlds.kitchen.household import HANDS, ITEMS
 from tpvqa.worlds.kitchen.layout import Layout, Split, Stand, draw_layout
@@ -51,7 +51,7 @@ def furnish(rng: np.random.Generator, split: Split, *, size: int) -> Furniture:
     """
 
     def pick(kind: str) -> Model:
-        return draw(kind, rng, split=split if families(kind, split=split) else "all")
+        return draw(kind, rng, split=split)
 
     models = {item: pick(item) for item in ITEMS}
     for _ in range(10):  # bread that does not hide the plate below it

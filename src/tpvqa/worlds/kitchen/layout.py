@@ -16,7 +16,9 @@ from tpvqa.worlds.kitchen.rotation import Array, about_z
 
 Split = Literal["train", "held_out"]
 GAP = 0.12
-"""Free room beside the fridge."""
+"""Free room beside the fridge, where it stands in line with the counter."""
+ALONE = (0.8, 1.9)
+"""Bare wall beside a fridge that stands alone, metres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,14 +117,15 @@ def draw_layout(rng: np.random.Generator, split: Split, sizes: Sizes, *, hinge: 
     sink_w = sizes["sink"][0]
     if split == "train":
         # counter, sink, one more cabinet, a gap, fridge
-        length = (modules + 1) * module + sink_w + GAP + fridge_w
+        gap = GAP if rng.random() < 0.5 else float(rng.uniform(*ALONE))
+        length = (modules + 1) * module + sink_w + gap + fridge_w
         width = float(length + rng.uniform(0.4, 1.0))
         left = -width / 2 + float(rng.uniform(0.05, 0.3))
         xs = [left + module * (k + 0.5) for k in range(modules)]
         end = left + modules * module
         sink = Stand(sign * (end + sink_w / 2), y)
         cabinets = [Stand(sign * x, y) for x in [*xs, end + sink_w + module / 2]]
-        fridge_x = end + sink_w + module + GAP + fridge_w / 2
+        fridge_x = end + sink_w + module + gap + fridge_w / 2
         fridge = Stand(sign * fridge_x, -fridge_d / 2 - 0.03)
         run = (left + 0.15, end - 0.2)
     else:

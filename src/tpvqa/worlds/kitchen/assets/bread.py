@@ -77,7 +77,7 @@ def _finish(build: Builder, x: float, y: float, z: float, gold: Colour) -> Model
 def tin_loaf(rng: Generator) -> Model:
     """A boxy loaf from a tin, its top domed over the sides."""
     x, y, z = rng.uniform(0.18, 0.27), rng.uniform(0.09, 0.12), rng.uniform(0.085, 0.12)
-    gold = one_of(rng, GOLD)
+    gold = one_of(rng, GOLD, 0.09)
     build = Builder()
     skin = build.paint(
         "crust",
@@ -95,7 +95,7 @@ def round_loaf(rng: Generator) -> Model:
     """A round or oval country loaf with a cross or stripes cut into it."""
     x = rng.uniform(0.15, 0.23)
     y, z = x * rng.uniform(0.8, 1.0), x * rng.uniform(0.4, 0.55)
-    gold = one_of(rng, GOLD)
+    gold = one_of(rng, GOLD, 0.09)
     build = Builder()
     skin = build.paint("crust", texture=_seen_from_above(rng, gold))
     rows, columns = 14, 30
@@ -155,7 +155,7 @@ def roll(rng: Generator) -> Model:
 
 
 def _long_loaf(rng: Generator, x: float, y: float, z: float, cuts: int) -> Model:
-    gold = one_of(rng, GOLD)
+    gold = one_of(rng, GOLD, 0.09)
     build = Builder()
     skin = build.paint(
         "crust",
@@ -179,7 +179,7 @@ def _long_loaf(rng: Generator, x: float, y: float, z: float, cuts: int) -> Model
 def sliced_loaf(rng: Generator) -> Model:
     """Held out: a loaf cut into slices, some of them fallen over, crumb in view."""
     y, z = rng.uniform(0.09, 0.12), rng.uniform(0.09, 0.12)
-    gold = one_of(rng, GOLD)
+    gold = one_of(rng, GOLD, 0.09)
     build = Builder()
     skin = build.paint("crust", near(rng, gold))
     size = 96

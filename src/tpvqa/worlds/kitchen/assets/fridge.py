@@ -4,6 +4,7 @@ The main body is the cabinet; the body "door" hangs on a hinge, 0 is shut and po
 are open. Surfaces "shelf0" (lowest) … are inside.
 """
 
+import colorsys
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -197,6 +198,29 @@ def _door(
     )
 
 
+def _decorated(build: Builder, rng: Generator, c: Cabinet, *, hinge: int) -> None:
+    """Notes and magnets on the swinging door, or a dispenser: dark or bright, and no opening."""
+    w, h = c.right - c.left, c.high - c.low
+    if rng.random() < 0.25:
+        dark = build.paint("dispenser", one_of(rng, ((0.06, 0.06, 0.07), (0.3, 0.32, 0.34)), 0.03))
+        wide, tall = rng.uniform(0.14, 0.2), rng.uniform(0.2, 0.32)
+        niche = box(wide, 0.006, tall, bevel=0.002)
+        at = -hinge * w * rng.uniform(0.4, 0.55)
+        build.mesh("dispenser", niche.moved(x=at, y=-DOOR - 0.001, z=0.08 * h), dark, body="door")
+    for k in range(int(rng.integers(1, 5)) if rng.random() < 0.35 else 0):
+        colour = (rng.uniform(0.2, 1), rng.uniform(0.2, 1), rng.uniform(0.2, 1))
+        note = build.paint(f"note{k}", colour)
+        size = rng.uniform(0.03, 0.2, 2)
+        at = -hinge * w * rng.uniform(0.2, 0.75)
+        z = h * rng.uniform(-0.3, 0.3)
+        build.mesh(
+            f"note{k}",
+            box(size[0], 0.002, size[1]).moved(x=at, y=-DOOR - 0.001, z=z),
+            note,
+            body="door",
+        )
+
+
 def _fridge(
     rng: Generator,
     c: Cabinet,
@@ -206,6 +230,7 @@ def _fridge(
     style: str,
     bevel: float,
     metallic: bool,
+    decorated: bool = False,
 ) -> Model:
     build = Builder()
     paint = build.paint("coat", colour, specular=0.6 if metallic else 0.35, shininess=0.6)
@@ -222,7 +247,7 @@ def _fridge(
     others = [
         (0.065, c.low - 0.004, -c.x / 2, c.x / 2),
         (c.high + 0.004, c.z, -c.x / 2, c.x / 2),
-        (0.065, c.z, -c.x / 2, c.left - 0.004),
+        (max(0.065, c.low), c.z, -c.x / 2, c.left - 0.004),
     ]
     for k, (low, high, left, right) in enumerate(others):
         wide, tall = right - left, high - low
@@ -245,24 +270,52 @@ def _fridge(
         build.solid(
             "box", (wide / 2, DOOR / 2, tall / 2), (middle, -c.y / 2 - DOOR / 2, (low + high) / 2)
         )
+    if decorated:
+        _decorated(build, rng, c, hinge=hinge)
     return build.done("fridge", (c.x, c.y + 2 * DOOR, c.z), 60.0, colour=colour)
+
+
+def _coat(rng: Generator) -> Colour:
+    """A colour that fridges have, or any other."""
+    if rng.random() < 0.6:
+        return one_of(rng, COLOURS, 0.04)
+    hue, saturation, value = rng.random(), rng.uniform(0.1, 0.8), rng.uniform(0.3, 0.95)
+    red, green, blue = colorsys.hsv_to_rgb(hue, saturation, value)
+    return (red, green, blue)
 
 
 def fridge(rng: Generator) -> Model:
     """A fridge with one big door; freezer above, below or none; hinge left or right."""
-    x, y, z = rng.uniform(0.54, 0.74), rng.uniform(0.5, 0.62), rng.uniform(1.4, 1.95)
-    layout = str(rng.choice(["below", "above", "single"], p=[0.5, 0.2, 0.3]))
+    x, y, z = rng.uniform(0.54, 0.74), rng.uniform(0.5, 0.62), rng.uniform(1.35, 1.95)
+    layout = str(rng.choice(["below", "above", "single"], p=[0.45, 0.2, 0.35]))
     low = rng.uniform(0.45, 0.65) if layout == "below" else 0.07
     high = z - rng.uniform(0.35, 0.45) if layout == "above" else z
-    colour = one_of(rng, COLOURS, 0.04)
+    colour = _coat(rng)
     return _fridge(
         rng,
         Cabinet(x, y, z, low, high, -x / 2, x / 2),
         colour,
         hinge=int(rng.choice([-1, 1])),
         style=str(rng.choice(["bar", "bow", "block", "strip"])),
-        bevel=rng.uniform(0.003, 0.02),
+        bevel=rng.uniform(0.003, 0.022),
         metallic=colour[1] > 0.6,
+        decorated=True,
+    )
+
+
+def french(rng: Generator) -> Model:
+    """A wide one with two doors above a drawer; the right one swings."""
+    x, y, z = rng.uniform(0.76, 0.92), rng.uniform(0.55, 0.64), rng.uniform(1.6, 1.85)
+    colour = _coat(rng)
+    return _fridge(
+        rng,
+        Cabinet(x, y, z, rng.uniform(0.5, 0.7), z, rng.uniform(-0.18, 0.0) * x, x / 2),
+        colour,
+        hinge=1,
+        style=str(rng.choice(["bar", "bow", "block"])),
+        bevel=rng.uniform(0.003, 0.02),
+        metallic=rng.random() < 0.5,
+        decorated=True,
     )
 
 

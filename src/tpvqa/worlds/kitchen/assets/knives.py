@@ -117,6 +117,16 @@ def _finish(build: Builder, x: float, y: float, z: float, handle: float) -> Mode
     )
 
 
+def _grip(rng: Generator) -> Colour:
+    """Colour of a handle: as usual, of steel as the blade, or any."""
+    draw = rng.random()
+    if draw < 0.25:
+        return near(rng, STEEL, 0.03)
+    if draw < 0.45:
+        return (rng.uniform(0.05, 0.95), rng.uniform(0.05, 0.95), rng.uniform(0.05, 0.95))
+    return one_of(rng, HANDLES)
+
+
 def chef(rng: Generator) -> Model:
     """A wide kitchen knife whose edge curves up to the tip."""
     t = np.linspace(0, 1, 16)
@@ -130,7 +140,7 @@ def chef(rng: Generator) -> Model:
         Blade(length, t, edge, back, 0.0028),
         rng.uniform(0.11, 0.135),
         0.018,
-        colour=one_of(rng, HANDLES),
+        colour=_grip(rng),
         rivets=int(rng.choice([0, 2, 3])),
         bolster=rng.random() < 0.5,
     )
@@ -148,7 +158,7 @@ def paring(rng: Generator) -> Model:
         Blade(length, t, edge, back, 0.002),
         rng.uniform(0.095, 0.115),
         0.016,
-        colour=one_of(rng, HANDLES),
+        colour=_grip(rng),
         rivets=int(rng.choice([0, 2])),
         bend=rng.uniform(0, 0.004),
     )
@@ -166,7 +176,7 @@ def santoku(rng: Generator) -> Model:
         Blade(length, t, edge, back, 0.0024),
         rng.uniform(0.115, 0.135),
         0.019,
-        colour=one_of(rng, HANDLES),
+        colour=_grip(rng),
         rivets=int(rng.choice([0, 3])),
         bolster=rng.random() < 0.6,
     )
@@ -183,7 +193,7 @@ def bread_knife(rng: Generator) -> Model:
         Blade(length, t, edge, back, 0.0022),
         rng.uniform(0.11, 0.13),
         0.018,
-        colour=one_of(rng, HANDLES),
+        colour=_grip(rng),
         rivets=int(rng.choice([0, 3])),
         serrated=True,
     )
