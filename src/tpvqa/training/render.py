@@ -25,7 +25,7 @@ from tpvqa.worlds.kitchen.layout import Split
 
 PART = 200
 """Pictures a part."""
-PER_KITCHEN = 25
+PER_KITCHEN = 20
 """Pictures of one kitchen; compiling the next takes as long as a few pictures."""
 _OVERVIEW = 0.04
 _SIDE = 0.16
