@@ -4,17 +4,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Event as Flag
-from typing import Any
+from typing import Literal
 
 from tpvqa.episodes import Ended, Event, Limits, Parts, Recorder, Started
 from tpvqa.episodes.events import Believed, Decided, EndedBecause
+from tpvqa.episodes.perform import perform
 from tpvqa.episodes.recorder import Writer
 from tpvqa.episodes.records import atoms
-from tpvqa.monitors import Ask, AskPerson, Check, Decision, Look, Monitor, Step, Verdict
-from tpvqa.monitors.requests import PlanFrom
-from tpvqa.pddl import State, holds, literals
+from tpvqa.monitors import Check, Decision, Monitor, Step, Verdict
+from tpvqa.pddl import State
 from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut
 from tpvqa.worlds import Report
+from tpvqa.worlds.truth import goal_holds
 
 
 @dataclass
@@ -71,7 +72,7 @@ def run_episode(
     except KeyboardInterrupt:
         because, trial.message = "cancelled", "interrupted by the user"
     recorder.settle()
-    goal = _goal_holds(parts)
+    goal = goal_holds(parts.world, parts.task.goal)
     return recorder.end(
         Ended(
             because=because,
@@ -96,32 +97,22 @@ def _run(
     planning_timeout: float | None,
     action_deadline: float | None,
 ) -> EndedBecause:
-    def check(of: Check, when: str) -> Verdict:
-        verdict = _perform(recorder, of, planning_timeout)
+    def check(of: Check, when: Literal["before", "after"]) -> Verdict:
+        verdict = perform(recorder, of, timeout=planning_timeout)
+        action, decision = step.action.pddl(), verdict.decision
         recorder.emit(
             Decided(
-                when=when,  # type: ignore[arg-type]
-                step=trial.index,
-                action=step.action.pddl(),
-                decision=verdict.decision,
-                reason=verdict.reason,
+                when=when, step=trial.index, action=action, decision=decision, reason=verdict.reason
             )
         )
         _believe(recorder, trial, verdict.state)
         return verdict
 
-    failed = _replan(recorder, trial, planning_timeout)
+    parts, failed = recorder.parts, _replan(recorder, trial, planning_timeout)
     while failed is None and trial.plan is not None and trial.index < len(trial.plan.actions):
         if trial.cancel.is_set():
             return "cancelled"
-        step = Step(
-            recorder.parts.task,
-            recorder.parts.book,
-            trial.plan,
-            trial.index,
-            trial.state,
-            trial.attempt,
-        )
+        step = Step(parts.task, parts.book, trial.plan, trial.index, trial.state, trial.attempt)
         verdict = check(monitor.before(step), "before")
         if verdict.decision is Decision.GO_ON and verdict.step in (None, trial.index):
             if recorder.actions >= limits.actions:
@@ -161,26 +152,6 @@ def _run(
     return failed or "goal"
 
 
-def _perform(recorder: Recorder, check: Check, timeout: float | None) -> Verdict:
-    """Do what a monitor asks for until it decides."""
-    answer: Any = None
-    while True:
-        try:
-            request = check.send(answer)
-        except StopIteration as end:
-            verdict: Verdict = end.value
-            return verdict
-        match request:
-            case Look(view):
-                answer = recorder.look(view)
-            case Ask(questions):
-                answer = recorder.ask(questions)
-            case PlanFrom(state):
-                answer = recorder.plan(state, timeout=timeout)
-            case AskPerson(question):
-                answer = recorder.ask([question], person=True)[0]
-
-
 def _replan(recorder: Recorder, trial: _Trial, timeout: float | None) -> EndedBecause | None:
     """A new plan from what is believed; why there is none, where there is none."""
     result: PlanningResult = recorder.plan(trial.state, timeout=timeout)
@@ -200,15 +171,6 @@ def _believe(recorder: Recorder, trial: _Trial, state: State | None) -> None:
             Believed(added=atoms(state - trial.state), removed=atoms(trial.state - state))
         )
         trial.state = state
-
-
-def _goal_holds(parts: Parts) -> bool | None:
-    """Whether all goals hold in truth; None in a world that does not know."""
-    truth = getattr(parts.world, "truth", None)
-    if truth is None:
-        return None
-    goal = parts.task.goal
-    return holds(goal, frozenset(lit.atom for lit in literals(goal) if truth.holds(lit.atom)))
 
 
 def _or(value: int | None, default: int) -> int:
