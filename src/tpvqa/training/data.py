@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.pddl import Action
+from tpvqa.questions.question import Way
 from tpvqa.training import shards
 from tpvqa.training.facts import FactTable
-from tpvqa.training.labels import Labels
+from tpvqa.training.labels import Label, Labels
 from tpvqa.training.subjects import Subject
 
 
@@ -53,6 +54,9 @@ class Pictures:
     ):
         self._folder, self._split, self._seeds = folder, split, seeds
         self._subjects, self._actions = subjects, tuple(actions)
+        self._finds = np.array(
+            [s.form == Way.POSSIBLE and s.name == "find" for s in subjects], bool
+        )
         self._read: set[Path] = set()
         self._pixels: list[NDArray[np.uint8]] = []
         self._starts = np.zeros(1, np.int64)
@@ -67,7 +71,11 @@ class Pictures:
             shard = shards.read(path)
             self._read.add(path)
             self._pixels.append(shard.pixels)
-            rows.append(Labels(in_words(shard), self._actions).of(self._subjects))
+            labels = Labels(in_words(shard), self._actions).of(self._subjects)
+            elsewhere = np.array(["photograph" in info for info in shard.info])
+            # Whether a thing can be found from where no kitchen is, nobody knows.
+            labels[np.ix_(elsewhere, self._finds)] = Label.UNCLEAR
+            rows.append(labels)
         self.labels = np.concatenate(rows)
         self._starts = np.cumsum([0, *(len(part) for part in self._pixels)])
         return len(self)
