@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.doubles import knowing, perform, replies
+from tests.monitors.conftest import agree
 from tpvqa.monitors import Decision, Step
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.tpvqa import TPVQA
@@ -21,48 +22,8 @@ SINK = "Is there a sink in the image?"
 CLEAN = "Is the plate clean?"
 
 
-@pytest.fixture(scope="module")
-def task() -> Task:
-    return load_task("clean_dishes")
-
-
-@pytest.fixture(scope="module")
-def book(task: Task) -> QuestionBook:
-    return QuestionBook.load(find_task("clean_dishes").questions, task)
-
-
-@pytest.fixture
-def at(task: Task, book: QuestionBook) -> Callable[..., Step]:
-    names = [
-        ("find", ("plate", "tv")),
-        ("pick_up", ("plate", "table", "left")),
-        ("find", ("sink", "plate")),
-        ("wash", ("plate", "sink", "left")),
-    ]
-    plan = Plan(tuple(task.action(*name) for name in names), 4, "by hand", 0.0)
-
-    def step(index: int, monitor: TPVQA | None = None) -> Step:
-        """Step `index`, reached by a monitor that saw every earlier step succeed."""
-        state = task.init
-        for number in range(index):
-            here = Step(task, book, plan, number, state)
-            if monitor is None:
-                state = task.apply(state, plan.actions[number])
-            else:
-                verdict, _, _ = perform(monitor.after(here), lambda q: _agree(q))
-                assert verdict.state is not None
-                state = verdict.state
-        return Step(task, book, plan, index, state)
-
-    return step
-
-
-def _agree(question: Question) -> Reply:
-    return Reply.YES if question.expected else Reply.NO
-
-
 def test_all_preconditions_are_asked_and_a_yes_to_each_goes_on(at: Callable[..., Step]) -> None:
-    verdict, looks, asked = perform(TPVQA().before(at(3)), _agree)
+    verdict, looks, asked = perform(TPVQA().before(at(3)), agree)
     assert asked == [IN_HAND, SINK]
     assert (verdict.decision, looks) == (Decision.GO_ON, 1)
 
@@ -137,7 +98,7 @@ def test_where_all_abstain_it_looks_again_and_then_stops_safely(
 
 
 def test_an_answer_after_looking_again_counts(at: Callable[..., Step]) -> None:
-    verdict, looks, _ = perform(TPVQA().after(at(3)), replies({}, Reply.UNKNOWN), _agree)
+    verdict, looks, _ = perform(TPVQA().after(at(3)), replies({}, Reply.UNKNOWN), agree)
     assert (verdict.decision, looks) == (Decision.GO_ON, 2)
 
 

@@ -3,10 +3,12 @@
 from collections.abc import Generator, Sequence
 from typing import Any
 
+from tpvqa.errors import PluginError
+from tpvqa.monitors.asker import Asker, give_up, tally
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.protocol import Check, Step
-from tpvqa.monitors.requests import Ask, Look, Request
+from tpvqa.monitors.requests import Ask, Request
 from tpvqa.monitors.verdict import Decision, Verdict
 from tpvqa.pddl import Atom, Literal, State
 from tpvqa.questions import Question, Way
@@ -23,69 +25,82 @@ class TPVQA:
     Args:
         majority: When answers deny an action.
         looks: How often to look again where every answer abstains, before stopping.
+        votes: Looks at which every question is asked; each question's answer is the vote.
         alternatives: Whether to ask where else a thing is, once a fact about it is denied.
-    """
 
-    name = "tpvqa"
+    Example:
+        >>> TPVQA.from_spec("5").name
+        'tpvqa:5'
+    """
 
     def __init__(
         self,
         *,
         majority: Majority | str = Majority.TIE_DENIES,
         looks: int = 3,
+        votes: int = 1,
         alternatives: bool = True,
     ):
-        self.majority, self.looks, self.alternatives = Majority(majority), looks, alternatives
+        self._asker = Asker(majority=majority, looks=looks, votes=votes)
+        self.alternatives = alternatives
         self._memory: FactMemory | None = None
+
+    @classmethod
+    def from_spec(
+        cls, arguments: str = "", *, majority: Majority | str = Majority.TIE_DENIES
+    ) -> "TPVQA":
+        """Make it from `tpvqa`, or `tpvqa:K` for votes over K looks.
+
+        Raises:
+            PluginError: K is not a number of looks.
+        """
+        if not arguments:
+            return cls(majority=majority)
+        if not arguments.isdecimal():
+            raise PluginError(
+                f"'tpvqa:{arguments}' is not understood. Write tpvqa, or tpvqa:K for votes over "
+                "K looks, e.g. tpvqa:5."
+            )
+        return cls(majority=majority, votes=int(arguments))
+
+    @property
+    def name(self) -> str:
+        """What the log calls it."""
+        return "tpvqa" if self._asker.votes == 1 else f"tpvqa:{self._asker.votes}"
 
     def before(self, step: Step) -> Check:
         """Check the preconditions: go on, or replan from the corrected state."""
         questions = step.book.preconditions(step.action, step.state)
-        denied, answers = yield from self._ask(questions)
+        denied, answers = yield from self._asker.ask(questions)
         if denied is None:
-            return _give_up(questions)
+            return give_up(questions)
         if not denied:
-            return Verdict(Decision.GO_ON, _tally("preconditions", answers))
+            return Verdict(Decision.GO_ON, tally("preconditions", answers))
         corrected = yield from self._correct(step, answers)
         if corrected == step.state:
             # A fact with nothing before it stays: one more look, then the robot acts.
-            denied, answers = yield from self._ask(questions)
+            denied, answers = yield from self._asker.ask(questions)
             corrected = (yield from self._correct(step, answers)) if denied else step.state
         if corrected == step.state:
             return Verdict(
                 Decision.GO_ON,
-                f"{_tally('preconditions', answers)}; looked twice, nothing else to believe",
+                f"{tally('preconditions', answers)}; looked twice, nothing else to believe",
             )
         self._remember(step).record(step.state, corrected)
-        reason = f"{_tally('preconditions', answers)}; {_change(step.state, corrected)}"
+        reason = f"{tally('preconditions', answers)}; {_change(step.state, corrected)}"
         return Verdict(Decision.REPLAN, reason, corrected)
 
     def after(self, step: Step) -> Check:
         """Check the effects: go on, or repeat the action."""
         questions = step.book.effects(step.action, step.state)
-        denied, answers = yield from self._ask(questions)
+        denied, answers = yield from self._asker.ask(questions)
         if denied is None:
-            return _give_up(questions)
+            return give_up(questions)
         if denied:
-            return Verdict(Decision.REPEAT, _tally("effects", answers))
+            return Verdict(Decision.REPEAT, tally("effects", answers))
         state = step.task.apply(step.state, step.action)
         self._remember(step).record(step.state, state)
-        return Verdict(Decision.GO_ON, _tally("effects", answers), state)
-
-    def _ask(
-        self, questions: Sequence[Question]
-    ) -> Generator[Request, Any, tuple[bool | None, list[Answer]]]:
-        """Look and ask, again while every answer abstains; None where that does not help."""
-        if not questions:
-            return False, []
-        answers: list[Answer] = []
-        for _ in range(1 + self.looks):
-            yield Look()
-            answers = yield Ask(tuple(questions))
-            denied = self.majority.denies(answers)
-            if denied is not None:
-                return denied, answers
-        return None, answers
+        return Verdict(Decision.GO_ON, tally("effects", answers), state)
 
     def _correct(self, step: Step, answers: Sequence[Answer]) -> Generator[Request, Any, State]:
         """Take the denied facts out, believing an alternative where exactly one is affirmed."""
@@ -128,23 +143,7 @@ class TPVQA:
         return self._memory
 
 
-def _tally(what: str, answers: Sequence[Answer]) -> str:
-    votes = [answer for answer in answers if answer.agrees is not None]
-    if not votes:
-        return f"no {what} to ask about"
-    denied = [answer.question.text for answer in votes if answer.agrees is False]
-    count = f"{len(votes) - len(denied)} of {len(votes)} {what} hold"
-    return count if not denied else f"{count}; denied: {' '.join(denied)}"
-
-
 def _change(before: State, after: State) -> str:
     gone = ", ".join(map(str, sorted(before - after)))
     new = ", ".join(map(str, sorted(after - before)))
     return f"believing {new or 'nothing'} instead of {gone or 'nothing'}"
-
-
-def _give_up(questions: Sequence[Question]) -> Verdict:
-    return Verdict(
-        Decision.GIVE_UP,
-        f"no answer to {len(questions)} question(s), also after looking again: stopped safely",
-    )

@@ -1,0 +1,70 @@
+"""Looking and asking as the paper's monitors do: a look, all questions, a majority."""
+
+from collections.abc import Generator, Sequence
+from typing import Any
+
+from tpvqa.errors import PluginError
+from tpvqa.monitors.majority import Majority
+from tpvqa.monitors.requests import Ask, Look, Request
+from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.vote import vote
+from tpvqa.questions import Question
+from tpvqa.vlm import Answer
+
+Asking = Generator[Request, Any, tuple[bool | None, list[Answer]]]
+
+
+class Asker:
+    """Asks all questions of a check and lets the majority of the answers decide.
+
+    Args:
+        majority: When answers deny an action.
+        looks: How often to look again where every answer abstains, before stopping.
+        votes: Looks at which every question is asked; each question's answer is the vote.
+
+    Raises:
+        PluginError: There are fewer votes than one.
+    """
+
+    def __init__(
+        self, *, majority: Majority | str = Majority.TIE_DENIES, looks: int = 3, votes: int = 1
+    ):
+        if votes < 1:
+            raise PluginError(f"A vote over {votes} looks decides nothing; it takes one or more.")
+        self.majority, self.looks, self.votes = Majority(majority), looks, votes
+
+    def ask(self, questions: Sequence[Question]) -> Asking:
+        """Whether the answers deny the action, and they; None where they still abstain.
+
+        Where every answer abstains, it looks and asks again, a bounded number of times.
+        """
+        if not questions:
+            return False, []
+        for _ in range(1 + self.looks):
+            rounds: list[list[Answer]] = []
+            for _ in range(self.votes):
+                yield Look()
+                rounds.append((yield Ask(tuple(questions))))
+            answers = vote(rounds)
+            denied = self.majority.denies(answers)
+            if denied is not None:
+                return denied, answers
+        return None, answers
+
+
+def tally(what: str, answers: Sequence[Answer]) -> str:
+    """How many of the answered questions agree, and which do not, in words."""
+    votes = [answer for answer in answers if answer.agrees is not None]
+    if not votes:
+        return f"no {what} to ask about"
+    denied = [answer.question.text for answer in votes if answer.agrees is False]
+    count = f"{len(votes) - len(denied)} of {len(votes)} {what} hold"
+    return count if not denied else f"{count}; denied: {' '.join(denied)}"
+
+
+def give_up(questions: Sequence[Question]) -> Verdict:
+    """The verdict where no question is answered, however often it is asked."""
+    return Verdict(
+        Decision.GIVE_UP,
+        f"no answer to {len(questions)} question(s), also after looking again: stopped safely",
+    )
