@@ -18,8 +18,10 @@ from all but worlds and *noise models*: VLMs whose class says `noise_model = Tru
 
 import inspect
 import re
+import sys
 from collections.abc import Callable, Mapping
 from enum import StrEnum
+from functools import lru_cache
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires
 from typing import Any
 
@@ -42,9 +44,15 @@ class Kind(StrEnum):
         return f"tpvqa.{self.value.lower()}s"
 
 
+@lru_cache
+def _points(group: str, path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
+    """The entry points of a group; finding them reads the metadata of every package on the path."""
+    return tuple(entry_points(group=group))
+
+
 def names(kind: Kind) -> list[str]:
     """The names that can be asked for, sorted."""
-    return sorted({point.name for point in entry_points(group=kind.group)})
+    return sorted({point.name for point in _points(kind.group, tuple(sys.path))})
 
 
 def load(kind: Kind, name: str) -> Callable[..., Any]:
@@ -55,7 +63,8 @@ def load(kind: Kind, name: str) -> Callable[..., Any]:
         MissingExtraError: A package is missing that one of tpvqa's extras installs.
         PluginError: The plug-in cannot be imported, or two packages offer the name.
     """
-    found = {point.value: point for point in entry_points(group=kind.group) if point.name == name}
+    points = _points(kind.group, tuple(sys.path))
+    found = {point.value: point for point in points if point.name == name}
     if not found:
         raise UnknownNameError(kind.value, name, names(kind))
     if len(found) > 1:

@@ -23,7 +23,7 @@ from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM
 from tpvqa.worlds import World
 from tpvqa.worlds.simulation import DISTURBANCE, FAILURE, Simulation
-from tpvqa.worlds.world_file import load_world_file
+from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,6 +79,8 @@ class Trial:
         task: The task, where it has been loaded already.
         planner: A planner to share between trials; not closed here.
         vlm: A VLM to share between trials.
+        book: The task's questions, where they have been loaded already.
+        rules: What the world file says, where it has been loaded already.
     """
 
     def __init__(
@@ -88,16 +90,25 @@ class Trial:
         task: Task | None = None,
         planner: Planner | None = None,
         vlm: VLM | None = None,
+        book: QuestionBook | None = None,
+        rules: WorldRules | None = None,
     ):
         self.config = config
         self._closing: list[Callable[[], None]] = []
         try:
-            self._prepare(task, planner, vlm)
+            self._prepare(task, planner, vlm, book, rules)
         except BaseException:
             self.close()
             raise
 
-    def _prepare(self, task: Task | None, planner: Planner | None, vlm: VLM | None) -> None:
+    def _prepare(
+        self,
+        task: Task | None,
+        planner: Planner | None,
+        vlm: VLM | None,
+        book: QuestionBook | None,
+        rules: WorldRules | None,
+    ) -> None:
         config = self.config
         files = None if config.task is None else find_task(config.task)
         if files is None and (config.domain is None or config.problem is None):
@@ -107,13 +118,13 @@ class Trial:
         self.questions = config.questions or (files.questions if files else None)
         self.world_file = config.world_file or (files.world if files else None)
         self.task = task or load_task(self.domain, self.problem)
-        self.book = QuestionBook.load(self.questions, self.task)
+        self.book = book or QuestionBook.load(self.questions, self.task)
         if planner is None:
             planner = make(Kind.PLANNER, config.planner)
             self._closing.append(planner.close)
         self.simulation = Simulation(
             self.task,
-            load_world_file(self.world_file, self.task),
+            rules or load_world_file(self.world_file, self.task),
             failure=config.failure,
             disturbance=config.disturbance,
             spontaneous=config.spontaneous,

@@ -29,6 +29,8 @@ class EpisodeWriter:
         EpisodeError: The folder holds another episode, or cannot be written.
     """
 
+    resumable = True
+
     def __init__(self, folder: Path, *, resume: int = 0, durable: bool = True):
         self.folder, self._durable, self._count = Path(folder), durable, resume
         self._began = monotonic()
@@ -82,9 +84,14 @@ class EpisodeWriter:
 
 
 class MemoryWriter:
-    """Keeps the events in memory: for experiments of many episodes, and for tests."""
+    """Keeps the events in memory: for experiments of many episodes, and for tests.
 
-    def __init__(self) -> None:
+    Args:
+        resumable: Whether the events hold the states of world and VLM.
+    """
+
+    def __init__(self, *, resumable: bool = True) -> None:
+        self.resumable = resumable
         self.events: list[Event] = []
 
     def append(self, event: Event) -> Event:

@@ -35,7 +35,14 @@ E = TypeVar("E", bound=Event)
 
 
 class Writer(Protocol):
-    """Where events go."""
+    """Where events go.
+
+    Attributes:
+        resumable: Whether an episode may be gone on with from what was written, so that the
+            states of world and VLM belong into the events.
+    """
+
+    resumable: bool
 
     def append(self, event: Event) -> Event:
         """Write an event."""
@@ -129,7 +136,7 @@ class Recorder:
                     world_time=seen.time,
                     frames=frames,
                     detail=dict(seen.detail),
-                    snapshot=_snapshot(self.parts.world),
+                    snapshot=self._snapshot(self.parts.world),
                 )
             )
         )
@@ -164,7 +171,7 @@ class Recorder:
                     f"to {len(questions)} questions"
                 )
             record = records.answered_record(answers).model_copy(
-                update={"snapshot": _snapshot(self.parts.vlm)}
+                update={"snapshot": self._snapshot(self.parts.vlm)}
             )
             record = self._writer.append(record)  # type: ignore[assignment]
         self._tell(record)
@@ -193,7 +200,7 @@ class Recorder:
                     seconds=execution.seconds,
                     message=execution.message,
                     truth=_truth(world),
-                    snapshot=_snapshot(world),
+                    snapshot=self._snapshot(world),
                 )
             )
         assert isinstance(record, Acted)
@@ -226,14 +233,15 @@ class Recorder:
                 if isinstance(target, Restorable):
                     target.restore(snapshot)
 
+    def _snapshot(self, part: object) -> dict[str, Any] | None:
+        if self._writer.resumable and isinstance(part, Restorable):
+            return dict(part.snapshot())
+        return None
+
     def _tell(self, event: E) -> E:
         for listener in self._listeners:
             listener(event)
         return event
-
-
-def _snapshot(part: object) -> dict[str, Any] | None:
-    return dict(part.snapshot()) if isinstance(part, Restorable) else None
 
 
 def _truth(world: World) -> dict[str, Any] | None:

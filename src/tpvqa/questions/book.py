@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from tpvqa.pddl import Action, Condition, Disjunction, Literal, State, Task, holds, supporting
+from tpvqa.pddl import Action, Atom, Condition, Disjunction, Literal, State, Task, holds, supporting
 from tpvqa.questions import fallback
 from tpvqa.questions.question import Question, Way
 from tpvqa.questions.template import Template
@@ -33,6 +33,8 @@ class QuestionBook:
         self._predicates, self._actions = parameters_of(task)
         self._questions = dict(wordings.predicates)
         self._say, self._done = dict(wordings.say), dict(wordings.done)
+        self._texts: dict[Atom, str] = {}
+        self._why_not: dict[tuple[Literal, tuple[str, tuple[str, ...]] | None], str | None] = {}
         self._fall_back()
 
     @staticmethod
@@ -56,8 +58,10 @@ class QuestionBook:
     ) -> Question:
         """The question about a fact; a negative literal expects the answer *no*."""
         atom = literal.atom
-        values = dict(zip(self._predicates[atom.predicate], atom.arguments, strict=True))
-        text = self._fill(self._questions[atom.predicate], values)
+        text = self._texts.get(atom)
+        if text is None:
+            values = dict(zip(self._predicates[atom.predicate], atom.arguments, strict=True))
+            text = self._texts[atom] = self._fill(self._questions[atom.predicate], values)
         return Question(text, way, atom=atom, action=action, expected=literal.positive)
 
     def asked(self, literal: Literal, action: Action | None = None) -> bool:
@@ -66,6 +70,12 @@ class QuestionBook:
 
     def why_not(self, literal: Literal, action: Action | None = None) -> str | None:
         """Why a literal is never asked about; None where it is asked."""
+        key = (literal, None if action is None else (action.name, action.arguments))
+        if key not in self._why_not:
+            self._why_not[key] = self._find_why_not(literal, action)
+        return self._why_not[key]
+
+    def _find_why_not(self, literal: Literal, action: Action | None) -> str | None:
         name = None if action is None else action.name
         arguments = {} if action is None else self._values(action)
         for pattern in self._wordings.never_asked:
