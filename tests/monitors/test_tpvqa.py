@@ -1,18 +1,21 @@
 """The paper's monitor at its seam: requests out, answers in, verdict out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.doubles import knowing, perform, replies
 from tests.monitors.conftest import agree
 from tpvqa.monitors import Decision, Step
 from tpvqa.monitors.majority import Majority
+from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.tpvqa import TPVQA
-from tpvqa.pddl import Atom, State, Task, load_task
-from tpvqa.planning import Plan
+from tpvqa.pddl import Atom, Literal, State, Task, load_task
+from tpvqa.planning import Plan, Planner
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import Remembering
 from tpvqa.questions import Question, QuestionBook, Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm import Answer, Reply
@@ -65,6 +68,45 @@ def test_two_affirmed_alternatives_decide_nothing(at: Callable[..., Step]) -> No
     verdict, _, _ = perform(monitor.before(at(3, monitor)), seen)
     assert verdict.state is not None
     assert Atom("on", ("plate", "table")) in verdict.state
+
+
+def test_what_was_denied_is_not_fallen_back_to(at: Callable[..., Step]) -> None:
+    monitor = TPVQA()
+    verdict, _, _ = perform(monitor.before(at(3, monitor)), knowing("(near sink)"))
+    assert verdict.state is not None
+    assert Atom("on", ("plate", "table")) in verdict.state
+    step = at(1)
+    back = Step(step.task, step.book, step.plan, 1, verdict.state | {Atom("near", ("plate",))})
+    verdict, looks, _ = perform(monitor.before(back), knowing("(near plate)"))
+    assert (verdict.decision, verdict.state, looks) == (Decision.GO_ON, None, 2)
+
+
+def test_an_alternative_that_was_denied_is_the_last_to_be_believed(at: Callable[..., Step]) -> None:
+    task = at(0).task
+    table, floor, hand = (
+        Atom("on", ("plate", "table")),
+        Atom("on", ("plate", "floor")),
+        Atom("in_hand", ("plate", "left")),
+    )
+    free = Atom("free", ("left",))
+    held = task.init - {table, free} | {hand}
+    memory = FactMemory(task)
+    memory.record(task.init, held)
+    memory.record(held, task.init - {table} | {floor})
+    memory.record(task.init - {table} | {floor}, held)
+    denied = [Literal(hand)]
+    assert floor in memory.take_out(held, denied)
+    assert table in memory.take_out(held, denied, unseen=[floor])
+    assert floor in memory.take_out(held, denied, unseen=[floor, table])
+
+
+def test_a_second_look_that_nobody_answers_stops_safely(at: Callable[..., Step]) -> None:
+    monitor = TPVQA(looks=2)
+    step = at(1, monitor)
+    first = knowing("(near plate)")
+    silent = replies({}, Reply.UNKNOWN)
+    verdict, looks, _ = perform(monitor.before(step), first, silent)
+    assert (verdict.decision, looks) == (Decision.GIVE_UP, 4)
 
 
 def test_an_initial_fact_is_looked_at_once_more_and_then_the_robot_acts(
@@ -122,11 +164,21 @@ def test_the_majority_rule(given_replies: list[Reply]) -> None:
         assert Majority.STRICT.denies(answers) is (no > yes)
 
 
-@given(st.data())
-def test_no_object_is_ever_nowhere(data: st.DataObject) -> None:
-    """Whatever is answered, each exactly-one group keeps exactly one true member."""
+@pytest.fixture(scope="module")
+def apple() -> Iterator[tuple[Task, QuestionBook, Planner]]:
     task = load_task("eat_apple")
-    book = QuestionBook.load(find_task("eat_apple").questions, task)
+    planner = Remembering(FastDownward())
+    yield task, QuestionBook.load(find_task("eat_apple").questions, task), planner
+    planner.close()
+
+
+@settings(deadline=None)
+@given(data=st.data())
+def test_no_object_is_ever_nowhere(
+    apple: tuple[Task, QuestionBook, Planner], data: st.DataObject
+) -> None:
+    """Whatever is answered, each exactly-one group keeps exactly one true member."""
+    task, book, planner = apple
     monitor, state = TPVQA(), task.init
     actions = [
         task.action("find", ("fridge", "tv")),
@@ -139,13 +191,23 @@ def test_no_object_is_ever_nowhere(data: st.DataObject) -> None:
     ]
     plan = Plan(tuple(actions), 7, "by hand", 0.0)
     draw = st.sampled_from([Reply.YES, Reply.NO, Reply.UNKNOWN])
-    for index in range(len(actions)):
+    index = 0
+    for _ in range(15):
+        if index >= len(plan.actions):
+            return
         step = Step(task, book, plan, index, state)
-        for check in (monitor.before, monitor.after):
-            verdict, _, _ = perform(check(step), lambda question: data.draw(draw))
-            state = _one_each(task, state if verdict.state is None else verdict.state)
-            if verdict.decision is not Decision.GO_ON:
+        verdict, _, _ = perform(monitor.before(step), lambda question: data.draw(draw))
+        if verdict.decision is Decision.GO_ON:
+            verdict, _, _ = perform(monitor.after(step), lambda question: data.draw(draw))
+            index += verdict.decision is Decision.GO_ON
+        state = _one_each(task, state if verdict.state is None else verdict.state)
+        if verdict.decision is Decision.GIVE_UP:
+            return
+        if verdict.decision is Decision.REPLAN:
+            replanned = planner.plan(task, state)
+            if not isinstance(replanned, Plan):
                 return
+            plan, index = replanned, 0
 
 
 def _one_each(task: Task, state: State) -> State:

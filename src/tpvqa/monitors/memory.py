@@ -15,6 +15,9 @@ from tpvqa.pddl import Atom, Literal, MutexGroup, State, Task
 class FactMemory:
     """Remembers which believed facts ended, and repairs a state from which facts are taken out.
 
+    What ended lies on a stack. Falling back to a fact takes it off: a fact that is believed again
+    has before it what it had the first time, and what was denied is never fallen back to.
+
     Args:
         task: Gives the initial state and the mutex groups.
     """
@@ -38,8 +41,16 @@ class FactMemory:
         }
 
     def record(self, before: State, after: State) -> None:
-        """Note a change of belief."""
+        """Note what an action changed."""
         self._ended += sorted(before - after)
+        self._changed |= before ^ after
+
+    def correct(self, before: State, after: State) -> None:
+        """Note a correction by `take_out`."""
+        for atom in sorted(after - before):
+            if atom in self._ended:
+                latest = len(self._ended) - 1 - self._ended[::-1].index(atom)
+                del self._ended[latest]
         self._changed |= before ^ after
 
     def alternatives(self, atom: Atom) -> list[Atom]:
@@ -48,7 +59,12 @@ class FactMemory:
         return sorted(others & self._possible - {atom})
 
     def take_out(
-        self, state: State, denied: Iterable[Literal], *, seen: Collection[Atom] = ()
+        self,
+        state: State,
+        denied: Iterable[Literal],
+        *,
+        seen: Collection[Atom] = (),
+        unseen: Collection[Atom] = (),
     ) -> State:
         """The believed state without the denied literals.
 
@@ -56,6 +72,7 @@ class FactMemory:
             state: What was believed.
             denied: Literals that were denied; a negative one becomes its atom.
             seen: Alternatives that the VLM affirmed.
+            unseen: Alternatives that it denied; fallen back to only where nothing else is left.
 
         Returns:
             The corrected state. A literal with nothing before it (an initial one that never
@@ -64,12 +81,14 @@ class FactMemory:
         """
         for literal in denied:
             if literal.positive:
-                state = self._without(state, literal.atom, seen)
+                state = self._without(state, literal.atom, seen, unseen)
             elif literal.atom in self._changed and literal.atom not in state:
                 state = self._with(state, literal.atom)
         return state
 
-    def _without(self, state: State, atom: Atom, seen: Collection[Atom]) -> State:
+    def _without(
+        self, state: State, atom: Atom, seen: Collection[Atom], unseen: Collection[Atom]
+    ) -> State:
         if atom not in state:
             return state
         homes = [group for group in self._groups if atom in group.atoms]
@@ -84,7 +103,7 @@ class FactMemory:
             successor = (
                 self._least_disturbing(replaced, candidates)
                 if candidates
-                else self._previous(group, atom)
+                else self._previous(group, atom, unseen)
             )
             if successor is not None:
                 replaced = self._with(replaced, successor)
@@ -92,11 +111,9 @@ class FactMemory:
             return state
         return replaced
 
-    def _previous(self, group: MutexGroup, atom: Atom) -> Atom | None:
-        for ended in reversed(self._ended):
-            if ended in group.atoms and ended != atom:
-                return ended
-        return None
+    def _previous(self, group: MutexGroup, atom: Atom, unseen: Collection[Atom]) -> Atom | None:
+        held = [e for e in reversed(self._ended) if e in group.atoms and e != atom]
+        return next((each for each in held if each not in unseen), held[0] if held else None)
 
     def _with(self, state: State, atom: Atom) -> State:
         rivals = {

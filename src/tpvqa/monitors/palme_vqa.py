@@ -52,7 +52,7 @@ class PaLMEVQA:
                 return Verdict(Decision.GO_ON, f"yes: {question.text}")
             corrected = self._corrected(step)
             if corrected != step.state:
-                self._remember(step).record(step.state, corrected)
+                self._remember(step).correct(step.state, corrected)
                 return Verdict(Decision.REPLAN, f"no: {question.text}", corrected)
         return Verdict(
             Decision.GO_ON, f"no: {question.text}; looked twice, nothing else to believe"

@@ -80,13 +80,17 @@ class TPVQA:
         if corrected == step.state:
             # A fact with nothing before it stays: one more look, then the robot acts.
             denied, answers = yield from self._asker.ask(questions)
-            corrected = (yield from self._correct(step, answers)) if denied else step.state
+            if denied is None:
+                return give_up(questions)
+            if not denied:
+                return Verdict(
+                    Decision.GO_ON, f"{tally('preconditions', answers)} at the second look"
+                )
+            corrected = yield from self._correct(step, answers)
         if corrected == step.state:
-            return Verdict(
-                Decision.GO_ON,
-                f"{tally('preconditions', answers)}; looked twice, nothing else to believe",
-            )
-        self._remember(step).record(step.state, corrected)
+            reason = f"{tally('preconditions', answers)}; looked twice, nothing else to believe"
+            return Verdict(Decision.GO_ON, reason)
+        self._remember(step).correct(step.state, corrected)
         reason = f"{tally('preconditions', answers)}; {_change(step.state, corrected)}"
         return Verdict(Decision.REPLAN, reason, corrected)
 
@@ -111,15 +115,20 @@ class TPVQA:
             if answer.agrees is False and answer.question.atom is not None
         ]
         seen: list[Atom] = []
+        unseen: list[Atom] = []
         if self.alternatives:
             for literal in denied:
-                seen += yield from self._look_elsewhere(step, literal)
-        return memory.take_out(step.state, denied, seen=seen)
+                affirmed, refused = yield from self._look_elsewhere(step, literal)
+                seen += affirmed
+                unseen += refused
+        return memory.take_out(step.state, denied, seen=seen, unseen=unseen)
 
-    def _look_elsewhere(self, step: Step, denied: Literal) -> Generator[Request, Any, list[Atom]]:
-        """Which alternatives of a denied fact the VLM affirms, if it affirms exactly one."""
+    def _look_elsewhere(
+        self, step: Step, denied: Literal
+    ) -> Generator[Request, Any, tuple[list[Atom], list[Atom]]]:
+        """Which alternative of a denied fact the VLM affirms, if exactly one, and which not."""
         if not denied.positive:
-            return []
+            return [], []
         asked_already = step.book.fact(denied, way=Way.ALTERNATIVE).text
         atoms_by_text: dict[str, list[Atom]] = {}
         questions: dict[str, Question] = {}
@@ -132,10 +141,15 @@ class TPVQA:
                     questions.setdefault(question.text, question)
                     atoms_by_text.setdefault(question.text, []).append(atom)
         if not questions:
-            return []
+            return [], []
         answers: list[Answer] = yield Ask(tuple(questions.values()))
-        affirmed = [answer.question.text for answer in answers if answer.reply is Reply.YES]
-        return atoms_by_text[affirmed[0]] if len(affirmed) == 1 else []
+
+        def told(reply: Reply) -> list[list[Atom]]:
+            return [atoms_by_text[a.question.text] for a in answers if a.reply is reply]
+
+        affirmed = told(Reply.YES)
+        refused = [atom for atoms in told(Reply.NO) for atom in atoms]
+        return affirmed[0] if len(affirmed) == 1 else [], refused
 
     def _remember(self, step: Step) -> FactMemory:
         if self._memory is None:
