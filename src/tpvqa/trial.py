@@ -161,8 +161,10 @@ class Trial:
             problem_file=str(self.problem),
             questions_file=None if self.questions is None else str(self.questions),
             world_file=None if self.world_file is None else str(self.world_file),
-            domain=self.domain.read_text(encoding="utf-8"),
-            problem=self.problem.read_text(encoding="utf-8"),
+            domain=self.task.domain_text,
+            problem=self.task.problem_text,
+            questions=_text(self.questions),
+            rules=_text(self.world_file),
             initial=atoms(self.task.init),
             goal=", ".join(self.book.fact(literal).text for literal in self._goal_literals()),
             monitor=config.monitor,
@@ -174,6 +176,9 @@ class Trial:
             limits=config.limits,
             settings={
                 "shipped_task": config.task,
+                "own_questions": config.questions,
+                "own_world_file": config.world_file,
+                "planner": config.planner,
                 "failure": config.failure,
                 "disturbance": config.disturbance,
                 "spontaneous": config.spontaneous,
@@ -229,35 +234,25 @@ class Trial:
         self.close()
 
 
-def config_of(started: Started) -> TrialConfig:
-    """The configuration that an episode was started with.
+def _text(path: Path | str | None) -> str | None:
+    """What a file says, to be compared with what it says later."""
+    return None if path is None else Path(path).read_bytes().decode(errors="replace")
 
-    Raises:
-        EpisodeError: Its domain or problem is no longer what it was.
-    """
+
+def config_of(started: Started) -> TrialConfig:
+    """The configuration that an episode was started with."""
     settings = started.settings
     shipped = settings["shipped_task"]
-    files = None if shipped is None else find_task(shipped)
-    domain = started.domain_file if files is None else str(files.domain)
-    problem = started.problem_file if files is None else str(files.problem)
-    for path, text in ((domain, started.domain), (problem, started.problem)):
-        try:
-            same = Path(path).read_text(encoding="utf-8") == text
-        except OSError as error:
-            raise EpisodeError(f"{path}: cannot be read ({error.strerror})") from error
-        if not same:
-            raise EpisodeError(
-                f"{path} has changed since the episode began: it cannot be resumed, only shown"
-            )
     return TrialConfig(
         task=shipped,
-        domain=None if shipped else domain,
-        problem=None if shipped else problem,
-        questions=None if shipped else started.questions_file,
-        world_file=None if shipped else started.world_file,
+        domain=None if shipped else started.domain_file,
+        problem=None if shipped else started.problem_file,
+        questions=settings["own_questions"],
+        world_file=settings["own_world_file"],
         monitor=started.monitor,
         vlm=started.vlm,
         world=started.world,
+        planner=settings["planner"],
         seed=started.seed,
         episode=started.episode,
         failure=settings["failure"],
@@ -270,6 +265,19 @@ def config_of(started: Started) -> TrialConfig:
     )
 
 
+def _same_files(then: Started, now: Started) -> None:
+    for part, file in (
+        ("domain", now.domain_file),
+        ("problem", now.problem_file),
+        ("questions", now.questions_file),
+        ("rules", now.world_file),
+    ):
+        if getattr(then, part) != getattr(now, part):
+            raise EpisodeError(
+                f"{file} has changed since the episode began: it cannot be resumed, only shown"
+            )
+
+
 def resume(
     folder: Path | str,
     *,
@@ -279,7 +287,8 @@ def resume(
     """Go on with an unfinished episode, with the same random numbers, to the same end.
 
     Raises:
-        EpisodeError: There is nothing to go on with, or it has ended already.
+        EpisodeError: There is nothing to go on with, it has ended already, or a file that it
+            was started with is no longer what it was.
     """
     events = read_episode(folder)
     started, last = events[0], events[-1]
@@ -290,6 +299,7 @@ def resume(
         events.pop()
     folder = Path(folder)
     with Trial(config_of(started)) as trial:
+        _same_files(started, trial.started())
         writer = EpisodeWriter(folder, resume=len(events))
         try:
             return trial.run(

@@ -34,7 +34,10 @@ class Limits(BaseModel):
 
 
 class Started(_Event):
-    """The first event: everything that is needed to run the trial again."""
+    """The first event: everything that is needed to run the trial again.
+
+    `domain`, `problem`, `questions` and `rules` (the world file) are the texts of the files.
+    """
 
     kind: Literal["started"] = "started"
     version: str
@@ -45,6 +48,8 @@ class Started(_Event):
     world_file: str | None = None
     domain: str
     problem: str
+    questions: str | None = None
+    rules: str | None = None
     initial: tuple[str, ...]
     goal: str
     monitor: str
