@@ -25,8 +25,10 @@ from PIL import Image
 
 from tpvqa.chance import chance
 from tpvqa.errors import PictureSetError
+from tpvqa.worlds.images.contrast import DISTINCT, distinctness
 from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Picture, Renderer, digest
 from tpvqa.worlds.images.recipe import FACTS, TRIES, Job, objection
+from tpvqa.worlds.kitchen.household import ITEMS
 from tpvqa.worlds.kitchen.layout import Split
 
 if TYPE_CHECKING:
@@ -240,8 +242,12 @@ class _Maker:
                 )
                 if reason is None:
                     seen = frozenset(atom.pddl() for atom in FACTS if shown[atom].visible)
-                    data = _encoded(self._render(scene, look))
-                    return Made(job, data, self._picture(job, seed, look, data, state, seen))
+                    pixels = self._render(scene, look)
+                    faint = _faint(scene, pixels)
+                    if not faint:
+                        data = _encoded(pixels)
+                        return Made(job, data, self._picture(job, seed, look, data, state, seen))
+                    reason = f"the {' and the '.join(faint)} would hardly stand out"
                 reasons.append(f"kitchen {seed}, look {look}: {reason}")
         raise PictureSetError(
             f"No kitchen shows {job.key[0]} well. The last tries: {'; '.join(reasons[-3:])}"
@@ -295,6 +301,16 @@ class _Maker:
             )
         rendered: NDArray[np.uint8] = self._cycles.render(scene_arrays(scene, look=look))
         return rendered
+
+
+def _faint(scene: "KitchenScene", pixels: NDArray[np.uint8]) -> list[str]:
+    """The items in view that a person would overlook in a picture."""
+    if len(pixels) != SIDE:
+        pixels = np.asarray(Image.fromarray(pixels).resize((SIDE, SIDE), Image.Resampling.LANCZOS))
+    masks = {item: scene.mask(item) for item in ITEMS}
+    return [
+        item for item, mask in masks.items() if mask.any() and distinctness(pixels, mask) < DISTINCT
+    ]
 
 
 def _encoded(pixels: NDArray[np.uint8]) -> bytes:

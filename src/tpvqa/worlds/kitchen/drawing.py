@@ -68,8 +68,8 @@ class Drawing:
         """What the camera sees, size × size × 3."""
         return np.ascontiguousarray(self._draw(data, camera, self.size, ids=False, shadow=shadow))
 
-    def counts(self, data: Any, camera: int, size: int) -> NDArray[np.int64]:
-        """How many pixels of a size × size picture each geom covers, by geom number."""
+    def geoms(self, data: Any, camera: int, size: int) -> NDArray[np.int64]:
+        """The number of the geom that each pixel shows, the model's `ngeom` where none."""
         rgb = self._draw(data, camera, size, ids=True, shadow=False).astype(np.int32)
         segment = rgb[..., 0] + (rgb[..., 1] << 8) + (rgb[..., 2] << 16) - 1
         geom_of = np.full(self._scene.ngeom + 1, self._model.ngeom, np.int64)
@@ -77,8 +77,7 @@ class Drawing:
             if geom.objtype == self._mujoco.mjtObj.mjOBJ_GEOM and geom.segid >= 0:
                 geom_of[geom.segid] = geom.objid
         segment[(segment < 0) | (segment >= self._scene.ngeom)] = self._scene.ngeom
-        ids = geom_of[segment]
-        return np.bincount(ids.ravel(), minlength=self._model.ngeom + 1)[: self._model.ngeom]
+        return np.asarray(geom_of[segment])
 
 
 def _free(gl: Any, context: Any) -> None:

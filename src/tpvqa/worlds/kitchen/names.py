@@ -50,9 +50,19 @@ class Names:
                 thing = label if label == "dirt" else name.split("/")[0]
                 self.geoms_of.setdefault(thing, []).append(k)
 
+    def mask(self, thing: str, geoms: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Which pixels show a thing.
+
+        Args:
+            thing: One of `LABELS`.
+            geoms: The number of the geom that each pixel shows.
+        """
+        labels = np.append(self._label, LABELS.index("nothing"))
+        return np.asarray(labels[geoms] == LABELS.index(thing))
+
     def by_thing(self, by_geom: NDArray[np.int64]) -> dict[str, int]:
         """Pixels of each thing from the pixels of each geom. What is on a thing is of it too."""
-        sums = np.bincount(self._label, weights=by_geom, minlength=len(LABELS))
+        sums = np.bincount(self._label, weights=by_geom[: len(self._label)], minlength=len(LABELS))
         counts = {name: int(n) for name, n in zip(LABELS, sums, strict=True)}
         counts["plate"] += counts["dirt"]
         counts["tv"] += counts["screen"]

@@ -277,16 +277,24 @@ class KitchenScene:
 
     def pixels(self) -> Mapping[str, int]:
         """How many pixels of a picture of the last arrangement show each thing."""
-        self._arranged()
         if self._counts is None:
-            # Segmentation takes glass for opaque, so it is left out.
-            glass = self.model.mat_rgba[self.model.geom_matid, 3] < OPAQUE
-            drawn = self.model.geom_group[glass].copy()
-            self.model.geom_group[glass] = HIDDEN
-            by_geom = self._drawing.counts(self.data, self._camera, self.size)
-            self.model.geom_group[glass] = drawn
-            self._counts = self._names.by_thing(by_geom)
+            geoms = self._geoms().ravel()
+            self._counts = self._names.by_thing(np.bincount(geoms, minlength=self.model.ngeom + 1))
         return self._counts
+
+    def mask(self, thing: str) -> NDArray[np.bool_]:
+        """Which pixels of a picture of the last arrangement show a thing, size × size."""
+        return self._names.mask(thing, self._geoms())
+
+    def _geoms(self) -> NDArray[np.int64]:
+        self._arranged()
+        # Segmentation takes glass for opaque, so it is left out.
+        glass = self.model.mat_rgba[self.model.geom_matid, 3] < OPAQUE
+        drawn = self.model.geom_group[glass].copy()
+        self.model.geom_group[glass] = HIDDEN
+        geoms = self._drawing.geoms(self.data, self._camera, self.size)
+        self.model.geom_group[glass] = drawn
+        return geoms
 
     def shown(self) -> Mapping[Atom, Shown]:
         """Every fact of the household: whether it is true, and whether the picture shows it."""
