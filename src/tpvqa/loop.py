@@ -1,21 +1,23 @@
 """The closed loop: plan, check, act, check; repeat or replan where the monitor says so."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from threading import Event as Flag
-from typing import Literal
+from typing import Literal, TypeVar
 
 from tpvqa.episodes import Ended, Event, Limits, Parts, Recorder, Started
 from tpvqa.episodes.events import Believed, Decided, EndedBecause
 from tpvqa.episodes.perform import perform
-from tpvqa.episodes.recorder import Writer
+from tpvqa.episodes.recorder import Lost, Writer
 from tpvqa.episodes.records import atoms
 from tpvqa.monitors import Check, Decision, Monitor, Step, Verdict
 from tpvqa.pddl import State
-from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut
+from tpvqa.planning import Crashed, Plan, TimedOut
 from tpvqa.worlds import Report
 from tpvqa.worlds.truth import goal_holds
+
+T = TypeVar("T")
 
 
 @dataclass
@@ -70,6 +72,8 @@ def run_episode(
     try:
         because = _run(recorder, monitor, trial, started.limits, planning_timeout, action_deadline)
     except KeyboardInterrupt:
+        if recorder.replaying:  # the log is right as it is
+            raise
         because, trial.message = "cancelled", "interrupted by the user"
     recorder.settle()
     goal = goal_holds(parts.world, parts.task.goal)
@@ -97,8 +101,8 @@ def _run(
     planning_timeout: float | None,
     action_deadline: float | None,
 ) -> EndedBecause:
-    def check(of: Check, when: Literal["before", "after"]) -> Verdict:
-        verdict = perform(recorder, of, timeout=planning_timeout)
+    def check(of: Callable[[Step], Check], when: Literal["before", "after"]) -> Verdict:
+        verdict = _again(recorder, lambda: perform(recorder, of(step), timeout=planning_timeout))
         action, decision = step.action.pddl(), verdict.decision
         recorder.emit(
             Decided(
@@ -113,21 +117,29 @@ def _run(
         if trial.cancel.is_set():
             return "cancelled"
         step = Step(parts.task, parts.book, trial.plan, trial.index, trial.state, trial.attempt)
-        verdict = check(monitor.before(step), "before")
+        verdict = check(monitor.before, "before")
         if verdict.decision is Decision.GO_ON and verdict.step in (None, trial.index):
             if recorder.actions >= limits.actions:
                 return "limit of actions"
-            execution = recorder.act(
-                step.action,
-                step=trial.index,
-                attempt=trial.attempt,
-                deadline=action_deadline,
-                cancel=trial.cancel,
-            )
+            try:
+                execution = recorder.act(
+                    step.action,
+                    step=trial.index,
+                    attempt=trial.attempt,
+                    deadline=action_deadline,
+                    cancel=trial.cancel,
+                )
+            except Lost:
+                _again(recorder, lambda: recorder.look(None))
+                continue
+            if trial.cancel.is_set():
+                return "cancelled"
             if execution.report is Report.UNAVAILABLE:
                 trial.message = execution.message
                 return "world refused"
-            verdict = check(monitor.after(step), "after")
+            if execution.report is not Report.DONE:
+                step = replace(step, trouble=execution.message or execution.report.value)
+            verdict = check(monitor.after, "after")
             if verdict.decision is Decision.GO_ON:
                 trial.index, trial.attempt = _or(verdict.step, trial.index + 1), 0
                 continue
@@ -152,9 +164,21 @@ def _run(
     return failed or "goal"
 
 
+def _again(recorder: Recorder, do: Callable[[], T]) -> T:
+    """Do something; where a trial came back to a world that may have changed, look first."""
+    lost = False
+    while True:
+        try:
+            if lost:
+                recorder.look(None)
+            return do()
+        except Lost:
+            lost = True
+
+
 def _replan(recorder: Recorder, trial: _Trial, timeout: float | None) -> EndedBecause | None:
     """A new plan from what is believed; why there is none, where there is none."""
-    result: PlanningResult = recorder.plan(trial.state, timeout=timeout)
+    result = _again(recorder, lambda: recorder.plan(trial.state, timeout=timeout))
     if isinstance(result, Plan):
         trial.plan, trial.index, trial.attempt = result, 0, 0
         return None

@@ -19,6 +19,7 @@ from tpvqa.episodes.events import (
     Observed,
     PlanMade,
     QuestionRecord,
+    Resumed,
     Started,
 )
 from tpvqa.monitors import Decision
@@ -101,6 +102,8 @@ class EpisodeView:
                 self._line(f"  [blue]▶ {escape(event.action.said)}[/]")
             case Acted():
                 self._show_outcome(event)
+            case Resumed():
+                self._line("  [yellow]gone on after an interruption: looking anew[/]")
             case Ended():
                 self._done = event.believed_goal
                 self._show_end(event)

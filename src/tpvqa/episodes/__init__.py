@@ -1,6 +1,6 @@
 """Every step of a trial as a typed event on disk; reading back, resuming."""
 
-from tpvqa.episodes.events import EVENT, Ended, Event, Limits, Started
+from tpvqa.episodes.events import EVENT, Ended, Event, Limits, Resumed, Started
 from tpvqa.episodes.log import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.recorder import Parts, Recorder
 
@@ -13,6 +13,7 @@ __all__ = [
     "MemoryWriter",
     "Parts",
     "Recorder",
+    "Resumed",
     "Started",
     "read_episode",
 ]

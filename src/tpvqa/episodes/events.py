@@ -201,8 +201,14 @@ EndedBecause = Literal[
     "gave up",
     "world refused",
     "cancelled",
-    "error",
 ]
+
+
+class Resumed(_Event):
+    """The trial goes on after an interruption, in a world that cannot be put back: it may have
+    changed while nobody watched, so what was being checked is checked again."""
+
+    kind: Literal["resumed"] = "resumed"
 
 
 class Ended(_Event):
@@ -222,7 +228,17 @@ class Ended(_Event):
 
 
 Event = (
-    Started | PlanMade | Observed | Asked | Answered | Believed | Decided | Acting | Acted | Ended
+    Started
+    | PlanMade
+    | Observed
+    | Asked
+    | Answered
+    | Believed
+    | Decided
+    | Acting
+    | Acted
+    | Resumed
+    | Ended
 )
 
 EVENT: TypeAdapter[Event] = TypeAdapter(Annotated[Event, Field(discriminator="kind")])

@@ -1,5 +1,6 @@
 """The episode on disk: `episode.jsonl`, one event a line, and the pictures in `frames/`."""
 
+import fcntl
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -36,22 +37,33 @@ class EpisodeWriter:
         self._began = monotonic()
         path = self.folder / LOG
         try:
-            if path.exists() and not resume:
+            if path.exists() and path.stat().st_size and not resume:
                 raise EpisodeError(
                     f"{self.folder} holds an episode already; name another folder with --out, "
                     f"or go on with it: tpvqa resume {self.folder}"
                 )
             (self.folder / FRAMES).mkdir(parents=True, exist_ok=True)
+            self._file = path.open("ab")
+            self._lock()
             if resume:
                 whole = path.read_bytes().split(b"\n")[:resume]
                 with path.open("r+b") as file:
                     file.truncate(sum(len(line) + 1 for line in whole))
-            self._file = path.open("ab")
         except OSError as error:
             raise EpisodeError(
                 f"{self.folder}: cannot be written ({error.strerror}); name another folder "
                 "with --out"
             ) from error
+
+    def _lock(self) -> None:
+        """Let no other writer at the log; the lock ends with this process, however it ends."""
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            self._file.close()
+            raise EpisodeError(
+                f"{self.folder} is still being written by another process; wait for it or end it"
+            ) from None
 
     def append(self, event: Event) -> Event:
         """Write an event; returned with its number and its time since the beginning."""

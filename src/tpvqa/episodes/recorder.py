@@ -22,6 +22,7 @@ from tpvqa.episodes.events import (
     FrameRecord,
     Observed,
     PlanMade,
+    Resumed,
 )
 from tpvqa.errors import EpisodeError
 from tpvqa.observation import Observation
@@ -49,6 +50,13 @@ class Writer(Protocol):
 
     def save_frame(self, frame: Any) -> str:
         """Save a picture; its path within the episode."""
+
+
+class Lost(Exception):  # noqa: N818
+    """A log ended in a world that cannot be put back, which may have changed since.
+
+    Whoever meets it looks, and does again what it was about to do.
+    """
 
 
 @dataclass
@@ -85,10 +93,14 @@ class Recorder:
         self.parts, self._writer, self._folder = parts, writer, folder
         self._recorded, self._listeners = deque(recorded), tuple(listeners)
         self._snapshots: dict[str, Mapping[str, Any]] = {}
-        self._replaying = bool(recorded)
-        self._stale = False
+        self._replaying, self._unsure = bool(recorded), False
         self._observation: Observation | None = None
         self.questions = self.looks = self.actions = 0
+
+    @property
+    def replaying(self) -> bool:
+        """Whether recorded events are still to be played back."""
+        return bool(self._recorded)
 
     def emit(self, event: E) -> E:
         """Log an event, or take the recorded one in its place."""
@@ -100,7 +112,12 @@ class Recorder:
         return self._tell(self._writer.append(event))  # type: ignore[return-value]
 
     def plan(self, state: State, *, timeout: float | None) -> PlanningResult:
-        """A plan from a state."""
+        """A plan from a state.
+
+        Raises:
+            Lost: See there.
+        """
+        self._find()
         record = self._next(PlanMade)
         if record is not None:
             self._tell(record)
@@ -110,15 +127,20 @@ class Recorder:
         return result
 
     def look(self, view: str | None) -> Observation:
-        """A new look at the world."""
+        """A new look at the world.
+
+        Raises:
+            Lost: See there.
+        """
+        self._find()
+        number = self.looks
         self.looks += 1
         record = self._next(Observed)
         if record is not None:
             self._tell(record)
             self._observation = records.observation_from(record, self._folder)
             return self._observation
-        seen = self.parts.world.observe(view)
-        self._stale = False
+        seen = replace(self.parts.world.observe(view), look=number)
         frames = tuple(
             FrameRecord(
                 view=frame.view,
@@ -144,7 +166,12 @@ class Recorder:
         return seen
 
     def ask(self, questions: Sequence[Question], *, person: bool = False) -> list[Answer]:
-        """Answers to questions about the latest look."""
+        """Answers to questions about the latest look.
+
+        Raises:
+            Lost: See there.
+        """
+        self._find()
         if self._observation is None:
             self.look(None)
         assert self._observation is not None
@@ -156,10 +183,9 @@ class Recorder:
                 person=person,
             )
         )
+        self._find()
         record = self._next(Answered)
         if record is None:
-            if self._stale:
-                self.look(None)
             answers = (
                 [Answer(question, Reply.UNKNOWN, text="nobody is there") for question in questions]
                 if person
@@ -180,31 +206,42 @@ class Recorder:
     def act(
         self, action: Action, *, step: int, attempt: int, deadline: float | None, cancel: Flag
     ) -> Execution:
-        """Execute an action; that it is about to be executed is on disk before."""
+        """Execute an action; that it is about to be executed is on disk before.
+
+        Raises:
+            Lost: See there.
+        """
+        self._find()
         self.actions += 1
         said = records.action_record(action, self.parts.book)
-        was_replaying = self._replaying
         self.emit(Acting(step=step, action=said, attempt=attempt))
-        broken = was_replaying and not self._recorded
+        interrupted = False
+        try:
+            self._find()
+        except Lost:  # killed in the middle of a skill: what came of it is for a new look
+            interrupted = True
         record = self._next(Acted)
         if record is None:
             world = self.parts.world
-            if broken and not isinstance(world, Restorable):
-                # A robot was killed in the middle of a skill: what came of it is for a new look.
-                execution = Execution(Report.FAILED, 0.0, "interrupted")
-            else:
-                execution = world.execute(action, deadline=deadline, cancel=cancel)
+            before = getattr(world, "last_outcome", None)
+            execution = (
+                Execution(Report.FAILED, 0.0, "interrupted")
+                if interrupted
+                else world.execute(action, deadline=deadline, cancel=cancel)
+            )
             record = self._writer.append(  # type: ignore[assignment]
                 Acted(
                     report=execution.report,
                     seconds=execution.seconds,
                     message=execution.message,
-                    truth=_truth(world),
+                    truth=_truth(world, before),
                     snapshot=self._snapshot(world),
                 )
             )
         assert isinstance(record, Acted)
         self._tell(record)
+        if interrupted:
+            self.look(None)
         return Execution(record.report, record.seconds, record.message)
 
     def _next(self, kind: type[E]) -> E | None:
@@ -223,11 +260,24 @@ class Recorder:
         self.settle()
         return None
 
+    def _find(self) -> None:
+        """Notice that the world may not be as it was left, from the log or for the log."""
+        if self._recorded:
+            if isinstance(self._recorded[0], Resumed):
+                self._tell(self._recorded.popleft())
+                raise Lost
+            return
+        self.settle()
+        if self._unsure:
+            self._unsure = False
+            self._tell(self._writer.append(Resumed()))
+            raise Lost
+
     def settle(self) -> None:
         """Put world and VLM where the log left them, once it has been played back."""
         if self._replaying and not self._recorded:
             self._replaying = False
-            self._stale = not isinstance(self.parts.world, Restorable)
+            self._unsure = not isinstance(self.parts.world, Restorable)
             for part, snapshot in self._snapshots.items():
                 target = getattr(self.parts, part)
                 if isinstance(target, Restorable):
@@ -244,9 +294,10 @@ class Recorder:
         return event
 
 
-def _truth(world: World) -> dict[str, Any] | None:
+def _truth(world: World, before: object) -> dict[str, Any] | None:
+    """What truly came of the last action; None where it did not happen or nobody knows."""
     outcome = getattr(world, "last_outcome", None)
-    if outcome is None:
+    if outcome is None or outcome is before:
         return None
     return {
         "succeeded": outcome.succeeded,

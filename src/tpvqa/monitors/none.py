@@ -5,7 +5,7 @@ from tpvqa.monitors.verdict import Decision, Verdict
 
 
 class NoMonitor:
-    """Believes that every action works. It never looks and never asks."""
+    """Believes that every action works, unless the skill itself says otherwise. It never looks."""
 
     name = "none"
 
@@ -16,5 +16,7 @@ class NoMonitor:
 
     def after(self, step: Step) -> Check:
         """Believe the effects."""
+        if step.trouble:
+            return Verdict(Decision.REPEAT, f"the skill reports: {step.trouble}")
         return Verdict(Decision.GO_ON, "no perception", step.task.apply(step.state, step.action))
         yield

@@ -25,6 +25,7 @@ class Step:
         index: The step of the plan, from 0.
         state: What is believed to be true, before the action.
         attempt: How often this step's action has been repeated so far.
+        trouble: After the action, what the robot's own skill says went wrong; never the truth.
     """
 
     task: Task
@@ -33,6 +34,7 @@ class Step:
     index: int
     state: State
     attempt: int = 0
+    trouble: str = ""
 
     @property
     def action(self) -> Action:

@@ -23,8 +23,11 @@ class Remembering:
         """The name of the planner behind it."""
         return self._planner.name
 
-    def plan(self, task: Task, state: State, *, timeout: float | None = None) -> PlanningResult:
+    def plan(
+        self, task: Task, state: State | None = None, *, timeout: float | None = None
+    ) -> PlanningResult:
         """A plan from a state, as the planner behind it made it the first time."""
+        state = task.init if state is None else state
         self._tasks[id(task)] = task  # kept alive, so that its number stays its own
         key = (id(task), state)
         known = self._results.get(key)

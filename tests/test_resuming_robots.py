@@ -1,0 +1,136 @@
+"""Trials in a world that cannot be put back: a robot that is killed and started again."""
+
+from pathlib import Path
+
+import pytest
+
+from tpvqa.episodes import Ended, EpisodeWriter, Event, Parts, Resumed, read_episode
+from tpvqa.loop import run_episode
+from tpvqa.monitors import Monitor
+from tpvqa.monitors.none import NoMonitor
+from tpvqa.monitors.tpvqa import TPVQA
+from tpvqa.observation import Frame, Observation
+from tpvqa.pddl import Action, Task, load_task
+from tpvqa.planning import Planner
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import Remembering
+from tpvqa.trial import Trial, TrialConfig
+from tpvqa.vlm.oracle import Oracle
+from tpvqa.worlds import Execution, Report
+from tpvqa.worlds.simulation import SimulatedTruth, Simulation
+
+
+class Killed(BaseException):
+    """What a kill looks like from within."""
+
+
+class Robot:
+    """A robot in a room that stays as it is while the program is dead. Counts its own looks."""
+
+    def __init__(self, room: Simulation, name: str):
+        self.room, self.name, self.looks = room, name, 0
+        self.truth = SimulatedTruth(room)
+
+    def views(self) -> tuple[str, ...]:
+        return ("front",)
+
+    def observe(self, view: str | None = None) -> Observation:
+        data = f"{self.name}, look {self.looks}".encode()
+        frame = Frame("camera", "front", data)
+        self.looks += 1
+        return Observation(self.looks - 1, 0.0, {"front": frame})
+
+    def execute(self, action: Action, **_: object) -> Execution:
+        self.room.execute(action)
+        return Execution(Report.DONE, 0.0)
+
+    def close(self) -> None: ...
+
+
+@pytest.fixture(scope="module")
+def planner() -> Planner:
+    return Remembering(FastDownward())
+
+
+@pytest.fixture(scope="module")
+def task() -> Task:
+    return load_task("clean_dishes")
+
+
+def go_on(
+    folder: Path, room: Simulation, planner: Planner, monitor: Monitor, *, kill_at: int | None
+) -> list[Event]:
+    """Begin an episode or go on with it, until it ends or is killed after so many events."""
+    recorded = read_episode(folder) if (folder / "episode.jsonl").exists() else []
+    config = TrialConfig(task="clean_dishes", world="symbolic", vlm="oracle")
+    with Trial(config, task=room.task, planner=planner) as trial:
+        started = trial.started()
+        book = trial.book
+    robot = Robot(room, f"run from event {len(recorded)}")
+    parts = Parts(room.task, book, planner, robot, Oracle(robot.truth))
+    writer = EpisodeWriter(folder, resume=len(recorded), durable=False)
+
+    def watch(event: Event) -> None:
+        if event.number == kill_at:
+            raise Killed
+
+    try:
+        run_episode(
+            parts, monitor, writer, started, recorded=recorded, folder=folder, listeners=[watch]
+        )
+    except Killed:
+        pass
+    finally:
+        writer.close()
+    return read_episode(folder)
+
+
+@pytest.mark.parametrize("monitor", [TPVQA, NoMonitor])
+def test_killed_anywhere_it_goes_on_with_a_new_look_to_the_goal(
+    monitor: type[Monitor], task: Task, planner: Planner, tmp_path: Path
+) -> None:
+    whole = go_on(tmp_path / "whole", Simulation(task, failure=0), planner, monitor(), kill_at=None)
+    for cut in range(len(whole) - 1):
+        room, folder = Simulation(task, failure=0), tmp_path / f"cut{cut}"
+        before = go_on(folder, room, planner, monitor(), kill_at=cut)
+        assert len(before) == cut + 1
+        kept = {path: path.read_bytes() for path in (folder / "frames").iterdir()}
+        events = go_on(folder, room, planner, monitor(), kill_at=None)
+        ended = events[-1]
+        assert isinstance(ended, Ended)
+        assert (ended.because, ended.completed) == ("goal", True), cut
+        assert all(path.read_bytes() == data for path, data in kept.items())
+        looks = [event.look for event in events if event.kind == "observed"]
+        assert looks == list(range(len(looks)))
+        added = events[cut + 1 :]
+        if any(event.kind == "acting" for event in added):
+            kinds = [event.kind for event in added]
+            assert "observed" in kinds[: kinds.index("acting")], (cut, kinds)
+
+
+def test_killed_twice_it_still_goes_on(task: Task, planner: Planner, tmp_path: Path) -> None:
+    whole = go_on(tmp_path / "whole", Simulation(task, failure=0), planner, TPVQA(), kill_at=None)
+    for cut in range(1, len(whole) - 1, 2):
+        for later in (1, 2, 3):
+            room, folder = Simulation(task, failure=0), tmp_path / f"cut{cut}-{later}"
+            go_on(folder, room, planner, TPVQA(), kill_at=cut)
+            events = go_on(folder, room, planner, TPVQA(), kill_at=cut + later)
+            if not isinstance(events[-1], Ended):
+                events = go_on(folder, room, planner, TPVQA(), kill_at=None)
+            ended = events[-1]
+            assert isinstance(ended, Ended)
+            assert ended.completed, (cut, later)
+            assert sum(isinstance(event, Resumed) for event in events) <= 2
+
+
+def test_an_action_that_never_began_is_not_taken_for_a_failed_one(
+    task: Task, planner: Planner, tmp_path: Path
+) -> None:
+    room, folder = Simulation(task, failure=0), tmp_path / "e"
+    whole = go_on(tmp_path / "whole", Simulation(task, failure=0), planner, TPVQA(), kill_at=None)
+    first = next(k for k, event in enumerate(whole) if event.kind == "acting")
+    go_on(folder, room, planner, TPVQA(), kill_at=first - 1)
+    events = go_on(folder, room, planner, TPVQA(), kill_at=None)
+    acted = [event for event in events if event.kind == "acted"]
+    assert all(event.report is Report.DONE for event in acted)
+    assert len(acted) == 4
