@@ -25,6 +25,8 @@ _PUBLIC = {
     "State": "tpvqa.pddl",
     "Task": "tpvqa.pddl",
     "TpvqaError": "tpvqa.errors",
+    "Trial": "tpvqa.trial",
+    "TrialConfig": "tpvqa.trial",
     "load_task": "tpvqa.pddl",
     "run_episode": "tpvqa.loop",
 }

@@ -101,6 +101,11 @@ def make(kind: Kind, spec: str, **context: Any) -> Any:
         MissingExtraError: An optional package is needed.
         PluginError: The plug-in cannot be imported or does not take these arguments.
     """
+    return make_from(kind, spec, context)[0]
+
+
+def make_from(kind: Kind, spec: str, context: Mapping[str, Any]) -> tuple[Any, set[str]]:
+    """As `make`, and the names of what the plug-in takes of a context."""
     name, arguments = _split(spec)
     return _construct(kind, name, load(kind, name), arguments, context)
 
@@ -113,8 +118,11 @@ def _split(spec: str) -> tuple[str, str]:
 
 def _construct(
     kind: Kind, name: str, target: Callable[..., Any], arguments: str, context: Mapping[str, Any]
-) -> Any:
+) -> tuple[Any, set[str]]:
     """Call what `load` gave by the convention that this module describes.
+
+    Returns:
+        What was made, and the names of what it takes of a context.
 
     Raises:
         PluginError: It does not take these arguments, or needs what the context does not have.
@@ -147,7 +155,7 @@ def _construct(
             f"The {kind.value} {name!r} cannot be made here: {error}. "
             f"It can have: {', '.join(sorted(context)) or 'nothing'}."
         ) from None
-    return function(*given, **wanted)
+    return function(*given, **wanted), set(wanted) | set(signature.parameters)
 
 
 def _root(point: EntryPoint) -> str:

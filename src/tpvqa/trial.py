@@ -1,6 +1,6 @@
 """From names to a trial: puts together what `run_episode` needs, and runs or resumes it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Event as Flag
@@ -12,12 +12,12 @@ from tpvqa.episodes import Ended, Event, Limits, Parts, Started, read_episode
 from tpvqa.episodes.log import EpisodeWriter
 from tpvqa.episodes.recorder import Writer
 from tpvqa.episodes.records import atoms
-from tpvqa.errors import EpisodeError, TpvqaError
+from tpvqa.errors import EpisodeError, TpvqaError, UnknownNameError
 from tpvqa.loop import run_episode
 from tpvqa.monitors import Monitor
 from tpvqa.pddl import Task, load_task
 from tpvqa.planning import Planner
-from tpvqa.plugins import Kind, make
+from tpvqa.plugins import Kind, make, make_from
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM
@@ -37,7 +37,8 @@ class TrialConfig:
         questions: The user's questions file; without one every question is a fallback.
         world_file: What disturbances can undo, for simulated worlds.
         monitor: Specification of the monitor.
-        vlm: Specification of the VLM; unused by monitors that never ask.
+        vlm: Specification of the VLM; unused by monitors that never ask. None is "embedded", or
+            "oracle" in a world that has no pictures.
         world: Specification of the world.
         planner: Specification of the planner.
         seed: Decides, with `episode`, every random number.
@@ -57,7 +58,7 @@ class TrialConfig:
     questions: str | None = None
     world_file: str | None = None
     monitor: str = "tpvqa"
-    vlm: str = "embedded"
+    vlm: str | None = None
     world: str = "images"
     planner: str = "fast-downward"
     seed: int = 0
@@ -93,7 +94,7 @@ class Trial:
         book: QuestionBook | None = None,
         rules: WorldRules | None = None,
     ):
-        self.config = config
+        self.config, self._run = config, False
         self._closing: list[Callable[[], None]] = []
         try:
             self._prepare(task, planner, vlm, book, rules)
@@ -140,13 +141,24 @@ class Trial:
             "seed": config.seed,
             "episode": config.episode,
         }
-        self.world: World = make(Kind.WORLD, config.world, **context)
+        self.world: World
+        self.world, taken = make_from(Kind.WORLD, config.world, context)
         self._closing.append(self.world.close)
         truth = getattr(self.world, "truth", None)
         if truth is not None:
             context["truth"] = truth
-        self.monitor: Monitor = make(Kind.MONITOR, config.monitor, **context)
-        self.vlm: VLM = vlm or make(Kind.VLM, config.vlm, **context)
+        self.monitor: Monitor
+        self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor, context)
+        pictures = getattr(self.world, "has_pictures", True)
+        self.vlm_spec = config.vlm or ("embedded" if pictures else "oracle")
+        made, by_vlm = make_from(Kind.VLM, self.vlm_spec, context) if vlm is None else (vlm, set())
+        self.vlm: VLM = made
+        if not pictures and getattr(self.vlm, "needs_pictures", False):
+            raise TpvqaError(
+                f"The VLM {self.vlm_spec!r} looks at pictures, and the world {config.world!r} has "
+                "none. Choose a noise model, e.g. 'oracle:0.9', or a world with pictures."
+            )
+        _all_taken(config.options, taken | by_monitor | by_vlm, context)
         if vlm is None and hasattr(self.vlm, "close"):
             self._closing.append(self.vlm.close)
         self.parts = Parts(self.task, self.book, planner, self.world, self.vlm)
@@ -168,7 +180,8 @@ class Trial:
             initial=atoms(self.task.init),
             goal=", ".join(self.book.fact(literal).text for literal in self._goal_literals()),
             monitor=config.monitor,
-            vlm=config.vlm,
+            vlm=self.vlm_spec,
+            noise_model=getattr(self.vlm, "noise_model", False),
             world=config.world,
             planner=self.parts.planner.name,
             seed=config.seed,
@@ -198,7 +211,14 @@ class Trial:
         listeners: Sequence[Callable[[Event], None]] = (),
         cancel: Flag | None = None,
     ) -> Ended:
-        """Run it to its end, or go on from recorded events."""
+        """Run it to its end, or go on from recorded events.
+
+        Raises:
+            TpvqaError: It has run already; the world is no longer where a trial begins.
+        """
+        if self._run:
+            raise TpvqaError("This trial has run already. Make another Trial to run it again.")
+        self._run = True
         return run_episode(
             self.parts,
             self.monitor,
@@ -232,6 +252,15 @@ class Trial:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _all_taken(
+    options: Mapping[str, Any], taken: Collection[str], context: Collection[str]
+) -> None:
+    for option in options:
+        if option not in taken:
+            known = set(taken) - (set(context) - set(options)) - {"arguments", "truth"}
+            raise UnknownNameError("option for this world, monitor and VLM", option, known)
 
 
 def _text(path: Path | str | None) -> str | None:

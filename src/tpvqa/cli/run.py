@@ -29,11 +29,16 @@ def run(
         str | None,
         typer.Option(help="images, kitchen or symbolic (the default for your own domain)."),
     ] = None,
-    monitor: Annotated[str, typer.Option(help="tpvqa or none.")] = "tpvqa",
+    monitor: Annotated[
+        str, typer.Option(help="tpvqa, tpvqa:LOOKS, effectvqa, palmevqa, successvqa, tp or none.")
+    ] = "tpvqa",
     vlm: Annotated[
-        str,
-        typer.Option(help="embedded, openai:MODEL, or a noise model: oracle[:ACCURACY[:RHO]]."),
-    ] = "embedded",
+        str | None,
+        typer.Option(
+            help="embedded (the default where there are pictures), openai:MODEL, or a noise "
+            "model: oracle[:ACCURACY[:RHO]] (the default where there are none)."
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
     episode: Annotated[int, typer.Option(help="Number of the episode under the seed.")] = 0,
     out: Annotated[Path | None, typer.Option(help="Folder for the episode.")] = None,
@@ -45,11 +50,15 @@ def run(
     ] = None,
     base_url: Annotated[str | None, typer.Option(help="Address of an OpenAI-like server.")] = None,
     majority: Annotated[
-        str, typer.Option(help="tie (at least half deny) or strict (more than half).")
-    ] = "tie",
+        str | None,
+        typer.Option(help="tie (at least half deny, the default) or strict (more than half)."),
+    ] = None,
     simulator: Annotated[
-        str, typer.Option(help="images world: state, or paper (the paper's to the letter).")
-    ] = "state",
+        str | None,
+        typer.Option(
+            help="images world: state (the default), or paper (the paper's to the letter)."
+        ),
+    ] = None,
     failure: Annotated[float, typer.Option(help="P(an action fails).", min=0, max=1)] = 0.25,
     disturbance: Annotated[
         float, typer.Option(help="P(a failure undoes something achieved).", min=0, max=1)
@@ -60,6 +69,12 @@ def run(
     max_repeats: Annotated[int, typer.Option(help="Repeats of an action in a row.", min=0)] = 10,
     max_replans: Annotated[int, typer.Option(help="Replans in the trial.", min=0)] = 10,
     max_actions: Annotated[int, typer.Option(help="Actions in the trial.", min=1)] = 60,
+    planning_timeout: Annotated[
+        float, typer.Option(help="Seconds for one call of the planner.", min=0.001)
+    ] = 30.0,
+    action_deadline: Annotated[
+        float | None, typer.Option(help="Seconds for one action.", min=0)
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the result as JSON; the trial goes to stderr.")
     ] = False,
@@ -71,12 +86,10 @@ def run(
 
     if task is not None and (domain or problem):
         raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
-    if not (monitor.strip() and vlm.strip()):
+    if not monitor.strip() or (vlm is not None and not vlm.strip()):
         raise TpvqaError("--monitor and --vlm must not be empty.")
     own = task is None
-    options: dict[str, object] = {"majority": majority, "simulator": simulator}
-    if base_url is not None:
-        options["base_url"] = base_url
+    options = {"majority": majority, "simulator": simulator, "base_url": base_url}
     config = TrialConfig(
         task=task,
         domain=None if domain is None else str(domain.resolve()),
@@ -84,7 +97,7 @@ def run(
         questions=None if questions is None else str(questions.resolve()),
         world_file=None if world_file is None else str(world_file.resolve()),
         monitor=monitor,
-        vlm="oracle" if own and vlm == "embedded" and world is None else vlm,
+        vlm=vlm,
         world=world or ("symbolic" if own else "images"),
         seed=seed,
         episode=episode,
@@ -92,7 +105,9 @@ def run(
         disturbance=disturbance,
         spontaneous=spontaneous,
         limits=Limits(repeats=max_repeats, replans=max_replans, actions=max_actions),
-        options=options,
+        planning_timeout=planning_timeout,
+        action_deadline=action_deadline,
+        options={name: value for name, value in options.items() if value is not None},
     )
     with Trial(config) as trial:
         for notice in trial.book.notices:
@@ -176,9 +191,17 @@ def _silent(_event: object) -> None:
 
 def _finish(ended: "Ended", folder: Path, *, as_json: bool) -> None:
     if as_json:
+        from tpvqa.episodes import Started, read_episode
+
+        started = read_episode(folder)[0]
+        assert isinstance(started, Started)
         print(
             json.dumps(
                 {
+                    "task": started.task,
+                    "monitor": started.monitor,
+                    "vlm": started.vlm,
+                    "noise_model": started.noise_model,
                     "completed": ended.completed,
                     "ended_because": ended.because,
                     "message": ended.message,

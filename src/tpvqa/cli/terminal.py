@@ -73,10 +73,11 @@ class EpisodeView:
         """Show an event."""
         match event:
             case Started():
+                noise = " (a noise model, not a VLM)" if event.noise_model else ""
                 self._line(
                     f"[bold]{escape(event.task)}[/]  [dim]world[/] {escape(event.world)}  "
-                    f"[dim]monitor[/] {escape(event.monitor)}  [dim]VLM[/] {escape(event.vlm)}  "
-                    f"[dim]seed[/] {event.seed}"
+                    f"[dim]monitor[/] {escape(event.monitor)}  "
+                    f"[dim]VLM[/] {escape(event.vlm)}{noise}  [dim]seed[/] {event.seed}"
                 )
             case PlanMade():
                 self._show_plan(event)

@@ -36,7 +36,8 @@ class Limits(BaseModel):
 class Started(_Event):
     """The first event: everything that is needed to run the trial again.
 
-    `domain`, `problem`, `questions` and `rules` (the world file) are the texts of the files.
+    `domain`, `problem`, `questions` and `rules` (the world file) are the texts of the files. A
+    `noise_model` answers from the truth, for experiments; it is no VLM.
     """
 
     kind: Literal["started"] = "started"
@@ -54,6 +55,7 @@ class Started(_Event):
     goal: str
     monitor: str
     vlm: str
+    noise_model: bool = False
     world: str
     planner: str
     seed: int

@@ -74,6 +74,8 @@ class OpenAICompatibleVLM:
         AnswerError: The address is not one.
     """
 
+    needs_pictures = True
+
     def __init__(
         self,
         model: str,

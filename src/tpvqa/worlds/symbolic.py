@@ -18,6 +18,8 @@ class SymbolicWorld:
         simulation: The true state and its faults.
     """
 
+    has_pictures = False
+
     def __init__(self, simulation: Simulation):
         self.simulation = simulation
         self.truth = SimulatedTruth(simulation)
@@ -41,6 +43,8 @@ class SymbolicWorld:
         """Try the action at once; the skill notices nothing."""
         if cancel is not None and cancel.is_set():
             return Execution(Report.CANCELLED, 0.0)
+        if deadline is not None and deadline <= 0:
+            return Execution(Report.LATE, 0.0, "no time was given")
         self.last_outcome = self.simulation.execute(action)
         return Execution(Report.DONE, 0.0)
 

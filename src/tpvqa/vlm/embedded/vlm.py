@@ -40,6 +40,8 @@ class EmbeddedVLM:
         'embedded'
     """
 
+    needs_pictures = True
+
     def __init__(self, *, folder: str | Path | None = None, threads: int = 2):
         self._folder = SHIPPED if folder is None else Path(folder)
         self._threads = threads

@@ -136,6 +136,8 @@ class ImageWorld:
         """
         if cancel is not None and cancel.is_set():
             return Execution(Report.CANCELLED, 0.0)
+        if deadline is not None and deadline <= 0:
+            return Execution(Report.LATE, 0.0, "no time was given")
         before = self.simulation.snapshot()
         outcome = self.simulation.execute(action)
         if not self._choice(outcome.after):

@@ -1,0 +1,92 @@
+"""From names to a trial: what is refused, what is chosen, what a resumed trial is."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tpvqa import Trial, TrialConfig
+from tpvqa.episodes import EpisodeWriter, MemoryWriter, Started, read_episode
+from tpvqa.episodes.log import LOG
+from tpvqa.errors import EpisodeError, TpvqaError, UnknownNameError
+from tpvqa.planning import Planner
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.tasks import find_task
+from tpvqa.trial import config_of, resume
+
+
+@pytest.fixture(scope="module")
+def planner() -> Iterator[Planner]:
+    planner = FastDownward()
+    yield planner
+    planner.close()
+
+
+def symbolic(**changes: object) -> TrialConfig:
+    return replace(TrialConfig(task="clean_dishes", world="symbolic"), **changes)
+
+
+def test_an_option_that_nothing_takes_is_refused(planner: Planner) -> None:
+    with pytest.raises(UnknownNameError, match=r"'majorty'.*Did you mean 'majority'"):
+        Trial(symbolic(options={"majorty": "strict"}), planner=planner)
+    with pytest.raises(UnknownNameError, match="simulator"):
+        Trial(symbolic(options={"simulator": "paper"}), planner=planner)
+    with Trial(symbolic(options={"majority": "strict"}), planner=planner):
+        pass
+
+
+def test_without_pictures_the_vlm_is_a_noise_model_and_is_called_so(planner: Planner) -> None:
+    with Trial(symbolic(), planner=planner) as trial:
+        started = trial.started()
+    assert (started.vlm, started.noise_model) == ("oracle", True)
+    with Trial(symbolic(world="images"), planner=planner) as trial:
+        started = trial.started()
+    assert (started.vlm, started.noise_model) == ("embedded", False)
+
+
+def test_a_vlm_that_looks_is_refused_where_there_is_nothing_to_see(planner: Planner) -> None:
+    with pytest.raises(TpvqaError, match="looks at pictures"):
+        Trial(symbolic(vlm="embedded"), planner=planner)
+
+
+def test_a_trial_runs_once(planner: Planner) -> None:
+    with Trial(symbolic(), planner=planner) as trial:
+        trial.run(MemoryWriter())
+        with pytest.raises(TpvqaError, match="has run already"):
+            trial.run(MemoryWriter())
+
+
+@pytest.fixture
+def half(tmp_path: Path, planner: Planner) -> Path:
+    """The first half of an episode with questions of the user's own."""
+    questions = tmp_path / "mine.yaml"
+    text = Path(str(find_task("clean_dishes").questions)).read_text(encoding="utf-8")
+    questions.write_text(text.replace("clean?", "shining?"), encoding="utf-8")
+    folder = tmp_path / "episode"
+    with Trial(symbolic(questions=str(questions)), planner=planner) as trial:
+        writer = EpisodeWriter(folder)
+        trial.run(writer)
+        writer.close()
+    lines = (folder / LOG).read_bytes().splitlines(keepends=True)
+    (folder / LOG).write_bytes(b"".join(lines[: len(lines) // 2]))
+    return folder
+
+
+def test_a_resumed_trial_asks_in_the_words_it_began_with(half: Path) -> None:
+    resume(half)
+    asked = [q.text for e in read_episode(half) if e.kind == "asked" for q in e.questions]
+    assert "Is the plate shining?" in asked
+    assert "Is the plate clean?" not in asked
+
+
+def test_a_trial_is_not_resumed_with_other_questions(half: Path) -> None:
+    (half.parent / "mine.yaml").write_text("predicates: {}\n", encoding="utf-8")
+    with pytest.raises(EpisodeError, match=r"mine\.yaml has changed"):
+        resume(half)
+
+
+def test_a_resumed_trial_has_the_planner_it_began_with(half: Path) -> None:
+    started = read_episode(half)[0]
+    assert isinstance(started, Started)
+    assert config_of(started).planner == TrialConfig().planner
