@@ -9,6 +9,7 @@ TpvqaError
 ├── WorldError             a world cannot do what it is asked to
 ├── PictureSetError        the set of pictures is incomplete or damaged
 ├── EpisodeError           an episode cannot be read or resumed
+├── BenchError             a bench cannot be run, read or written
 ├── UnknownNameError       no plug-in or task of that name
 ├── PluginError            a plug-in cannot be imported or does not take its arguments
 └── MissingExtraError      an optional package is needed
@@ -69,6 +70,10 @@ class PictureSetError(TpvqaError):
 
 class EpisodeError(TpvqaError):
     """An episode cannot be read or resumed."""
+
+
+class BenchError(TpvqaError):
+    """A bench cannot be run, or its results cannot be read or written."""
 
 
 class UnknownNameError(TpvqaError):

@@ -100,14 +100,17 @@ class MemoryWriter:
 
     Args:
         resumable: Whether the events hold the states of world and VLM.
+        keep: Whether to keep them at all; listeners are told of them anyway.
     """
 
-    def __init__(self, *, resumable: bool = True) -> None:
-        self.resumable = resumable
+    def __init__(self, *, resumable: bool = True, keep: bool = True) -> None:
+        self.resumable, self._keep = resumable, keep
         self.events: list[Event] = []
 
     def append(self, event: Event) -> Event:
         """Keep an event."""
+        if not self._keep:
+            return event
         event = event.model_copy(update={"number": len(self.events)})
         self.events.append(event)
         return event

@@ -1,0 +1,114 @@
+"""The episodes of a bench on disk: what is finished is never run again or lost."""
+
+import fcntl
+import json
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.errors import BenchError
+
+ROWS = "episodes.jsonl"
+SETTINGS = "bench.json"
+
+
+class Ledger:
+    """Appends rows of finished episodes, and knows those of earlier runs.
+
+    Args:
+        folder: Where a bench lies. It is made; a bench with other settings must not lie there.
+        settings: What decides the figures: seed, rates of faults, limits, version.
+
+    Raises:
+        BenchError: Another bench lies there, it is being written by another process, it is
+            damaged, or the folder cannot be written to.
+    """
+
+    def __init__(self, folder: Path, settings: Mapping[str, Any]):
+        self.folder = Path(folder)
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self._file = (self.folder / ROWS).open("a+b")
+        except OSError as error:
+            raise BenchError(
+                f"{folder}: cannot be written to ({error.strerror}). Name another folder with --out"
+            ) from error
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            self._file.close()
+            raise BenchError(f"{folder}: another bench is at work there; wait for it") from None
+        self._agree(dict(settings))
+        self.rows: dict[tuple[Cell, int], EpisodeRow] = {}
+        for row in self._read():
+            self.rows[row.cell, row.episode] = row
+
+    def _agree(self, settings: dict[str, Any]) -> None:
+        path = self.folder / SETTINGS
+        settings = json.loads(json.dumps(settings))
+        if path.exists():
+            try:
+                there = json.loads(path.read_text(encoding="utf-8"))
+            except ValueError:
+                raise BenchError(f"{path}: damaged. Remove the folder, or name another") from None
+            differing = sorted(
+                key for key in {*there, *settings} if there.get(key) != settings.get(key)
+            )
+            if differing:
+                changed = ", ".join(
+                    f"{key} {there.get(key)!r} there, {settings.get(key)!r} here"
+                    for key in differing
+                )
+                raise BenchError(
+                    f"{self.folder} holds a bench with other settings ({changed}). "
+                    "Name another folder with --out"
+                )
+            return
+        temporary = path.with_suffix(".part")
+        temporary.write_text(json.dumps(settings, indent=1) + "\n", encoding="utf-8")
+        temporary.replace(path)
+
+    def _read(self) -> Iterator[EpisodeRow]:
+        self._file.seek(0)
+        data = self._file.read()
+        whole, _, torn = data.rpartition(b"\n")
+        if torn:  # a kill in the middle of a line
+            self._file.truncate(len(data) - len(torn))
+        for number, line in enumerate(whole.split(b"\n") if whole else [], 1):
+            try:
+                yield EpisodeRow.model_validate_json(line)
+            except ValidationError as error:
+                raise BenchError(
+                    f"{self.folder / ROWS}:{number}: not a row of this version "
+                    f"({error.errors()[0]['msg']}). Remove the folder, or name another"
+                ) from None
+
+    def missing(self, cell: Cell, episodes: int) -> list[int]:
+        """The numbers of a cell's episodes that are not finished; failed ones are tried again."""
+        return [
+            number
+            for number in range(episodes)
+            if (cell, number) not in self.rows or self.rows[cell, number].error
+        ]
+
+    def add(self, rows: Iterable[EpisodeRow]) -> None:
+        """Write rows; they are on disk before this returns."""
+        for row in rows:
+            self._file.write(row.model_dump_json().encode() + b"\n")
+            self.rows[row.cell, row.episode] = row
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def of(self, cell: Cell, episodes: int) -> list[EpisodeRow]:
+        """The first so many episodes of a cell, in order."""
+        found = (self.rows.get((cell, number)) for number in range(episodes))
+        return [row for row in found if row is not None]
+
+    def close(self) -> None:
+        """Close the file. Can be called twice."""
+        self._file.close()

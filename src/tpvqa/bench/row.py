@@ -1,0 +1,65 @@
+"""What is kept of an episode: one line of a file, and later one row of a table."""
+
+from pydantic import BaseModel, ConfigDict
+
+from tpvqa.bench.cell import Cell
+
+
+class EpisodeRow(BaseModel):
+    """One episode in figures.
+
+    Attributes:
+        completed: All goals hold in truth and the trial ended believing so.
+        because: Why it ended.
+        believed_goal: It ended believing that the goal holds.
+        longest_repeat: Most repeats of one action in a row.
+        failures: Actions that failed in truth, or undid something.
+        wasted: Actions that could do nothing: their effects held already, or a precondition did
+            not.
+        first_plan: Actions of the first plan.
+        seconds: Wall time.
+        error: What went wrong in the program; empty where nothing did.
+        answers: How many answers were of which kind: "way|subject|truth|reply|P(yes)".
+        decisions: How many decisions were of which kind: "before|truth|went on".
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    task: str
+    monitor: str
+    vlm: str
+    world: str
+    seed: int
+    episode: int
+    completed: bool = False
+    because: str = "error"
+    believed_goal: bool = False
+    actions: int = 0
+    questions: int = 0
+    looks: int = 0
+    repeats: int = 0
+    replans: int = 0
+    longest_repeat: int = 0
+    failures: int = 0
+    wasted: int = 0
+    first_plan: int = 0
+    seconds: float = 0.0
+    error: str = ""
+    answers: dict[str, int] = {}
+    decisions: dict[str, int] = {}
+
+    @property
+    def cell(self) -> Cell:
+        """The cell it belongs to."""
+        return Cell(self.task, self.monitor, self.vlm, self.world)
+
+    @property
+    def ending(self) -> str:
+        """How it ended, in the words of the report."""
+        if self.error:
+            return "error"
+        if self.completed:
+            return "goal"
+        if self.believed_goal:
+            return "believed done and was not"
+        return self.because

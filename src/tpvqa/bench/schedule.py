@@ -1,0 +1,142 @@
+"""Runs the missing episodes of a bench: in this process, or on Dask's workers."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.ledger import Ledger
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.stage import run_batch
+from tpvqa.errors import BenchError, MissingExtraError
+from tpvqa.trial import TrialConfig
+
+BATCH = 25
+"""Episodes that a worker is sent at once."""
+RETRIES = 3
+"""How often a batch whose worker died is given to another."""
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Some missing episodes of one cell."""
+
+    cell: Cell
+    episodes: tuple[int, ...]
+
+
+def batches(ledger: Ledger, cells: Sequence[Cell], episodes: int) -> list[Batch]:
+    """What is still to be run, so ordered that all cells grow together."""
+    missing = [(cell, ledger.missing(cell, episodes)) for cell in cells]
+    most = max((len(numbers) for _, numbers in missing), default=0)
+    return [
+        Batch(cell, tuple(numbers[first : first + BATCH]))
+        for first in range(0, most, BATCH)
+        for cell, numbers in missing
+        if first < len(numbers)
+    ]
+
+
+def run_all(
+    ledger: Ledger,
+    cells: Sequence[Cell],
+    common: TrialConfig,
+    episodes: int,
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    done: Callable[[int], None] = lambda count: None,
+) -> None:
+    """Run every missing episode; each batch is on disk as soon as it is back.
+
+    What comes out does not depend on the workers: all chance is a function of seed and episode.
+
+    Args:
+        ledger: Where rows go.
+        cells: What is compared.
+        common: What all cells share.
+        episodes: How many of each cell.
+        workers: Local processes; with one, no other process is started.
+        scheduler: Address of a Dask scheduler to use instead.
+        done: Told how many episodes have come back, after each batch.
+
+    Raises:
+        MissingExtraError: Dask is needed and not installed.
+        BenchError: The scheduler cannot be reached.
+    """
+    todo = batches(ledger, cells, episodes)
+    for batch, rows in _results(todo, common, workers, scheduler):
+        ledger.add(rows)
+        done(len(batch.episodes))
+
+
+def _results(
+    todo: Sequence[Batch], common: TrialConfig, workers: int, scheduler: str | None
+) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
+    if workers <= 1 and scheduler is None:
+        for batch in todo:
+            yield batch, _rows(run_batch(batch.cell, common, batch.episodes))
+        return
+    if not todo:
+        return
+    try:
+        from distributed import Client, LocalCluster, as_completed
+    except ImportError as error:
+        raise MissingExtraError("distributed", "bench", "Running on several workers") from error
+    cluster = None
+    try:
+        if scheduler is None:
+            cluster = LocalCluster(
+                n_workers=min(workers, len(todo)),
+                threads_per_worker=1,
+                dashboard_address=None,
+                silence_logs="ERROR",
+            )
+        client = Client(cluster or scheduler, timeout="20s")
+    except OSError as error:
+        raise BenchError(
+            f"The Dask scheduler at {scheduler!r} cannot be reached ({error}). Start it, or leave "
+            "--scheduler out for workers on this machine"
+        ) from error
+    try:
+        futures = {
+            client.submit(
+                run_batch,
+                batch.cell,
+                common,
+                batch.episodes,
+                pure=False,
+                retries=RETRIES,
+            ): batch
+            for batch in todo
+        }
+        for future in as_completed(list(futures)):
+            batch = futures.pop(future)
+            failed = future.exception()
+            yield (
+                batch,
+                _rows(future.result()) if failed is None else _failed(batch, common, repr(failed)),
+            )
+    finally:
+        client.close()
+        if cluster is not None:
+            cluster.close()
+
+
+def _rows(values: Sequence[dict[str, object]]) -> list[EpisodeRow]:
+    return [EpisodeRow.model_validate(value) for value in values]
+
+
+def _failed(batch: Batch, common: TrialConfig, error: str) -> list[EpisodeRow]:
+    cell = batch.cell
+    return [
+        EpisodeRow(
+            task=cell.task,
+            monitor=cell.monitor,
+            vlm=cell.vlm,
+            world=cell.world,
+            seed=common.seed,
+            episode=episode,
+            error=error,
+        )
+        for episode in batch.episodes
+    ]

@@ -1,0 +1,118 @@
+"""What the episodes of a cell share, and running one of them."""
+
+import time
+import traceback
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.judge import Judge
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.episodes import MemoryWriter
+from tpvqa.errors import TpvqaError
+from tpvqa.pddl import Action, Task, load_task
+from tpvqa.planning import Planner
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import Remembering
+from tpvqa.plugins import Kind, load, make
+from tpvqa.questions import QuestionBook
+from tpvqa.tasks import find_task
+from tpvqa.trial import Trial, TrialConfig
+from tpvqa.vlm import VLM
+from tpvqa.worlds.world_file import WorldRules, load_world_file
+
+
+class Stage:
+    """Runs episodes of one task. What does not change between them is read and made once.
+
+    Args:
+        task: A shipped task.
+    """
+
+    def __init__(self, task: str):
+        files = find_task(task)
+        self.task: Task = load_task(task)
+        self.book = QuestionBook.load(files.questions, self.task)
+        self.rules: WorldRules = load_world_file(files.world, self.task)
+        self.actions: dict[str, Action] = {
+            action.pddl(): action for action in self.task.ground_actions()
+        }
+
+    def run(self, cell: Cell, common: TrialConfig, episode: int) -> EpisodeRow:
+        """Run one episode. Whatever goes wrong in it is in its row, and the rest go on."""
+        began = time.perf_counter()
+        row: dict[str, Any] = {
+            "task": cell.task,
+            "monitor": cell.monitor,
+            "vlm": cell.vlm,
+            "world": cell.world,
+            "seed": common.seed,
+            "episode": episode,
+        }
+        try:
+            figures = self._figures(cell.config(common, episode))
+        except TpvqaError as error:
+            figures = {"error": str(error)}
+        except Exception:  # noqa: BLE001 — one broken plug-in must not end a bench of thousands
+            figures = {"error": traceback.format_exc(limit=-3)}
+        return EpisodeRow(**row, **figures, seconds=round(time.perf_counter() - began, 4))
+
+    def _figures(self, config: TrialConfig) -> dict[str, Any]:
+        assert config.vlm is not None
+        with Trial(
+            config,
+            task=self.task,
+            planner=_planner(),
+            vlm=_shared_vlm(config.vlm),
+            book=self.book,
+            rules=self.rules,
+        ) as trial:
+            simulation = getattr(trial.world, "simulation", trial.simulation)
+            judge = Judge(simulation, self.actions)
+            ended = trial.run(MemoryWriter(resumable=False, keep=False), listeners=[judge])
+        return {
+            "completed": bool(ended.completed),
+            "because": ended.because,
+            "believed_goal": ended.believed_goal,
+            "actions": ended.actions,
+            "questions": ended.questions,
+            "looks": ended.looks,
+            "repeats": ended.repeats,
+            "replans": ended.replans,
+            "longest_repeat": judge.longest_repeat,
+            "failures": judge.failures,
+            "wasted": judge.wasted,
+            "first_plan": judge.first_plan or 0,
+            "answers": dict(judge.answers),
+            "decisions": dict(judge.decisions),
+        }
+
+
+@lru_cache
+def stage(task: str) -> Stage:
+    """The stage of a task, one in every process."""
+    return Stage(task)
+
+
+@lru_cache
+def _planner() -> Planner:
+    return Remembering(FastDownward())
+
+
+@lru_cache
+def _shared_vlm(spec: str) -> VLM | None:
+    """A VLM that all episodes share; None for noise models, which belong to one world."""
+    target: Callable[..., object] = load(Kind.VLM, spec.partition(":")[0].strip())
+    if getattr(target, "noise_model", False):
+        return None
+    vlm: VLM = make(Kind.VLM, spec)
+    return vlm
+
+
+def run_batch(
+    cell: Cell, common: TrialConfig, episodes: tuple[int, ...]
+) -> list[dict[str, object]]:
+    """Run some episodes of a cell: what a worker is sent. Their rows as plain values."""
+    here = stage(cell.task)
+    return [here.run(cell, common, episode).model_dump() for episode in episodes]
