@@ -87,6 +87,31 @@ def test_without_a_questions_file_the_fallbacks_are_reported_once(tpvqa: Run) ->
     assert len(notes) == len(set(notes))
 
 
+def test_domains_in_other_encodings_are_run_and_resumed(tpvqa: Run) -> None:
+    for name in ("domain.pddl", "collect.pddl"):
+        Path(name).write_bytes("; Küche\r\n".encode("latin-1") + (TOYS / name).read_bytes())
+    files = ("--domain", "domain.pddl", "--problem", "collect.pddl", "--failure", 0)
+    code, _, err = tpvqa("run", *files, "--out", "here")
+    assert (code, "Traceback" in err) == (0, False)
+    log = Path("here/episode.jsonl")
+    log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:5]))
+    assert tpvqa("resume", "here")[0] == 0
+
+
+@pytest.mark.parametrize(
+    "option", ["--questions", "--world-file", "--world"], ids=lambda option: str(option)[2:]
+)
+def test_other_files_have_to_be_utf8(tpvqa: Run, tmp_path: Path, option: str) -> None:
+    file = tmp_path / "file.yaml"
+    file.write_bytes("# fine\n# Küche\n".encode("latin-1"))
+    value = f"scripted:{file}" if option == "--world" else file
+    files = ("--domain", TOYS / "domain.pddl", "--problem", TOYS / "collect.pddl")
+    code, out, err = tpvqa("run", *files, option, value)
+    assert code == 2
+    assert f"{file}:2: the byte 0xfc is not UTF-8" in err
+    assert "Traceback" not in out + err
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
@@ -96,6 +121,7 @@ def test_without_a_questions_file_the_fallbacks_are_reported_once(tpvqa: Run) ->
         (["run", "eat_apple", "--monitor", "tpvka", *SYMBOLIC], "Did you mean 'tpvqa'?"),
         (["run", "eat_apple", "--world", "kitchn"], "Did you mean 'kitchen'?"),
         (["run", "eat_apple", "--world", "scripted:none.yaml"], "none.yaml: cannot be read"),
+        (["run", "eat_apple", "--majority", "foo", *SYMBOLIC], "Write 'tie'"),
         (["run", "--domain", "no.pddl", "--problem", "no.pddl"], "no.pddl"),
         (["show", "nowhere"], "holds no episode"),
         (["resume", "nowhere"], "holds no episode"),

@@ -37,11 +37,11 @@ def test_ways_to_write_a_state(task: Task, tmp_path: Path, text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("(near tv)\n(on plate tabel)", ":2: .*did you mean 'table'"),
-        ("(near tv)\n\n(nearr tv)", ":3: .*did you mean 'near'"),
+        ("(near tv)\n(on plate tabel)", ":2: .*Did you mean 'table'"),
+        ("(near tv)\n\n(nearr tv)", ":3: .*Did you mean 'near'"),
         ("(on plate)", ":1: .*takes 2 arguments"),
         ("()", ":1: .*not an atom"),
-        ('["(near tv)",\n "(nearr tv)"]', ":2: .*did you mean 'near'"),
+        ('["(near tv)",\n "(nearr tv)"]', ":2: .*Did you mean 'near'"),
         ('["(near tv)",\n 3]', "entry 2 of the list is no atom: 3"),
         ('["(near tv)"\n "(free left)"]', ":2: this is not JSON"),
         ('{"near": "tv"}', "expected a JSON list"),

@@ -86,9 +86,9 @@ def test_equality_is_decided(household: Task) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("fnd", "apple", "tv"), "no action 'fnd'; did you mean 'find'"),
+        (("fnd", "apple", "tv"), "no action 'fnd'. Did you mean 'find'"),
         (("find", "apple"), r"find takes 2 arguments \(\?x - thing, \?from - thing\), got 1"),
-        (("find", "aple", "tv"), "no object 'aple'; did you mean 'apple'"),
+        (("find", "aple", "tv"), "no object 'aple'. Did you mean 'apple'"),
         (("find", "left", "tv"), "left is a hand, but .x of the action find must be a thing"),
     ],
 )
@@ -236,8 +236,8 @@ def test_tasks_can_be_pickled_and_compared(household: Task) -> None:
 
 def test_atoms_of_another_task_are_refused(household: Task) -> None:
     for text, message in [
-        ("on apple flor", "did you mean 'floor'"),
-        ("onn apple floor", "did you mean 'on'"),
+        ("on apple flor", "Did you mean 'floor'"),
+        ("onn apple floor", "Did you mean 'on'"),
         ("on apple", "takes 2 arguments"),
     ]:
         with pytest.raises(PDDLError, match=message):

@@ -79,7 +79,7 @@ def book(task: Task, folder: Path, text: str | bytes) -> QuestionBook:
         ("never_asked:\n  - fact: (near - thing)", 2, "a dash stands between"),
         ("never_asked:\n  - fact: (near ?x)\n    in: fined", 3, "no action 'fined'. Did you mean"),
         ("never_asked:\n  - fact: (near ?x)\n    in: [find, {a: b}]", 3, "expected text"),
-        (b"near: \xff\xfe\xfa", None, "not UTF-8"),
+        (b"# hm\nnear: \xff\xfe\xfa", 2, "the byte 0xff is not UTF-8"),
     ],
 )  # fmt: skip
 def test_a_broken_file_is_a_clear_error_with_its_line(
