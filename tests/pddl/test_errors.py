@@ -159,6 +159,20 @@ def test_comments_may_hold_anything_and_a_byte_order_mark_is_skipped(tmp_path: P
     assert load_task(domain, problem).name == "night"
 
 
+@pytest.mark.parametrize("mark", ["\x0b", "\x0c", "\x1c", "\x85", "\u2028", "\u2029"])
+def test_a_comment_ends_at_the_end_of_its_line_only(tmp_path: Path, mark: str) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    comment = f"; lamps{mark}(and more\r\n;{mark})\r;{mark}(\n"
+    domain.write_text(comment + DOMAIN, encoding="utf-8", newline="")
+    problem.write_text(comment + PROBLEM, encoding="utf-8", newline="")
+    assert load_task(domain, problem).name == "night"
+    broken = PROBLEM.replace("(lit b)", "(lit c)")
+    problem.write_text(comment + broken, encoding="utf-8", newline="")
+    with pytest.raises(PDDLError) as caught:
+        load_task(domain, problem)
+    assert caught.value.line == 3 + 6
+
+
 @st.composite
 def damaged(draw: st.DrawFn) -> tuple[str, str]:
     """A task with some words of its text removed, doubled or swapped for others."""

@@ -24,6 +24,7 @@ EXPECTED = {Atom.parse("near tv"), Atom.parse("on plate table"), Atom.parse("fre
     [
         "(near tv)\n(on plate table)\n(free left)\n",
         "; a comment\n(near tv) (on plate table)   # two\n\nFREE(Left)\n",
+        "# a\x0c(near x)\n(near tv)\x0c(on plate table)\n; b\u2028(near y)\n(free left)",
         "near(tv)\non(plate, table)\nfree left",
         '["(near tv)", ["on", "plate", "table"], "free(left)"]',
     ],
