@@ -138,10 +138,12 @@ def test_ctrl_c_leaves_nothing_behind(folder: Path) -> None:
         (("gone.pddl", "gone.pddl"), "gone.pddl: there is no such domain file"),
         (("gone.pddl",), "a domain alone is no task"),
         (("eat_apple", "--timeout", "soon"), "timeout"),
+        (("eat_apple", "--from-state", "ill.txt"), "ill.txt:1: (near left): left is a hand"),
         (("eat_apple", "--from-state", "gone"), "gone: the state cannot be read"),
     ],
 )
 def test_bad_input(folder: Path, words: tuple[str, ...], message: str) -> None:
+    (folder / "ill.txt").write_text("(near left)")
     done = tpvqa("plan", *words, cwd=folder)
     assert done.returncode == 2
     assert message in done.stderr

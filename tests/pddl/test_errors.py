@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 from tests.pddl.feature_domains import SAMPLES
 from tpvqa.errors import PDDLError, UnknownNameError
 from tpvqa.pddl import load_task, task_from_text
+from tpvqa.planning import Plan
+from tpvqa.planning.fast_downward import FastDownward
 
 DOMAIN = """(define (domain lamps)
   (:requirements :typing :negative-preconditions)
@@ -118,6 +120,54 @@ def test_definitions_that_contradict_each_other(more: str, message: str) -> None
     domain = DOMAIN.rstrip().removesuffix(")") + f"\n  {more})"
     with pytest.raises(PDDLError, match=message):
         task_from_text(domain, PROBLEM.replace("(lit b))))", "(mended b))))"))
+
+
+TYPED_DOMAIN = """(define (domain yard)
+  (:requirements :typing :adl)
+  (:types car lorry - vehicle gate person)
+  (:constants main - gate)
+  (:predicates (at ?v - vehicle ?g - gate) (seen ?x) (busy ?x - (either car person)))
+  (:action drive :parameters (?v - vehicle ?g - gate)
+    :precondition (not (at ?v ?g)) :effect (and (at ?v ?g) (seen ?v) (seen ?g))))
+"""
+TYPED_PROBLEM = """(define (problem evening) (:domain yard)
+  (:objects beetle - car tipper - lorry ann - person)
+  (:init (at beetle main) (seen ann) (seen beetle) (busy ann) (busy beetle))
+  (:goal (and (at tipper main)
+              (forall (?v - vehicle) (or (seen ?v) (busy beetle) (= ?v tipper))))))
+"""
+
+
+def test_objects_of_subtypes_and_of_either_type_fit() -> None:
+    """`vehicle` is no subtype of `object` here, and (seen ?x) takes it all the same."""
+    task = task_from_text(TYPED_DOMAIN, TYPED_PROBLEM)
+    task.check_state(task.init)
+    assert isinstance(FastDownward().plan(task, task.init), Plan)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "message"),
+    [
+        ("(at beetle main)", "(at ann main)", 3, r"\(at ann main\): 'ann' is a person, but \?v of"),
+        ("(at beetle main)", "(at beetle beetle)", 3, "of at must be a gate"),
+        ("(busy ann)", "(busy tipper)", 3, r"\?x of busy must be a car or a person"),
+        ("(at tipper main)", "(at main main)", 4, "'main' is a gate"),
+        ("(busy beetle) (=", "(busy tipper) (=", 5, "'tipper' is a lorry"),
+    ],
+)
+def test_objects_of_ill_fitting_types(old: str, new: str, line: int, message: str) -> None:
+    with pytest.raises(PDDLError, match=message) as caught:
+        task_from_text(TYPED_DOMAIN, TYPED_PROBLEM.replace(old, new))
+    assert caught.value.file == "(problem)"
+    assert caught.value.line == line
+
+
+def test_what_the_domain_itself_makes_true_is_no_error_later() -> None:
+    """An action may be declared wider than the predicate that it changes."""
+    loose = TYPED_DOMAIN.replace("(?v - vehicle ?g - gate)\n", "(?v - object ?g - gate)\n")
+    task = task_from_text(loose, TYPED_PROBLEM)
+    state = task.apply(task.init, task.action("drive", ("main", "main")))
+    task.check_state(state)
 
 
 def test_a_derived_fact_in_the_initial_state() -> None:

@@ -41,6 +41,8 @@ def test_ways_to_write_a_state(task: Task, tmp_path: Path, text: str) -> None:
         ("(near tv)\n(on plate tabel)", ":2: .*Did you mean 'table'"),
         ("(near tv)\n\n(nearr tv)", ":3: .*Did you mean 'near'"),
         ("(on plate)", ":1: .*takes 2 arguments"),
+        ("(near tv)\n(in_hand plate plate)", ":2: .*plate is a dish, but .h of in_hand must be"),
+        ("(near left)", ":1: .*left is a hand, but .x of near must be a thing"),
         ("()", ":1: .*not an atom"),
         ('["(near tv)",\n "(nearr tv)"]', ":2: .*Did you mean 'near'"),
         ('["(near tv)",\n 3]', "entry 2 of the list is no atom: 3"),
