@@ -117,6 +117,15 @@ def test_household_groups_are_what_the_domain_means(name: str) -> None:
     assert task.groups_of(Atom.parse("opened fridge")) == ()
 
 
+def test_groups_hold_only_atoms_of_fitting_types() -> None:
+    """A truck is somewhere, as a parcel is, but in no truck."""
+    task = read(EITHER)
+    for group in task.mutex_groups:
+        task.check_state(group.atoms)
+    (van,) = task.groups_of(Atom.parse("at van home"))
+    assert van.atoms == facts("at van home", "at van shop")
+
+
 def test_groups_follow_the_initial_state(household: Task) -> None:
     nowhere = household.with_init(household.init - facts("on apple fridge"))
     group = {g.atoms for g in household.groups_of(Atom.parse("on apple fridge"))}
