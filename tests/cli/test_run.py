@@ -7,11 +7,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from html.parser import HTMLParser
 from pathlib import Path
+from uuid import uuid4
 
 import pytest
 
+from tests.planning.test_processes import eventually
 from tpvqa.cli import main
 from tpvqa.episodes import Ended, read_episode
 
@@ -177,14 +180,33 @@ def test_a_report_of_an_unfinished_episode(tpvqa: Run) -> None:
     assert "unfinished" in Path("here/report.html").read_text()
 
 
+def marked(mark: str) -> list[int]:
+    """The processes that were started, at whatever remove, with this mark in the environment."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/environ"):
+        with suppress(OSError):
+            if mark.encode() in entry.read_bytes():
+                found.append(int(entry.parent.name))
+    return found
+
+
+def story(folder: Path) -> list[dict[str, object]]:
+    """The events of an episode without what differs between two runs of one trial: times."""
+    events = read_episode(folder)
+    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
+
+
 @pytest.mark.slow
 def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "tpvqa", "run", "eat_apple", *SYMBOLIC]
+    command = [sys.executable, "-m", "tpvqa"]
     # Failing on and on, so that there is time to interrupt it.
-    command += ["--failure", "1", "--max-repeats", "100000", "--max-actions", "100000"]
+    trial = ["run", "eat_apple", *SYMBOLIC, "--failure", "1"]
+    trial += ["--max-repeats", "1000", "--max-actions", "120"]
+    mark = uuid4().hex
     process = subprocess.Popen(
-        [*command, "--out", "here"],
+        [*command, *trial, "--out", "here"],
         cwd=tmp_path,
+        env={**os.environ, "TPVQA_TEST_MARK": mark},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -194,12 +216,16 @@ def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
     while not (log.exists() and log.stat().st_size > 20_000):
         assert process.poll() is None
         time.sleep(0.01)
+    assert len(marked(mark)) > 1  # the planner's process has a session of its own
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=20)
     assert process.returncode == 130
     assert "Traceback" not in out + err
+    assert eventually(lambda: marked(mark) == [], 20)
     last = read_episode(tmp_path / "here")[-1]
     assert isinstance(last, Ended)
     assert last.because == "cancelled"
-    left = subprocess.run(["pgrep", "-g", str(process.pid)], capture_output=True, check=False)
-    assert left.stdout == b""
+    resumed = subprocess.run([*command, "resume", "here"], cwd=tmp_path, capture_output=True)
+    whole = subprocess.run([*command, *trial, "--out", "whole"], cwd=tmp_path, capture_output=True)
+    assert resumed.returncode == whole.returncode == 1
+    assert story(tmp_path / "here") == story(tmp_path / "whole")
