@@ -169,6 +169,26 @@ def test_the_report_needs_nothing_beside_it(tpvqa: Run) -> None:
         assert question in page
 
 
+def test_an_episode_is_named_by_its_folder_or_its_log(tpvqa: Run) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    log = Path("here/episode.jsonl")
+    assert tpvqa("report", log)[:2] == (0, "here/report.html\n")
+    log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:9]))
+    code, out, _ = tpvqa("resume", log, "--json")
+    assert (code, json.loads(out)["episode"]) == (0, "here")
+    assert tpvqa("show", log)[:2] == tpvqa("show", "here")[:2]
+
+
+@pytest.mark.parametrize("out", ["folder", "missing/report.html", "here/episode.jsonl/report.html"])
+def test_a_report_that_cannot_be_written_leaves_nothing(tpvqa: Run, out: str) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    Path("folder").mkdir()
+    before = sorted(Path().rglob("*"))
+    code, _, err = tpvqa("report", "here", "--out", out)
+    assert (code, err.startswith(f"error: {out}")) == (2, True)
+    assert sorted(Path().rglob("*")) == before
+
+
 def test_a_report_of_an_unfinished_episode(tpvqa: Run) -> None:
     tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
     log = Path("here/episode.jsonl")
