@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from tpvqa.errors import QuestionsError, suggestion
+from tpvqa.errors import PDDLError, QuestionsError, suggestion
 from tpvqa.pddl import Task
 from tpvqa.questions.never import NeverAsked
 from tpvqa.questions.question import Way
@@ -193,28 +193,9 @@ def _never(place: Place, task: Task) -> NeverAsked:
         raise place.wrong("an entry needs 'fact', e.g. fact: \"(free ?h)\"")
     fact = parts["fact"]
     try:
-        pattern = NeverAsked.parse(fact.text())
-    except ValueError as error:
-        raise fact.wrong(str(error)) from None
-    if pattern.predicate not in task.predicates:
-        raise fact.wrong(
-            f"the domain has no predicate {pattern.predicate!r}"
-            f"{suggestion(pattern.predicate, task.predicates)}"
-        )
-    arity = len(task.predicates[pattern.predicate])
-    if len(pattern.terms) != arity:
-        raise fact.wrong(
-            f"{pattern.predicate} takes {arity} objects, this has {len(pattern.terms)}"
-        )
-    for kind in pattern.types:
-        if kind is not None and kind not in task.types:
-            raise fact.wrong(f"the domain has no type {kind!r}{suggestion(kind, task.types)}")
-    for term in pattern.terms:
-        if not term.startswith("?") and term not in task.objects:
-            raise fact.wrong(
-                f"this problem has no object {term!r}{suggestion(term, task.objects)} "
-                "A variable starts with a question mark."
-            )
+        pattern = NeverAsked.parse(fact.text(), task)
+    except PDDLError as error:
+        raise fact.wrong(error.message) from None
     names = [schema.name for schema in task.schemas]
     actions = []
     for item in parts["in"].texts() if "in" in parts else []:
