@@ -1,10 +1,12 @@
 """The whole exception tree. Every message says what is wrong, where, and what to do about it.
 
 TpvqaError
-├── PDDLError              the domain or problem cannot be read
+├── PlacedError            a file that a user wrote is wrong; says where
+│   ├── PDDLError          the domain or problem cannot be read
+│   ├── QuestionsError     a questions file is broken
+│   └── WorldFileError     a world file or a script is broken
 ├── PlannerError           the planner itself could not be run (never "there is no plan")
 │   └── GroundingTimedOut  reading and grounding took longer than allowed
-├── QuestionsError         a questions file is broken
 ├── AnswerError            a VLM could not be asked at all
 ├── WorldError             a world cannot do what it is asked to
 ├── PictureSetError        the set of pictures is incomplete or damaged
@@ -20,23 +22,45 @@ from difflib import get_close_matches
 from pathlib import Path
 
 
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """The end of a sentence about an unknown name, and the nearest known one, where one is near."""
+    near = get_close_matches(word, list(known), n=1)
+    return f". Did you mean {near[0]!r}?" if near else "."
+
+
+def suggestion_or_list(word: str, known: Iterable[str]) -> str:
+    """As `suggestion`, and all known names where none is near."""
+    known = sorted(known)
+    said = suggestion(word, known)
+    return said if said != "." else f". Known: {', '.join(known[:20]) or 'none'}."
+
+
 class TpvqaError(Exception):
     """Base of all errors that tpvqa raises on purpose."""
 
 
-class PDDLError(TpvqaError):
-    """The domain or problem cannot be read.
+class PlacedError(TpvqaError):
+    """A file that a user wrote is wrong; the message starts with file and line, where known.
 
     Args:
         message: What is wrong and what was expected.
         file: The file it stands in, where known.
         line: The line, counted from 1, where known.
+
+    Attributes:
+        message: The message without the place.
+        file: The file.
+        line: The line.
     """
 
     def __init__(self, message: str, *, file: str | Path | None = None, line: int | None = None):
-        self.file, self.line = file, line
+        self.message, self.file, self.line = message, file, line
         place = "" if file is None else f"{file}:" + ("" if line is None else f"{line}:") + " "
         super().__init__(place + message)
+
+
+class PDDLError(PlacedError):
+    """The domain or problem cannot be read."""
 
 
 class PlannerError(TpvqaError):
@@ -47,17 +71,16 @@ class GroundingTimedOut(PlannerError):  # noqa: N818
     """Reading and grounding a task took longer than allowed."""
 
 
-class QuestionsError(TpvqaError):
-    """A questions file is broken; the message starts with file and line."""
-
-    def __init__(self, message: str, *, file: str | Path | None = None, line: int | None = None):
-        self.file, self.line = file, line
-        place = "" if file is None else f"{file}:" + ("" if line is None else f"{line}:") + " "
-        super().__init__(place + message)
+class QuestionsError(PlacedError):
+    """A questions file is broken."""
 
 
 class AnswerError(TpvqaError):
     """A VLM could not be asked at all (no key, say). A bad answer is *unknown* instead."""
+
+
+class WorldFileError(PlacedError):
+    """A world file or a script is broken."""
 
 
 class WorldError(TpvqaError):
@@ -81,9 +104,10 @@ class UnknownNameError(TpvqaError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str]):
         known = sorted(known)
-        near = get_close_matches(name, known, n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
-        super().__init__(f"There is no {kind} {name!r}.{hint} Known: {', '.join(known) or 'none'}.")
+        super().__init__(
+            f"There is no {kind} {name!r}{suggestion(name, known)} "
+            f"Known: {', '.join(known) or 'none'}."
+        )
 
 
 class PluginError(TpvqaError):

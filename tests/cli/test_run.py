@@ -7,11 +7,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from html.parser import HTMLParser
 from pathlib import Path
+from uuid import uuid4
 
 import pytest
 
+from tests.planning.test_processes import eventually
 from tpvqa.cli import main
 from tpvqa.episodes import Ended, read_episode
 
@@ -87,6 +90,31 @@ def test_without_a_questions_file_the_fallbacks_are_reported_once(tpvqa: Run) ->
     assert len(notes) == len(set(notes))
 
 
+def test_domains_in_other_encodings_are_run_and_resumed(tpvqa: Run) -> None:
+    for name in ("domain.pddl", "collect.pddl"):
+        Path(name).write_bytes("; Küche\r\n".encode("latin-1") + (TOYS / name).read_bytes())
+    files = ("--domain", "domain.pddl", "--problem", "collect.pddl", "--failure", 0)
+    code, _, err = tpvqa("run", *files, "--out", "here")
+    assert (code, "Traceback" in err) == (0, False)
+    log = Path("here/episode.jsonl")
+    log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:5]))
+    assert tpvqa("resume", "here")[0] == 0
+
+
+@pytest.mark.parametrize(
+    "option", ["--questions", "--world-file", "--world"], ids=lambda option: str(option)[2:]
+)
+def test_other_files_have_to_be_utf8(tpvqa: Run, tmp_path: Path, option: str) -> None:
+    file = tmp_path / "file.yaml"
+    file.write_bytes("# fine\n# Küche\n".encode("latin-1"))
+    value = f"scripted:{file}" if option == "--world" else file
+    files = ("--domain", TOYS / "domain.pddl", "--problem", TOYS / "collect.pddl")
+    code, out, err = tpvqa("run", *files, option, value)
+    assert code == 2
+    assert f"{file}:2: the byte 0xfc is not UTF-8" in err
+    assert "Traceback" not in out + err
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
@@ -96,6 +124,7 @@ def test_without_a_questions_file_the_fallbacks_are_reported_once(tpvqa: Run) ->
         (["run", "eat_apple", "--monitor", "tpvka", *SYMBOLIC], "Did you mean 'tpvqa'?"),
         (["run", "eat_apple", "--world", "kitchn"], "Did you mean 'kitchen'?"),
         (["run", "eat_apple", "--world", "scripted:none.yaml"], "none.yaml: cannot be read"),
+        (["run", "eat_apple", "--majority", "foo", *SYMBOLIC], "Write 'tie'"),
         (["run", "--domain", "no.pddl", "--problem", "no.pddl"], "no.pddl"),
         (["show", "nowhere"], "holds no episode"),
         (["resume", "nowhere"], "holds no episode"),
@@ -140,6 +169,26 @@ def test_the_report_needs_nothing_beside_it(tpvqa: Run) -> None:
         assert question in page
 
 
+def test_an_episode_is_named_by_its_folder_or_its_log(tpvqa: Run) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    log = Path("here/episode.jsonl")
+    assert tpvqa("report", log)[:2] == (0, "here/report.html\n")
+    log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:9]))
+    code, out, _ = tpvqa("resume", log, "--json")
+    assert (code, json.loads(out)["episode"]) == (0, "here")
+    assert tpvqa("show", log)[:2] == tpvqa("show", "here")[:2]
+
+
+@pytest.mark.parametrize("out", ["folder", "missing/report.html", "here/episode.jsonl/report.html"])
+def test_a_report_that_cannot_be_written_leaves_nothing(tpvqa: Run, out: str) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    Path("folder").mkdir()
+    before = sorted(Path().rglob("*"))
+    code, _, err = tpvqa("report", "here", "--out", out)
+    assert (code, err.startswith(f"error: {out}")) == (2, True)
+    assert sorted(Path().rglob("*")) == before
+
+
 def test_a_report_of_an_unfinished_episode(tpvqa: Run) -> None:
     tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
     log = Path("here/episode.jsonl")
@@ -151,14 +200,33 @@ def test_a_report_of_an_unfinished_episode(tpvqa: Run) -> None:
     assert "unfinished" in Path("here/report.html").read_text()
 
 
+def marked(mark: str) -> list[int]:
+    """The processes that were started, at whatever remove, with this mark in the environment."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/environ"):
+        with suppress(OSError):
+            if mark.encode() in entry.read_bytes():
+                found.append(int(entry.parent.name))
+    return found
+
+
+def story(folder: Path) -> list[dict[str, object]]:
+    """The events of an episode without what differs between two runs of one trial: times."""
+    events = read_episode(folder)
+    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
+
+
 @pytest.mark.slow
 def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "tpvqa", "run", "eat_apple", *SYMBOLIC]
+    command = [sys.executable, "-m", "tpvqa"]
     # Failing on and on, so that there is time to interrupt it.
-    command += ["--failure", "1", "--max-repeats", "100000", "--max-actions", "100000"]
+    trial = ["run", "eat_apple", *SYMBOLIC, "--failure", "1"]
+    trial += ["--max-repeats", "1000", "--max-actions", "120"]
+    mark = uuid4().hex
     process = subprocess.Popen(
-        [*command, "--out", "here"],
+        [*command, *trial, "--out", "here"],
         cwd=tmp_path,
+        env={**os.environ, "TPVQA_TEST_MARK": mark},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -168,12 +236,16 @@ def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
     while not (log.exists() and log.stat().st_size > 20_000):
         assert process.poll() is None
         time.sleep(0.01)
+    assert len(marked(mark)) > 1  # the planner's process has a session of its own
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=20)
     assert process.returncode == 130
     assert "Traceback" not in out + err
+    assert eventually(lambda: marked(mark) == [], 20)
     last = read_episode(tmp_path / "here")[-1]
     assert isinstance(last, Ended)
     assert last.because == "cancelled"
-    left = subprocess.run(["pgrep", "-g", str(process.pid)], capture_output=True, check=False)
-    assert left.stdout == b""
+    resumed = subprocess.run([*command, "resume", "here"], cwd=tmp_path, capture_output=True)
+    whole = subprocess.run([*command, *trial, "--out", "whole"], cwd=tmp_path, capture_output=True)
+    assert resumed.returncode == whole.returncode == 1
+    assert story(tmp_path / "here") == story(tmp_path / "whole")

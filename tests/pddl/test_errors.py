@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 from tests.pddl.feature_domains import SAMPLES
 from tpvqa.errors import PDDLError, UnknownNameError
 from tpvqa.pddl import load_task, task_from_text
+from tpvqa.planning import Plan
+from tpvqa.planning.fast_downward import FastDownward
 
 DOMAIN = """(define (domain lamps)
   (:requirements :typing :negative-preconditions)
@@ -30,11 +32,11 @@ PROBLEM = """(define (problem night)
 BROKEN_DOMAINS = [
     ("(lit ?l)))", "(lit ?l))", 1, r"a '\)' is missing.*\(define"),
     ("(lit ?l)))", "(lit ?l))))", 8, r"'\)' stands after the end.*too many"),
-    ("(not (lit ?l))", "(not (lid ?l))", 7, "lid.*did you mean 'lit'"),
+    ("(not (lit ?l))", "(not (lid ?l))", 7, "lid.*Did you mean 'lit'"),
     ("(not (lit ?l))", "(not (lit ?l ?l))", 7, "arity 1 used with 2 arguments"),
     ("(not (lit ?l))", "(not (lit ?k))", 7, "Undefined variable"),
     ("(not (lit ?l))", "(not)", 7, "'not' expects exactly one argument"),
-    ("(?l - lamp)\n", "(?l - lamb)\n", 6, "type 'lamb'.*not declared.*did you mean 'lamp'"),
+    ("(?l - lamp)\n", "(?l - lamb)\n", 6, "type 'lamb'.*not declared.*Did you mean 'lamp'"),
     (":negative-preconditions", ":negative", 2, "requirement.*:negative-preconditions"),
     (":effect (lit ?l)", ":effects (lit ?l)", 8, "':effect'"),
     (":effect (lit ?l)", ":effect (increase (fuel) 1)", 8, "increase"),
@@ -50,7 +52,7 @@ BROKEN_DOMAINS = [
     ),
 ]
 BROKEN_PROBLEMS = [
-    ("(lit b))))", "(lit c))))", 6, "Undefined object.*'c'.*expected one of: a, b"),
+    ("(lit b))))", "(lit c))))", 6, "Undefined object.*'c'.*Known: a, b"),
     ("(:init (lit a))", "(:init (lit a b))", 4, "arity 1 used with 2 arguments"),
     ("(:init (lit a))", "(:init (lit lamp1))", 4, "Undefined object.*'lamp1'"),
     ("(:init (lit a))", "(:init (lit a) (not (lit a)))", 4, "true and false"),
@@ -120,6 +122,54 @@ def test_definitions_that_contradict_each_other(more: str, message: str) -> None
         task_from_text(domain, PROBLEM.replace("(lit b))))", "(mended b))))"))
 
 
+TYPED_DOMAIN = """(define (domain yard)
+  (:requirements :typing :adl)
+  (:types car lorry - vehicle gate person)
+  (:constants main - gate)
+  (:predicates (at ?v - vehicle ?g - gate) (seen ?x) (busy ?x - (either car person)))
+  (:action drive :parameters (?v - vehicle ?g - gate)
+    :precondition (not (at ?v ?g)) :effect (and (at ?v ?g) (seen ?v) (seen ?g))))
+"""
+TYPED_PROBLEM = """(define (problem evening) (:domain yard)
+  (:objects beetle - car tipper - lorry ann - person)
+  (:init (at beetle main) (seen ann) (seen beetle) (busy ann) (busy beetle))
+  (:goal (and (at tipper main)
+              (forall (?v - vehicle) (or (seen ?v) (busy beetle) (= ?v tipper))))))
+"""
+
+
+def test_objects_of_subtypes_and_of_either_type_fit() -> None:
+    """`vehicle` is no subtype of `object` here, and (seen ?x) takes it all the same."""
+    task = task_from_text(TYPED_DOMAIN, TYPED_PROBLEM)
+    task.check_state(task.init)
+    assert isinstance(FastDownward().plan(task, task.init), Plan)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "message"),
+    [
+        ("(at beetle main)", "(at ann main)", 3, r"\(at ann main\): 'ann' is a person, but \?v of"),
+        ("(at beetle main)", "(at beetle beetle)", 3, "of at must be a gate"),
+        ("(busy ann)", "(busy tipper)", 3, r"\?x of busy must be a car or a person"),
+        ("(at tipper main)", "(at main main)", 4, "'main' is a gate"),
+        ("(busy beetle) (=", "(busy tipper) (=", 5, "'tipper' is a lorry"),
+    ],
+)
+def test_objects_of_ill_fitting_types(old: str, new: str, line: int, message: str) -> None:
+    with pytest.raises(PDDLError, match=message) as caught:
+        task_from_text(TYPED_DOMAIN, TYPED_PROBLEM.replace(old, new))
+    assert caught.value.file == "(problem)"
+    assert caught.value.line == line
+
+
+def test_what_the_domain_itself_makes_true_is_no_error_later() -> None:
+    """An action may be declared wider than the predicate that it changes."""
+    loose = TYPED_DOMAIN.replace("(?v - vehicle ?g - gate)\n", "(?v - object ?g - gate)\n")
+    task = task_from_text(loose, TYPED_PROBLEM)
+    state = task.apply(task.init, task.action("drive", ("main", "main")))
+    task.check_state(state)
+
+
 def test_a_derived_fact_in_the_initial_state() -> None:
     domain = DOMAIN.rstrip().removesuffix(")") + "(:derived (mended ?l - lamp) (lit ?l)))"
     with pytest.raises(PDDLError, match="derived fact 'mended'"):
@@ -157,6 +207,20 @@ def test_comments_may_hold_anything_and_a_byte_order_mark_is_skipped(tmp_path: P
     domain.write_bytes(b"\xef\xbb\xbf; k\xc3\xbcche\r\n" + DOMAIN.encode())
     problem.write_bytes(b"; \xfc latin\n" + PROBLEM.encode())
     assert load_task(domain, problem).name == "night"
+
+
+@pytest.mark.parametrize("mark", ["\x0b", "\x0c", "\x1c", "\x85", "\u2028", "\u2029"])
+def test_a_comment_ends_at_the_end_of_its_line_only(tmp_path: Path, mark: str) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    comment = f"; lamps{mark}(and more\r\n;{mark})\r;{mark}(\n"
+    domain.write_text(comment + DOMAIN, encoding="utf-8", newline="")
+    problem.write_text(comment + PROBLEM, encoding="utf-8", newline="")
+    assert load_task(domain, problem).name == "night"
+    broken = PROBLEM.replace("(lit b)", "(lit c)")
+    problem.write_text(comment + broken, encoding="utf-8", newline="")
+    with pytest.raises(PDDLError) as caught:
+        load_task(domain, problem)
+    assert caught.value.line == 3 + 6
 
 
 @st.composite

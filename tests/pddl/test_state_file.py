@@ -24,6 +24,7 @@ EXPECTED = {Atom.parse("near tv"), Atom.parse("on plate table"), Atom.parse("fre
     [
         "(near tv)\n(on plate table)\n(free left)\n",
         "; a comment\n(near tv) (on plate table)   # two\n\nFREE(Left)\n",
+        "# a\x0c(near x)\n(near tv)\x0c(on plate table)\n; b\u2028(near y)\n(free left)",
         "near(tv)\non(plate, table)\nfree left",
         '["(near tv)", ["on", "plate", "table"], "free(left)"]',
     ],
@@ -37,11 +38,13 @@ def test_ways_to_write_a_state(task: Task, tmp_path: Path, text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("(near tv)\n(on plate tabel)", ":2: .*did you mean 'table'"),
-        ("(near tv)\n\n(nearr tv)", ":3: .*did you mean 'near'"),
+        ("(near tv)\n(on plate tabel)", ":2: .*Did you mean 'table'"),
+        ("(near tv)\n\n(nearr tv)", ":3: .*Did you mean 'near'"),
         ("(on plate)", ":1: .*takes 2 arguments"),
+        ("(near tv)\n(in_hand plate plate)", ":2: .*plate is a dish, but .h of in_hand must be"),
+        ("(near left)", ":1: .*left is a hand, but .x of near must be a thing"),
         ("()", ":1: .*not an atom"),
-        ('["(near tv)",\n "(nearr tv)"]', ":2: .*did you mean 'near'"),
+        ('["(near tv)",\n "(nearr tv)"]', ":2: .*Did you mean 'near'"),
         ('["(near tv)",\n 3]', "entry 2 of the list is no atom: 3"),
         ('["(near tv)"\n "(free left)"]', ":2: this is not JSON"),
         ('{"near": "tv"}', "expected a JSON list"),

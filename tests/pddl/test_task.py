@@ -86,9 +86,9 @@ def test_equality_is_decided(household: Task) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("fnd", "apple", "tv"), "no action 'fnd'; did you mean 'find'"),
+        (("fnd", "apple", "tv"), "no action 'fnd'. Did you mean 'find'"),
         (("find", "apple"), r"find takes 2 arguments \(\?x - thing, \?from - thing\), got 1"),
-        (("find", "aple", "tv"), "no object 'aple'; did you mean 'apple'"),
+        (("find", "aple", "tv"), "no object 'aple'. Did you mean 'apple'"),
         (("find", "left", "tv"), "left is a hand, but .x of the action find must be a thing"),
     ],
 )
@@ -115,6 +115,15 @@ def test_household_groups_are_what_the_domain_means(name: str) -> None:
     (group,) = task.groups_of(floor)
     assert Atom.parse("in_hand apple left") in group.atoms
     assert task.groups_of(Atom.parse("opened fridge")) == ()
+
+
+def test_groups_hold_only_atoms_of_fitting_types() -> None:
+    """A truck is somewhere, as a parcel is, but in no truck."""
+    task = read(EITHER)
+    for group in task.mutex_groups:
+        task.check_state(group.atoms)
+    (van,) = task.groups_of(Atom.parse("at van home"))
+    assert van.atoms == facts("at van home", "at van shop")
 
 
 def test_groups_follow_the_initial_state(household: Task) -> None:
@@ -236,8 +245,8 @@ def test_tasks_can_be_pickled_and_compared(household: Task) -> None:
 
 def test_atoms_of_another_task_are_refused(household: Task) -> None:
     for text, message in [
-        ("on apple flor", "did you mean 'floor'"),
-        ("onn apple floor", "did you mean 'on'"),
+        ("on apple flor", "Did you mean 'floor'"),
+        ("onn apple floor", "Did you mean 'on'"),
         ("on apple", "takes 2 arguments"),
     ]:
         with pytest.raises(PDDLError, match=message):

@@ -1,9 +1,11 @@
 """The planner at its seam: the paper's plans, every PDDL feature, every way a call can end."""
 
+import math
+
 import pytest
 
 from tests.pddl.feature_domains import DERIVED, EMPTY, EXHAUSTED, SAMPLES, UNREACHABLE, Sample
-from tpvqa.errors import PDDLError
+from tpvqa.errors import PDDLError, PlannerError
 from tpvqa.pddl import Action, Atom, State, Task, load_task, task_from_text, validate
 from tpvqa.pddl.processes import WORKERS
 from tpvqa.planning import Crashed, Plan, Planner, TimedOut, Unsolvable
@@ -199,3 +201,15 @@ def test_actions_come_from_the_task() -> None:
     assert isinstance(plan, Plan)
     assert all(isinstance(action, Action) for action in plan.actions)
     assert plan.actions[0] is task.action("find", plan.actions[0].arguments)
+
+
+def test_an_infinite_time_limit_is_none_and_no_number_is_refused() -> None:
+    task = load_task("clean_dishes", timeout=math.inf)
+    planner = FastDownward(timeout=math.inf)
+    assert isinstance(planner.plan(task), Plan)
+    assert isinstance(planner.plan(task, timeout=math.inf), Plan)
+    for wrong in (math.nan, -1.0, -math.inf):
+        with pytest.raises(PlannerError, match="no time limit"):
+            planner.plan(task, timeout=wrong)
+        with pytest.raises(PlannerError, match="no time limit"):
+            load_task("clean_dishes", timeout=wrong)

@@ -73,13 +73,14 @@ def book(task: Task, folder: Path, text: str | bytes) -> QuestionBook:
         ("never_asked:\n  - fact: near ?x", 2, "not a fact; write it as (predicate"),
         ("never_asked:\n  - fact: (and (near ?x) (free ?h))", 2, "not a fact"),
         ("never_asked:\n  - fact: (neer ?x)", 2, "no predicate 'neer'. Did you mean 'near'?"),
-        ("never_asked:\n  - fact: (near ?x ?y)", 2, "near takes 1 objects, this has 2"),
+        ("never_asked:\n  - fact: (near ?x ?y)", 2, "near takes 1 objects (thing), this has 2"),
+        ("never_asked:\n  - fact: (near left)", 2, "left is a hand, but near takes a thing there"),
         ("never_asked:\n  - fact: (near aple)", 2, "no object 'aple'. Did you mean 'apple'?"),
         ("never_asked:\n  - fact: (near ?x - thin)", 2, "no type 'thin'. Did you mean 'thing'?"),
         ("never_asked:\n  - fact: (near - thing)", 2, "a dash stands between"),
         ("never_asked:\n  - fact: (near ?x)\n    in: fined", 3, "no action 'fined'. Did you mean"),
         ("never_asked:\n  - fact: (near ?x)\n    in: [find, {a: b}]", 3, "expected text"),
-        (b"near: \xff\xfe\xfa", None, "not UTF-8"),
+        (b"# hm\nnear: \xff\xfe\xfa", 2, "the byte 0xff is not UTF-8"),
     ],
 )  # fmt: skip
 def test_a_broken_file_is_a_clear_error_with_its_line(

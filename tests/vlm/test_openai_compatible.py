@@ -179,6 +179,25 @@ def test_what_is_late_is_unknown_and_the_rest_is_answered() -> None:
     assert seconds < 30
 
 
+def test_a_pause_longer_than_the_deadline_is_not_begun_and_the_reason_is_kept() -> None:
+    act = Act(429, {"error": {"message": "slow down"}}, {"Retry-After": "5000"})
+    with ChatServer(scripted, script=always(act)) as server:
+        started = time.monotonic()
+        (answer,) = ask(server, "Is the plate clean?", deadline=30.0)
+        seconds = time.monotonic() - started
+    assert answer.reply is Reply.UNKNOWN
+    assert answer.text.startswith("HTTP status 429: slow down; asking again in 5000 s")
+    assert len(server.requests) == 1
+    assert seconds < 15
+
+
+def test_what_failed_before_the_deadline_is_said() -> None:
+    script: Script = lambda _, before: Act(wait=60.0) if before else Act(500, "oops")  # noqa: E731
+    with ChatServer(scripted, script=script) as server:
+        (answer,) = ask(server, "Is the plate clean?", deadline=3.0)
+    assert answer.text.startswith("late: nothing within 3 s; before that HTTP status 500: oops")
+
+
 def test_a_hanging_request_is_tried_again() -> None:
     with ChatServer(scripted, script=at_first(Act(wait=60.0))) as server:
         (answer,) = ask(server, "Is the plate clean?", request_timeout=1.5)

@@ -1,11 +1,26 @@
 """`tpvqa`: the commands and how their errors reach the user."""
 
 import sys
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 
 from tpvqa.cli import dataset, plan, questions, run
 from tpvqa.errors import TpvqaError
+
+
+class _Interrupted(Exception):  # noqa: N818 — Ctrl-C, not an error
+    """Ctrl-C, in a form that Typer leaves alone: it would end the process without a word."""
+
+
+class _Commands(TyperGroup):
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            raise _Interrupted from None
+
 
 app = typer.Typer(
     name="tpvqa",
@@ -13,6 +28,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    cls=_Commands,
 )
 plan.register(app)
 questions.register(app)
@@ -21,12 +37,16 @@ dataset.register(app)
 
 
 def main() -> None:
-    """Run the command line; a `TpvqaError` becomes one clear message and exit code 2."""
+    """Run the command line.
+
+    A `TpvqaError` becomes one clear message and exit code 2; Ctrl-C becomes "interrupted" and
+    exit code 130.
+    """
     try:
         app()
     except TpvqaError as error:
         print(f"error: {error}", file=sys.stderr)
         sys.exit(2)
-    except KeyboardInterrupt:
+    except (_Interrupted, KeyboardInterrupt):
         print("interrupted", file=sys.stderr)
         sys.exit(130)

@@ -43,7 +43,11 @@ def plan(
     ] = None,
     optimal: Annotated[bool, typer.Option("--optimal", help="A plan of least cost.")] = False,
     timeout: Annotated[
-        float, typer.Option(help="Seconds for reading, grounding and search.", min=0.001)
+        float,
+        typer.Option(
+            help="Seconds for reading, grounding and search; inf for no limit.",
+            min=0.001,
+        ),
     ] = 60.0,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:

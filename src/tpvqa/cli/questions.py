@@ -37,7 +37,11 @@ def questions(
         typer.Option("--questions", help="Questions for the domain; fallbacks without it."),
     ] = None,
     timeout: Annotated[
-        float, typer.Option(help="Seconds for grounding, and for planning.", min=0.001)
+        float,
+        typer.Option(
+            help="Seconds for grounding, and for planning; inf for no limit.",
+            min=0.001,
+        ),
     ] = 60.0,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:

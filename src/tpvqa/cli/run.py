@@ -128,8 +128,10 @@ def resume(
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Go on with an episode that was interrupted or killed, to the end it would have had."""
+    from tpvqa.episodes.log import episode_folder
     from tpvqa.trial import resume as go_on
 
+    episode = episode_folder(episode)
     with _view(as_json=as_json) as view:
         ended = go_on(episode, listeners=[view])
     _finish(ended, episode, as_json=as_json)

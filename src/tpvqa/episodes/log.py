@@ -134,6 +134,12 @@ def _lines(path: Path) -> Iterator[tuple[int, bytes]]:
     return enumerate(whole.split(b"\n") if whole else [], 1)
 
 
+def episode_folder(path: Path | str) -> Path:
+    """The folder of an episode that is named by its folder, or by the `episode.jsonl` in it."""
+    path = Path(path)
+    return path.parent if path.name == LOG else path
+
+
 def read_episode(folder: Path | str) -> list[Event]:
     """All whole events of an episode, also of one that was killed.
 
@@ -143,8 +149,7 @@ def read_episode(folder: Path | str) -> list[Event]:
     Raises:
         EpisodeError: There is no episode, or a line in its middle is damaged.
     """
-    path = Path(folder)
-    path = path if path.name == LOG else path / LOG
+    path = episode_folder(folder) / LOG
     events: list[Event] = []
     for number, line in _lines(path):
         try:

@@ -23,7 +23,7 @@ class Asker:
         votes: Looks at which every question is asked; each question's answer is the vote.
 
     Raises:
-        PluginError: There are fewer votes than one.
+        PluginError: There are fewer votes than one, or there is no such majority.
     """
 
     def __init__(
@@ -31,7 +31,7 @@ class Asker:
     ):
         if votes < 1:
             raise PluginError(f"A vote over {votes} looks decides nothing; it takes one or more.")
-        self.majority, self.looks, self.votes = Majority(majority), looks, votes
+        self.majority, self.looks, self.votes = Majority.named(majority), looks, votes
 
     def ask(self, questions: Sequence[Question]) -> Asking:
         """Whether the answers deny the action, and they; None where they still abstain.

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from enum import StrEnum
 
+from tpvqa.errors import PluginError
 from tpvqa.vlm import Answer
 
 
@@ -15,6 +16,21 @@ class Majority(StrEnum):
 
     TIE_DENIES = "tie"  # at least half of the answered literals are denied
     STRICT = "strict"  # more than half are
+
+    @classmethod
+    def named(cls, name: str) -> "Majority":
+        """The majority of a name.
+
+        Raises:
+            PluginError: There is none.
+        """
+        try:
+            return cls(name)
+        except ValueError:
+            raise PluginError(
+                f"There is no majority {name!r}. Write 'tie' (half of the answers deny) or "
+                "'strict' (more than half must)."
+            ) from None
 
     def denies(self, answers: Sequence[Answer]) -> bool | None:
         """Whether the answers deny the action; None where all of them abstain."""

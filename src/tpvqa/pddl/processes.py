@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import PlannerError
+from tpvqa.pddl.time_limit import limit_of
 
 SILENCE = 10.0
 """Seconds without a heartbeat after which a worker that does nothing counts as hung."""
@@ -304,9 +305,10 @@ def ask_worker(
         The worker's reply.
 
     Raises:
-        PlannerError: The worker died or hung twice.
+        PlannerError: The worker died or hung twice, or the time limit is none.
         WorkerTimedOut: The time is over.
     """
+    seconds = limit_of(seconds)
     end = None if seconds is None else time.monotonic() + seconds
     reasons: list[str] = []
     while len(reasons) < 2:

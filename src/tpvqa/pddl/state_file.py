@@ -5,6 +5,7 @@ from pathlib import Path
 
 from tpvqa.errors import PDDLError
 from tpvqa.pddl.atoms import Atom, State
+from tpvqa.pddl.lines import lines_of
 from tpvqa.pddl.task import Task
 
 
@@ -44,7 +45,7 @@ def read_state(path: Path, task: Task) -> State:
 
 def _lines(text: str) -> list[tuple[int | None, str]]:
     atoms: list[tuple[int | None, str]] = []
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(lines_of(text), start=1):
         words = line.split(";", 1)[0].split("#", 1)[0].strip()
         # Several atoms in PDDL's notation may share a line.
         atoms += [(number, part + ")") for part in words.split(")")[:-1]] if words else []

@@ -2,13 +2,12 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from difflib import get_close_matches
 from functools import cached_property
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-from tpvqa.errors import PDDLError
+from tpvqa.errors import PDDLError, suggestion_or_list
 from tpvqa.pddl.atoms import Atom, State
 from tpvqa.pddl.conditions import Condition, holds
 from tpvqa.pddl.derivation import Derivation
@@ -114,7 +113,7 @@ class Task:
         if schema is None:
             raise PDDLError(
                 f"the domain {self.domain_name} has no action {name!r}"
-                + _hint(name, self._schemas_by_name),
+                + suggestion_or_list(name, self._schemas_by_name),
                 file=self.domain_path,
             )
         wanted = ", ".join(f"{part.name} - {part.type}" for part in schema.parameters)
@@ -127,7 +126,7 @@ class Task:
         for argument, parameter in zip(arguments, schema.parameters, strict=True):
             if argument not in self.objects:
                 raise PDDLError(
-                    f"there is no object {argument!r}" + _hint(argument, self.objects),
+                    f"there is no object {argument!r}" + suggestion_or_list(argument, self.objects),
                     file=self.problem_path,
                 )
             if argument not in self.objects_by_type.get(parameter.type, ()):
@@ -220,7 +219,7 @@ class Task:
         return self._groups_by_atom.get(atom, ())
 
     def check_state(self, state: State) -> None:
-        """See that a state speaks of this task's predicates and objects.
+        """See that a state speaks of this task's predicates and objects, of fitting types.
 
         Raises:
             PDDLError: It does not.
@@ -228,8 +227,35 @@ class Task:
         for atom in state:
             self.check_atom(atom)
 
+    def is_a(self, name: str, kind: str) -> bool:
+        """Whether an object is of a type; `a|b` for `(either a b)`."""
+        return any(part == "object" or name in self._members(part) for part in kind.split("|"))
+
+    def _members(self, kind: str) -> frozenset[str]:
+        if kind not in self._members_by_type:
+            self._members_by_type[kind] = frozenset(self.objects_by_type.get(kind, ()))
+        return self._members_by_type[kind]
+
+    @cached_property
+    def _members_by_type(self) -> dict[str, frozenset[str]]:
+        return {}
+
+    def related(self, kind: str, other: str) -> bool:
+        """Whether an object can be of both types."""
+        return any(
+            part in self._above(kind) or kind in self._above(part) for part in other.split("|")
+        )
+
+    def _above(self, kind: str) -> set[str]:
+        found = {"object"}
+        above: str | None = kind
+        while above is not None and above not in found:
+            found.add(above)
+            above = self.types.get(above)
+        return found
+
     def check_atom(self, atom: Atom) -> None:
-        """See that an atom speaks of this task's predicates and objects.
+        """See that an atom speaks of this task's predicates and objects, each of a fitting type.
 
         Raises:
             PDDLError: It does not.
@@ -238,7 +264,7 @@ class Task:
         if wanted is None:
             raise PDDLError(
                 f"{atom.pddl()}: there is no predicate {atom.predicate!r}"
-                + _hint(atom.predicate, self.predicates)
+                + suggestion_or_list(atom.predicate, self.predicates)
             )
         if len(wanted) != len(atom.arguments):
             raise PDDLError(
@@ -249,7 +275,16 @@ class Task:
             if argument not in self.objects:
                 raise PDDLError(
                     f"{atom.pddl()}: there is no object {argument!r}"
-                    + _hint(argument, self.objects)
+                    + suggestion_or_list(argument, self.objects)
+                )
+        if atom in self.reachable_atoms:
+            return  # an action makes it true, whatever the predicate is declared with
+        variables = self.predicate_variables[atom.predicate]
+        for argument, variable, kind in zip(atom.arguments, variables, wanted, strict=True):
+            if not self.is_a(argument, kind):
+                raise PDDLError(
+                    f"{atom.pddl()}: {argument} is a {self.objects[argument]}, but {variable} of "
+                    f"{atom.predicate} must be a {kind.replace('|', ' or a ')}"
                 )
 
     def with_init(self, state: State) -> "Task":
@@ -263,9 +298,3 @@ class Task:
 
         self.check_state(state)
         return replace(self, **grounded_parts(self, state))
-
-
-def _hint(word: str, known: Iterable[str]) -> str:
-    names = sorted(known)
-    near = get_close_matches(word, names, n=1)
-    return f"; did you mean {near[0]!r}?" if near else f"; expected one of: {', '.join(names)}"

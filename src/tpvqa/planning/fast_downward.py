@@ -7,6 +7,7 @@ from tpvqa.errors import PDDLError, PlannerError
 from tpvqa.pddl import State, Task, validate
 from tpvqa.pddl.loading import to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
+from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 
 SATISFICING = "let(h,ff(),lazy_greedy([h],preferred=[h]))"
@@ -52,13 +53,14 @@ class FastDownward:
         Args:
             task: The task.
             state: The atoms that hold; all others do not. Derived atoms are ignored.
-            timeout: Seconds; None for the planner's own limit.
+            timeout: Seconds, `math.inf` for no limit; None for the planner's own limit.
 
         Raises:
-            PDDLError: The state speaks of unknown predicates or objects.
+            PDDLError: The state speaks of unknown predicates or objects, or of ill-fitting types.
+            PlannerError: The time limit is negative or not a number.
         """
         start = time.perf_counter()
-        limit = self.timeout if timeout is None else timeout
+        limit = limit_of(self.timeout if timeout is None else timeout)
         if state is None:
             state = task.init
         else:

@@ -79,7 +79,7 @@ class QuestionBook:
         name = None if action is None else action.name
         arguments = {} if action is None else self._values(action)
         for pattern in self._wordings.never_asked:
-            if pattern.matches(literal, name, arguments, self._is_a):
+            if pattern.matches(literal, name, arguments, self.task):
                 return pattern.because or "the questions file says so"
         return None
 
@@ -160,9 +160,6 @@ class QuestionBook:
             seen.add(kind)
             kind = self.task.types.get(kind)
 
-    def _is_a(self, obj: str, kind: str) -> bool:
-        return obj in self.task.objects_by_type.get(kind, ())
-
     def _values(self, action: Action) -> dict[str, str]:
         return dict(zip(self._actions[action.name], action.arguments, strict=True))
 
@@ -209,7 +206,9 @@ class QuestionBook:
     # Fallbacks
 
     def _fall_back(self) -> None:
-        never = {pattern.predicate for pattern in self._wordings.never_asked if pattern.everywhere}
+        never = {
+            pattern.fact.predicate for pattern in self._wordings.never_asked if pattern.everywhere
+        }
         for name, parameters in self._predicates.items():
             if name in self._questions:
                 continue

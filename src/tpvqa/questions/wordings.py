@@ -4,11 +4,12 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from tpvqa.errors import PDDLError, QuestionsError, suggestion
 from tpvqa.pddl import Task
 from tpvqa.questions.never import NeverAsked
 from tpvqa.questions.question import Way
 from tpvqa.questions.template import Template
-from tpvqa.questions.yaml_places import Place, did_you_mean, read_yaml
+from tpvqa.yaml_places import Place, read_yaml
 
 WAYS: Mapping[Way, str] = {
     Way.POSSIBLE: "Is it possible to {action} here?",
@@ -68,7 +69,7 @@ def read_wordings(path: Path, task: Task) -> Wordings:
     Raises:
         QuestionsError: It cannot be read, or does not fit the domain; with file and line.
     """
-    root = read_yaml(path)
+    root = read_yaml(path, QuestionsError)
     if root is None:
         return Wordings()
     sections = root.sections(
@@ -89,10 +90,8 @@ def read_wordings(path: Path, task: Task) -> Wordings:
         if name in task.objects:
             of_objects[name] = _own(value, known)
         else:
-            suggestion = did_you_mean(name, list(task.objects)).rstrip()
-            notices.append(
-                f"{place.file}:{place.line}: this problem has no object {name!r}{suggestion}"
-            )
+            near = suggestion(name, task.objects)
+            notices.append(f"{place.file}:{place.line}: this problem has no object {name!r}{near}")
     return Wordings(
         predicates={
             name: _template(value, predicates[name], known)
@@ -124,7 +123,7 @@ def _named(place: Place | None, known: Collection[str], kind: str) -> Iterable[t
     """The entries of a section whose keys are names of the domain."""
     for name, key, value in _entries(place):
         if name not in known:
-            raise key.wrong(f"the domain has no {kind} {name!r}{did_you_mean(name, list(known))}")
+            raise key.wrong(f"the domain has no {kind} {name!r}{suggestion(name, known)}")
         yield name, value
 
 
@@ -143,14 +142,14 @@ def _template(place: Place, parameters: Sequence[str], attributes: Sequence[str]
         if placeholder.attribute not in attributes:
             raise place.wrong(
                 f"{placeholder}: objects have no attribute {placeholder.attribute!r}"
-                f"{did_you_mean(placeholder.attribute, list(attributes))} Give its default "
+                f"{suggestion(placeholder.attribute, attributes)} Give its default "
                 f"under 'attributes'. Known: {', '.join(attributes)}."
             )
     return template
 
 
 def _hint(placeholder: object, parameters: Sequence[str]) -> str:
-    return did_you_mean(str(placeholder), [f"{{{name}}}" for name in parameters])
+    return suggestion(str(placeholder), [f"{{{name}}}" for name in parameters])
 
 
 def _attributes(
@@ -165,7 +164,7 @@ def _attributes(
             )
         if not of_objects and name not in known:
             raise key.wrong(
-                f"objects have no attribute {name!r}{did_you_mean(name, list(known))} Give its "
+                f"objects have no attribute {name!r}{suggestion(name, known)} Give its "
                 f"default under 'attributes'. Known: {', '.join(known)}."
             )
         found[name] = _template(value, [] if name == "name" else ["name"], ["name"])
@@ -194,36 +193,15 @@ def _never(place: Place, task: Task) -> NeverAsked:
         raise place.wrong("an entry needs 'fact', e.g. fact: \"(free ?h)\"")
     fact = parts["fact"]
     try:
-        pattern = NeverAsked.parse(fact.text())
-    except ValueError as error:
-        raise fact.wrong(str(error)) from None
-    if pattern.predicate not in task.predicates:
-        raise fact.wrong(
-            f"the domain has no predicate {pattern.predicate!r}"
-            f"{did_you_mean(pattern.predicate, list(task.predicates))}"
-        )
-    arity = len(task.predicates[pattern.predicate])
-    if len(pattern.terms) != arity:
-        raise fact.wrong(
-            f"{pattern.predicate} takes {arity} objects, this has {len(pattern.terms)}"
-        )
-    for kind in pattern.types:
-        if kind is not None and kind not in task.types:
-            raise fact.wrong(
-                f"the domain has no type {kind!r}{did_you_mean(kind, list(task.types))}"
-            )
-    for term in pattern.terms:
-        if not term.startswith("?") and term not in task.objects:
-            raise fact.wrong(
-                f"this problem has no object {term!r}{did_you_mean(term, list(task.objects))} "
-                "A variable starts with a question mark."
-            )
+        pattern = NeverAsked.parse(fact.text(), task)
+    except PDDLError as error:
+        raise fact.wrong(error.message) from None
     names = [schema.name for schema in task.schemas]
     actions = []
     for item in parts["in"].texts() if "in" in parts else []:
         name = item.text().lower()
         if name not in names:
-            raise item.wrong(f"the domain has no action {name!r}{did_you_mean(name, names)}")
+            raise item.wrong(f"the domain has no action {name!r}{suggestion(name, names)}")
         actions.append(name)
     because = parts["because"].text() if "because" in parts else ""
     return replace(pattern, actions=frozenset(actions), because=because)

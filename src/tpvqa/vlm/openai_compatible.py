@@ -182,12 +182,16 @@ class OpenAICompatibleVLM:
 
         async def one(text: str) -> _Outcome:
             started = time.monotonic()
+            failures: list[_Again] = []
             try:
                 async with asyncio.timeout_at(end), turn:
                     started = time.monotonic()
-                    return await self._insist(client, frames, text)
+                    return await self._insist(client, frames, text, failures, end)
             except TimeoutError:
-                late = Reading(Reply.UNKNOWN, text=f"late: nothing within {self._deadline:g} s")
+                why = f"late: nothing within {self._deadline:g} s"
+                if failures:
+                    why += f"; before that {failures[-1].why}"
+                late = Reading(Reply.UNKNOWN, text=why)
                 return _Outcome(late, time.monotonic() - started, final=False)
 
         try:
@@ -203,23 +207,47 @@ class OpenAICompatibleVLM:
             )
         return outcomes
 
-    async def _insist(self, client: "AsyncOpenAI", frames: Sequence[Frame], text: str) -> _Outcome:
-        """Ask one question, again after failures that may pass."""
+    async def _insist(
+        self,
+        client: "AsyncOpenAI",
+        frames: Sequence[Frame],
+        text: str,
+        failures: list[_Again],
+        end: float,
+    ) -> _Outcome:
+        """Ask one question, again after failures that may pass.
+
+        Args:
+            client: The connection.
+            frames: The pictures.
+            text: The question.
+            failures: Grows by what failed, so that the reason is known where the time ends.
+            end: The deadline, by the loop's clock. No pause begins that would go beyond it.
+        """
         started = time.monotonic()
-        for attempt in range(self._retries + 1):
+        while True:
             try:
                 reading = await self._converse(client, frames, text)
                 return _Outcome(reading, time.monotonic() - started)
             except _Again as again:
-                last = again
-                if attempt < self._retries:
-                    await asyncio.sleep(_pause(again, attempt, text))
-        return _Outcome(
-            Reading(Reply.UNKNOWN, text=f"{last.why}, {self._retries + 1} times"),
-            time.monotonic() - started,
-            unreachable=last.unreachable,
-            final=False,
-        )
+                failures.append(again)
+            last, times = failures[-1], len(failures)
+            why = last.why if times == 1 else f"{last.why}, {times} times"
+            if times <= self._retries:
+                pause = _pause(last, times - 1, text)
+                if asyncio.get_running_loop().time() + pause < end:
+                    await asyncio.sleep(pause)
+                    continue
+                why += (
+                    f"; asking again in {round(pause, 1):g} s would be later than the "
+                    f"{self._deadline:g} s that all questions have"
+                )
+            return _Outcome(
+                Reading(Reply.UNKNOWN, text=why),
+                time.monotonic() - started,
+                unreachable=last.unreachable,
+                final=False,
+            )
 
     async def _converse(self, client: "AsyncOpenAI", frames: Sequence[Frame], text: str) -> Reading:
         """Ask one question, finding out what the server understands."""

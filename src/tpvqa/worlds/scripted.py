@@ -1,50 +1,24 @@
 """A world whose faults are written down: to try a domain, and to tell a story exactly.
 
-A script is a YAML file. Every action does what its effects say, but for those named in it:
-
-    script:
-      - action: (pick_up blue_container table)   # attempt 1 unless `attempt` says otherwise
-        then: {add: [(on blue_container floor)], delete: [(in_hand blue_container)]}
-      - action: (pick_up toy_eggplant table)
-        fails: true
+Every action does what its effects say, but for those that the script names.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import logging
 from pathlib import Path
-from typing import Any
 
-import yaml
-
-from tpvqa.errors import WorldError
-from tpvqa.pddl import Action, Atom
+from tpvqa.pddl import Action
+from tpvqa.worlds.script_file import Script, load_script
 from tpvqa.worlds.simulation import Outcome, Simulation
 from tpvqa.worlds.symbolic import SymbolicWorld
 
-
-@dataclass(frozen=True, slots=True)
-class ScriptedFault:
-    """What befalls one attempt of one action.
-
-    Attributes:
-        fails: Whether the action's own effects stay out.
-        add: Facts that become true after it.
-        delete: Facts that end after it.
-    """
-
-    fails: bool
-    add: frozenset[Atom]
-    delete: frozenset[Atom]
-
-
-Script = Mapping[tuple[str, int], ScriptedFault]
+_LOG = logging.getLogger(__name__)
 
 
 class _ScriptedSimulation(Simulation):
     """The true state, changed as the script says instead of by chance."""
 
     def __init__(self, simulation: Simulation, script: Script):
-        super().__init__(simulation.task, failure=0.0, disturbance=0.0)
+        super().__init__(simulation.task, simulation.rules, failure=0.0, disturbance=0.0)
         self._script = script
 
     def execute(self, action: Action) -> Outcome:
@@ -69,62 +43,32 @@ class ScriptedWorld(SymbolicWorld):
     """A symbolic world with scripted faults.
 
     Args:
-        simulation: Gives the task; its chances are not used.
+        simulation: Gives the task and its rules; its chances are not used.
         script: What befalls which attempt (counted from 1) of which action.
     """
 
     def __init__(self, simulation: Simulation, script: Script):
         super().__init__(_ScriptedSimulation(simulation, script))
+        self._script = script
 
     @classmethod
     def from_spec(cls, arguments: str, *, simulation: Simulation) -> "ScriptedWorld":
         """Make it from `scripted:FILE`; without a file every action works.
 
         Raises:
-            WorldError: The file cannot be read or is not a script.
+            WorldFileError: The file cannot be read or is not a script for the task.
         """
-        return cls(simulation, load_script(Path(arguments)) if arguments else {})
+        script = load_script(Path(arguments), simulation.task) if arguments else {}
+        return cls(simulation, script)
 
-
-def load_script(path: Path) -> Script:
-    """Read a script.
-
-    Raises:
-        WorldError: The file is missing or broken; the message names the place.
-    """
-    try:
-        document = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise WorldError(f"{path}: cannot be read ({error.strerror})") from error
-    except yaml.YAMLError as error:
-        raise WorldError(f"{path}: not valid YAML: {error}") from error
-    entries = document.get("script") if isinstance(document, dict) else None
-    if not isinstance(entries, list):
-        raise WorldError(f"{path}: expected a list under `script:`")
-    script: dict[tuple[str, int], ScriptedFault] = {}
-    for number, entry in enumerate(entries, 1):
-        try:
-            key, fault = _fault(entry)
-        except (TypeError, ValueError) as error:
-            raise WorldError(f"{path}: entry {number} under `script`: {error}") from error
-        script[key] = fault
-    return script
-
-
-def _fault(entry: Any) -> tuple[tuple[str, int], ScriptedFault]:
-    known = {"action", "attempt", "fails", "then"}
-    if not isinstance(entry, dict) or not isinstance(entry.get("action"), str):
-        raise TypeError("expected `action: (name object …)`")
-    if not set(entry) <= known:
-        raise ValueError(f"unknown field; known: {', '.join(sorted(known))}")
-    then = entry.get("then") or {}
-    if not isinstance(then, dict) or not set(then) <= {"add", "delete"}:
-        raise ValueError("`then` has only the lists `add` and `delete`")
-    attempt = entry.get("attempt", 1)
-    if not isinstance(attempt, int) or attempt < 1:
-        raise ValueError(f"`attempt` is {attempt!r}; attempts count from 1")
-    return (Atom.parse(entry["action"]).pddl(), attempt), ScriptedFault(
-        bool(entry.get("fails", False)),
-        frozenset(map(Atom.parse, then.get("add") or ())),
-        frozenset(map(Atom.parse, then.get("delete") or ())),
-    )
+    def close(self) -> None:
+        """Say which entries of the script never came to pass."""
+        attempts = self.simulation.attempts
+        script, self._script = self._script, {}
+        for (action, attempt), fault in script.items() if attempts else ():
+            if attempts[action] < attempt:
+                tried = f"was tried {attempts[action]} times" if attempts[action] else "never came"
+                _LOG.warning(
+                    "%s: attempt %d of %s did not take place: the action %s",
+                    *(fault.place, attempt, action, tried),
+                )

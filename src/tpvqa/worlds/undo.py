@@ -1,63 +1,10 @@
 """What a disturbance can undo, and what holds instead."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tpvqa.pddl import Atom, State, Task
-
-Binding = Mapping[str, str]
-
-
-@dataclass(frozen=True, slots=True)
-class Pattern:
-    """An atom with variables; a variable may name the type its object must have."""
-
-    predicate: str
-    terms: tuple[str, ...]
-    types: tuple[str | None, ...]
-
-    @staticmethod
-    def parse(text: str) -> "Pattern":
-        """Read `(on ?x ?d - dish)`.
-
-        Raises:
-            ValueError: The text is not an atom.
-        """
-        words = text.strip().lower().replace("(", " ").replace(")", " ").split()
-        if not words:
-            raise ValueError(f"{text!r} is not an atom; write it as (predicate ?x …)")
-        terms: list[str] = []
-        types: list[str | None] = []
-        rest = iter(words[1:])
-        for word in rest:
-            if word == "-":
-                kind = next(rest, None)
-                if kind is None or not terms:
-                    raise ValueError(f"{text!r}: a type must follow a variable and a dash")
-                types[-1] = kind
-            else:
-                terms.append(word)
-                types.append(None)
-        return Pattern(words[0], tuple(terms), tuple(types))
-
-    def match(self, atom: Atom, binding: Binding, task: Task) -> dict[str, str] | None:
-        """The binding under which it is this atom; None where there is none."""
-        if atom.predicate != self.predicate or len(atom.arguments) != len(self.terms):
-            return None
-        bound = dict(binding)
-        for term, kind, value in zip(self.terms, self.types, atom.arguments, strict=True):
-            if kind is not None and value not in task.objects_by_type.get(kind, ()):
-                return None
-            if not term.startswith("?"):
-                if term != value:
-                    return None
-            elif bound.setdefault(term, value) != value:
-                return None
-        return bound
-
-    def ground(self, binding: Binding) -> Atom:
-        """The atom under a binding of all its variables."""
-        return Atom(self.predicate, tuple(binding.get(term, term) for term in self.terms))
+from tpvqa.pddl.pattern import Binding, Pattern
 
 
 def bindings(

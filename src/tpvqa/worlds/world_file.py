@@ -1,17 +1,15 @@
 """World files: how a domain behaves where it is simulated."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
 
-import yaml
-
-from tpvqa.errors import WorldError
+from tpvqa.errors import PDDLError, WorldFileError, suggestion, suggestion_or_list
 from tpvqa.pddl import Action, State, Task
-from tpvqa.worlds.undo import Outcome, Pattern, UndoRule
-
-R = TypeVar("R")
+from tpvqa.pddl.pattern import Pattern, check_together
+from tpvqa.worlds.stated import stated_pattern
+from tpvqa.worlds.undo import Outcome, UndoRule
+from tpvqa.yaml_places import Place, read_yaml
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,89 +59,82 @@ def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
     """Read a world file; without one nothing can be undone.
 
     Raises:
-        WorldError: The file is missing or broken; the message names the place.
+        WorldFileError: The file is missing or broken, or does not fit the task; with file and
+            line.
     """
-    if path is None:
-        return WorldRules()
-    try:
-        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise WorldError(f"{path}: cannot be read ({error.strerror})") from error
-    except yaml.YAMLError as error:
-        raise WorldError(f"{path}: not valid YAML: {error}") from error
-    if not isinstance(document, dict) or not set(document) <= {"undo", "rebind"}:
-        raise WorldError(f"{path}: expected the lists `undo` and `rebind`, and nothing else")
+    root = None if path is None else read_yaml(Path(path), WorldFileError)
+    sections = {} if root is None else root.sections("undo", "rebind")
     return WorldRules(
-        undo=tuple(_each(document, "undo", path, lambda entry: _undo_rule(entry, task))),
-        rebind=tuple(_each(document, "rebind", path, lambda entry: _rebinding(entry, task))),
+        undo=tuple(_undo_rule(entry, task) for entry in _items(sections, "undo")),
+        rebind=tuple(_rebinding(entry, task) for entry in _items(sections, "rebind")),
     )
 
 
-def _each(
-    document: dict[str, Any], field: str, path: Path | str, read: Callable[[Any], R]
-) -> Iterator[R]:
-    entries = document.get(field) or []
-    if not isinstance(entries, list):
-        raise WorldError(f"{path}: expected a list under `{field}:`")
-    for number, entry in enumerate(entries, 1):
-        try:
-            yield read(entry)
-        except (ValueError, TypeError) as error:
-            raise WorldError(f"{path}: entry {number} under `{field}`: {error}") from error
+def _items(sections: Mapping[str, Place], name: str) -> list[Place]:
+    return list(sections[name].items()) if name in sections else []
 
 
-def _rebinding(entry: Any, task: Task) -> Rebinding:
-    if not isinstance(entry, dict) or set(entry) != {"action", "argument", "to"}:
-        raise ValueError("expected the fields `action`, `argument` and `to`")
-    schema = next((each for each in task.schemas if each.name == entry["action"]), None)
-    if schema is None:
-        raise ValueError(f"the domain has no action {entry['action']!r}")
-    names = [parameter.name for parameter in schema.parameters]
-    if entry["argument"] not in names:
-        raise ValueError(f"{schema.name} has no argument {entry['argument']!r}: {', '.join(names)}")
-    pattern = _pattern(entry["to"], task)
-    if entry["argument"] not in pattern.terms:
-        raise ValueError(f"`to` must speak of {entry['argument']}")
-    return Rebinding(schema.name, tuple(names), entry["argument"], pattern)
+def _rebinding(entry: Place, task: Task) -> Rebinding:
+    parts = entry.sections("action", "argument", "to")
+    if len(parts) < 3:
+        raise entry.wrong("an entry needs 'action', 'argument' and 'to'")
+    name = parts["action"].text().lower()
+    schemas = {schema.name: schema for schema in task.schemas}
+    if name not in schemas:
+        raise parts["action"].wrong(
+            f"the domain has no action {name!r}{suggestion_or_list(name, schemas)}"
+        )
+    names = [parameter.name for parameter in schemas[name].parameters]
+    argument = parts["argument"].text().lower()
+    if argument not in names:
+        raise parts["argument"].wrong(
+            f"{name} has no parameter {argument!r}{suggestion_or_list(argument, names)}"
+        )
+    pattern = stated_pattern(parts["to"], task)
+    if argument not in pattern.variables:
+        raise parts["to"].wrong(f"{pattern} does not speak of {argument}, which it is to give")
+    return Rebinding(name, tuple(names), argument, pattern)
 
 
-def _undo_rule(entry: Any, task: Task) -> UndoRule:
-    if not isinstance(entry, dict) or not isinstance(entry.get("fact"), str):
-        raise ValueError("expected `fact: (predicate ?x …)` and a list of `outcomes`")
-    outcomes = entry.get("outcomes")
-    if not isinstance(outcomes, list) or not outcomes:
-        raise ValueError(f"{entry['fact']} has no `outcomes`")
-    return UndoRule(
-        _pattern(entry["fact"], task), tuple(_outcome(outcome, task) for outcome in outcomes)
-    )
+def _undo_rule(entry: Place, task: Task) -> UndoRule:
+    parts = entry.sections("fact", "outcomes")
+    outcomes = _items(parts, "outcomes")
+    if "fact" not in parts or not outcomes:
+        raise entry.wrong("an entry needs 'fact', e.g. fact: (opened ?c), and a list of 'outcomes'")
+    fact = stated_pattern(parts["fact"], task)
+    return UndoRule(fact, tuple(_outcome(outcome, fact, task) for outcome in outcomes))
 
 
-def _outcome(entry: Any, task: Task) -> Outcome:
-    fields = {"say", "last", "when", "unless", "add", "delete"}
-    if not isinstance(entry, dict) or not set(entry) <= fields:
-        raise ValueError(f"an outcome has only the fields {', '.join(sorted(fields))}")
+def _outcome(entry: Place, fact: Pattern, task: Task) -> Outcome:
+    parts = entry.sections("say", "last", "when", "unless", "add", "delete")
 
-    def patterns(name: str) -> tuple[Pattern, ...]:
-        return tuple(_pattern(text, task) for text in entry.get(name) or ())
+    def patterns(name: str, *before: Pattern, bound: bool = False) -> tuple[Pattern, ...]:
+        found: list[Pattern] = []
+        for place in parts[name].texts() if name in parts else ():
+            pattern = stated_pattern(place, task)
+            known = frozenset[str]().union(*(each.variables for each in before))
+            if bound and not pattern.variables <= known:
+                unbound = min(pattern.variables - known)
+                raise place.wrong(
+                    f"{pattern}: nothing says what {unbound} stands for"
+                    f"{suggestion(unbound, known)} 'fact', 'last' and 'when' bind variables"
+                )
+            try:
+                check_together((*before, *found, pattern), task)
+            except PDDLError as error:
+                raise place.wrong(error.message) from None
+            found.append(pattern)
+        return tuple(found)
 
-    last = entry.get("last")
+    last = patterns("last", fact)
+    if len(last) > 1:
+        raise parts["last"].wrong("expected one fact")
+    when = patterns("when", fact, *last)
     return Outcome(
-        say=str(entry.get("say", "it is undone")),
-        last=None if last is None else _pattern(last, task),
-        when=patterns("when"),
-        unless=patterns("unless"),
-        add=patterns("add"),
-        delete=patterns("delete"),
+        say=parts["say"].text() if "say" in parts else "it is undone",
+        last=last[0] if last else None,
+        when=when,
+        unless=patterns("unless", fact, *last),
+        add=patterns("add", fact, *last, *when, bound=True),
+        delete=patterns("delete", fact, *last, *when, bound=True),
     )
-
-
-def _pattern(text: Any, task: Task) -> Pattern:
-    if not isinstance(text, str):
-        raise TypeError(f"{text!r} is not an atom; write it as (predicate ?x …)")
-    pattern = Pattern.parse(text)
-    if pattern.predicate not in task.predicates:
-        raise ValueError(f"{text}: the domain has no predicate {pattern.predicate!r}")
-    arity = len(task.predicates[pattern.predicate])
-    if len(pattern.terms) != arity:
-        raise ValueError(f"{text}: {pattern.predicate} takes {arity} objects")
-    return pattern

@@ -1,10 +1,11 @@
 """One self-contained HTML page about an episode: pictures, questions, answers, decisions."""
 
 import base64
+from contextlib import suppress
 from pathlib import Path
 
 from tpvqa.episodes.events import Event, FrameRecord
-from tpvqa.episodes.log import read_episode
+from tpvqa.episodes.log import episode_folder, read_episode
 from tpvqa.episodes.report.story import Story, tell
 from tpvqa.errors import EpisodeError
 
@@ -15,7 +16,7 @@ def write_report(folder: Path | str, out: Path | str | None = None) -> Path:
     """Write the page; it needs nothing beside it.
 
     Args:
-        folder: The episode's folder.
+        folder: The episode's folder, or its `episode.jsonl`.
         out: The file to write; `report.html` in the folder by default.
 
     Returns:
@@ -24,14 +25,18 @@ def write_report(folder: Path | str, out: Path | str | None = None) -> Path:
     Raises:
         EpisodeError: There is no episode, or the page cannot be written.
     """
-    folder = Path(folder)
+    folder = episode_folder(folder)
     path = folder / "report.html" if out is None else Path(out)
+    if path.is_dir():
+        raise EpisodeError(f"{path} is a folder; name the file to write, e.g. {path}/report.html")
     page = render_report(read_episode(folder), folder)
     temporary = path.with_name(path.name + ".part")
     try:
         temporary.write_text(page, encoding="utf-8")
         temporary.replace(path)
     except OSError as error:
+        with suppress(OSError):
+            temporary.unlink()
         raise EpisodeError(f"{path}: cannot be written ({error.strerror})") from error
     return path
 

@@ -1,6 +1,6 @@
 """Mutex groups worth telling about, and the proof of which hold exactly one atom."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from itertools import product
 from typing import Any
 
@@ -31,7 +31,7 @@ def described_groups(
         state: Its fluent atoms.
     """
     kept: list[Group] = []
-    for atoms, exactly_one in sorted(_laws(task), key=_size):
+    for atoms, exactly_one in sorted(_laws(task, grounding.atoms), key=_size):
         if not any(atoms <= other and (one or not exactly_one) for other, one in kept):
             kept.append((atoms, exactly_one))
     proved = [atoms for atoms, exactly_one in kept if exactly_one]
@@ -46,27 +46,38 @@ def _size(group: Group) -> tuple[int, list[AtomKey]]:
     return -len(group[0]), sorted(group[0])
 
 
-def _laws(task: Any) -> Iterator[Group]:
+def _laws(task: Any, reachable: Set[AtomKey]) -> Iterator[Group]:
     objects = get_objects_by_type(task.objects, task.types)
     for invariant in invariant_finder.find_invariants(task, None):
         exactly_one = all(_balances(action, invariant) for action in task.actions)
         for parts in invariant_finder.useful_groups([invariant], task.init):
-            atoms = frozenset(key for part in parts for key in _expanded(part, task, objects))
+            atoms = frozenset(
+                key for part in parts for key in _expanded(part, task, objects, reachable)
+            )
             if len(atoms) > 1 and any(_adds(action, parts, objects) for action in task.actions):
                 yield atoms, exactly_one
 
 
-def _expanded(part: Any, task: Any, objects: dict[str, list[str]]) -> Iterator[AtomKey]:
-    """The atoms of a part of a group, with every object of a fitting type counted."""
+def _expanded(
+    part: Any, task: Any, objects: dict[str, list[str]], reachable: Set[AtomKey]
+) -> Iterator[AtomKey]:
+    """The atoms of a part of a group, with every object of a fitting type counted.
+
+    The arguments that are not counted come from another predicate of the group, so they need not
+    fit this one.
+    """
     predicate = next(entry for entry in task.predicates if entry.name == part.predicate)
-    choices = []
+    choices, fits = [], True
     for argument, parameter in zip(part.args, predicate.arguments, strict=True):
         kinds = parameter.type_name
         kinds = kinds[1:] if isinstance(kinds, list) else [kinds]
         fitting = dict.fromkeys(name for kind in kinds for name in objects.get(kind, ()))
         choices.append(list(fitting) if argument == _COUNTED else [argument])
+        fits &= argument == _COUNTED or argument in fitting or "object" in kinds
     for arguments in product(*choices):
-        yield (part.predicate, *arguments)
+        key = (part.predicate, *arguments)
+        if fits or key in reachable:
+            yield key
 
 
 def _adds(action: Any, parts: Sequence[Any], objects: dict[str, list[str]]) -> bool:

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from tpvqa.pddl.lines import lines_of
+
 _DEEPEST = 150
 
 
@@ -33,7 +35,7 @@ class LispError(Exception):
 
 
 def _words(text: str) -> Iterator[Word]:
-    for number, raw in enumerate(text.splitlines(), start=1):
+    for number, raw in enumerate(lines_of(text), start=1):
         code = raw.split(";", 1)[0]
         if not code.isascii():
             strange = next(letter for letter in code if not letter.isascii())

@@ -1,14 +1,15 @@
 """Two PDDL texts → the translator's task, and errors that say where and what was expected."""
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from types import TracebackType
 from typing import Any
 
 from fast_downward.translate import pddl
+from fast_downward.translate.instantiate import get_objects_by_type
 from fast_downward.translate.pddl_parser import parsing_functions
 from fast_downward.translate.pddl_parser.parse_error import ParseError
 
+from tpvqa.errors import suggestion_or_list
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
 
 
@@ -73,6 +74,7 @@ def read(domain_text: str, problem_text: str) -> Any:
             line,
         ) from None
     _check_types(task, blocks)
+    _check_facts(task)
     _check_derived(task)
     _check_names(task)
     _check_costs(task)
@@ -89,11 +91,11 @@ def _explained(error: _LocatedError, blocks: dict[str, Block]) -> ReadingError:
     message = " ".join(error.message.replace("Reason: ", "").split()).rstrip(".")
     if error.item is not None and not isinstance(error.item, ParseError):
         message += f": got {_shown(error.item)}"
-    message += _names_that_exist(error)
     if error.syntax:
         message += f"; expected {error.syntax}"
     if layers:
         message += f" [in {layers}]"
+    message += _names_that_exist(error)
     part, line = _innermost(error.__traceback__)
     if "does not match the name specified" in error.message:
         part, line = _find(":domain", blocks)
@@ -125,10 +127,7 @@ def _names_that_exist(error: _LocatedError) -> str:
             known = set(names.get("predicate_dict", known))
         trace = trace.tb_next
     names = sorted(str(name) for name in known)
-    near = get_close_matches(error.item, names, n=1)
-    if near:
-        return f" (did you mean {near[0]!r}?)"
-    return f"; expected one of: {', '.join(names[:12])}" if names else ""
+    return suggestion_or_list(error.item, names) if names else ""
 
 
 def _innermost(trace: TracebackType | None) -> tuple[str, int | None]:
@@ -176,14 +175,41 @@ def _check_types(task: Any, blocks: dict[str, Block]) -> None:
         for name in names:
             if name not in known:
                 part, line = _find(name, blocks)
-                near = get_close_matches(name, sorted(known), n=1)
-                hint = f" (did you mean {near[0]!r}?)" if near else ""
                 raise ReadingError(
-                    f"the type {str(name)!r} of {str(entry.name)!r} is not declared{hint}; expected"
-                    f" one of: {', '.join(sorted(known))}",
+                    f"the type {str(name)!r} of {str(entry.name)!r} is not declared"
+                    + suggestion_or_list(name, known),
                     part,
                     line_of(name) or line,
                 )
+
+
+def _check_facts(task: Any) -> None:
+    """The translator takes objects of any type in the initial state and in the goal."""
+    members = get_objects_by_type(task.objects, task.types)
+    types = {thing.name: thing.type_name for thing in task.objects}
+    declared = {predicate.name: predicate.arguments for predicate in task.predicates}
+    stated = [fact for fact in task.init if isinstance(fact, pddl.Atom)]
+    for fact in (*stated, *_literals(task.goal)):
+        for name, parameter in zip(fact.args, declared[fact.predicate], strict=True):
+            kind = parameter.type_name
+            kinds = kind[1:] if isinstance(kind, list) else [kind]
+            # Types need not be declared below `object`, which takes all the same.
+            fits = any(each == "object" or name in members[each] for each in kinds)
+            if name in types and not fits:
+                raise ReadingError(
+                    f"({' '.join((fact.predicate, *fact.args))}): {str(name)!r} is a "
+                    f"{types[name]}, but {parameter.name} of {fact.predicate} must be a "
+                    f"{' or a '.join(kinds)}",
+                    "problem",
+                    line_of(name) or line_of(fact.predicate),
+                )
+
+
+def _literals(condition: Any) -> Iterable[Any]:
+    if isinstance(condition, pddl.Literal):
+        yield condition
+    for part in condition.parts:
+        yield from _literals(part)
 
 
 def _check_derived(task: Any) -> None:

@@ -1,21 +1,28 @@
-"""YAML whose every value knows its line."""
+"""YAML whose every value knows its line, for files that users write."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 
 import yaml
 
-from tpvqa.errors import QuestionsError
+from tpvqa.errors import PlacedError, suggestion
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A value in a YAML file, read by what it should be. Errors carry file and line."""
+    """A value in a YAML file, read by what it should be.
+
+    Attributes:
+        file: The file.
+        node: The value.
+        error: What is raised where it is wrong, with file and line.
+        path: Where in the file it stands, e.g. `actions.place`.
+    """
 
     file: str
     node: yaml.Node
+    error: type[PlacedError]
     path: str = ""
 
     @property
@@ -23,10 +30,10 @@ class Place:
         """The line it starts in, counted from 1."""
         return int(self.node.start_mark.line) + 1
 
-    def wrong(self, message: str) -> QuestionsError:
+    def wrong(self, message: str) -> PlacedError:
         """An error about this value, to raise."""
         where = f"{self.path}: " if self.path else ""
-        return QuestionsError(where + message, file=self.file, line=self.line)
+        return self.error(where + message, file=self.file, line=self.line)
 
     def text(self) -> str:
         """The value as text, white space evened out."""
@@ -37,6 +44,20 @@ class Place:
             found = repr(said) if said else "nothing"
             raise self.wrong(f"expected text, found {found}; write it in quotes")
         return said
+
+    def truth(self) -> bool:
+        """The value as true or false."""
+        said = str(self.node.value).lower()
+        if self.node.tag != "tag:yaml.org,2002:bool":
+            raise self.wrong(f"expected true or false, found {_kind(self.node)}")
+        return said in ("true", "yes", "on")
+
+    def count(self) -> int:
+        """The value as a number of 1, 2, 3, …"""
+        said = str(self.node.value) if isinstance(self.node, yaml.ScalarNode) else ""
+        if len(said) > 9 or not said.isdecimal() or int(said) == 0:
+            raise self.wrong(f"expected a number that counts from 1, found {_kind(self.node)}")
+        return int(said)
 
     def is_text(self) -> bool:
         """Whether it is a single value, not a list or a mapping."""
@@ -54,7 +75,7 @@ class Place:
             raise self.wrong(f"expected 'name: value' entries, found {_kind(self.node)}")
         found: dict[str, tuple[str, Place, Place]] = {}
         for key, value in self.node.value:
-            place = Place(self.file, key, self.path)
+            place = Place(self.file, key, self.error, self.path)
             if not isinstance(key, yaml.ScalarNode):
                 raise place.wrong("expected a name before the colon")
             # As written: YAML itself would read the predicate `on` as the truth value "true".
@@ -63,7 +84,7 @@ class Place:
                 first = found[name][1].line
                 raise place.wrong(f"{name!r} is given twice, first in line {first}")
             path = f"{self.path}.{name}" if self.path else name
-            found[name] = (name, place, Place(self.file, value, path))
+            found[name] = (name, place, Place(self.file, value, self.error, path))
         return list(found.values())
 
     def sections(self, *known: str) -> "dict[str, Place]":
@@ -72,7 +93,7 @@ class Place:
         for name, place, value in self.entries():
             if name not in known:
                 raise place.wrong(
-                    f"{name!r} is not known here{did_you_mean(name, known)} "
+                    f"{name!r} is not known here{suggestion(name, known)} "
                     f"Known: {', '.join(known)}."
                 )
             sections[name] = value
@@ -85,40 +106,48 @@ class Place:
         if not isinstance(self.node, yaml.SequenceNode):
             raise self.wrong(f"expected a list with dashes, found {_kind(self.node)}")
         for at, item in enumerate(self.node.value, start=1):
-            yield Place(self.file, item, f"{self.path}[{at}]")
+            yield Place(self.file, item, self.error, f"{self.path}[{at}]")
 
 
-def read_yaml(path: Path) -> Place | None:
+def read_yaml(path: Path, error: type[PlacedError]) -> Place | None:
     """Read a file; None where it is empty.
 
+    Args:
+        path: The file.
+        error: What is raised, also later, where something in it is wrong.
+
     Raises:
-        QuestionsError: It cannot be read or is not YAML.
+        PlacedError: It cannot be read or is not YAML.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise QuestionsError(f"cannot be read ({error.strerror})", file=path) from error
-    except UnicodeDecodeError as error:
-        raise QuestionsError("is not UTF-8 text", file=path) from error
+    text = _decoded(path, error)
     try:
         node = yaml.compose(text, Loader=yaml.SafeLoader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
+    except yaml.MarkedYAMLError as broken:
+        mark = broken.problem_mark or broken.context_mark
         line = None if mark is None else mark.line + 1
-        what = error.problem or error.context or "it cannot be read"
-        raise QuestionsError(f"broken YAML: {what}", file=path, line=line) from error
-    except yaml.reader.ReaderError as error:
-        line = text.count("\n", 0, error.position) + 1
-        raise QuestionsError(f"broken YAML: {error.reason}", file=path, line=line) from error
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise QuestionsError(f"broken YAML: {error}", file=path) from error
-    return None if node is None or _is_empty(node) else Place(str(path), node)
+        what = broken.problem or broken.context or "it cannot be read"
+        raise error(f"broken YAML: {what}", file=path, line=line) from broken
+    except yaml.reader.ReaderError as broken:
+        line = text.count("\n", 0, broken.position) + 1
+        raise error(f"broken YAML: {broken.reason}", file=path, line=line) from broken
+    except (yaml.YAMLError, RecursionError, ValueError) as broken:
+        raise error(f"broken YAML: {broken}", file=path) from broken
+    return None if node is None or _is_empty(node) else Place(str(path), node, error)
 
 
-def did_you_mean(name: str, known: "list[str] | tuple[str, ...]") -> str:
-    """A sentence's end that suggests the nearest known name."""
-    near = get_close_matches(name, known, n=1)
-    return f". Did you mean {near[0]!r}?" if near else "."
+def _decoded(path: Path, error: type[PlacedError]) -> str:
+    try:
+        data = path.read_bytes()
+    except OSError as failed:
+        raise error(f"cannot be read ({failed.strerror})", file=path) from failed
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as strange:
+        raise error(
+            f"the byte 0x{data[strange.start]:02x} is not UTF-8 text; save the file as UTF-8",
+            file=path,
+            line=data.count(b"\n", 0, strange.start) + 1,
+        ) from strange
 
 
 def _is_empty(node: yaml.Node) -> bool:

@@ -1,0 +1,75 @@
+"""World files: what is wrong in them is said, with its line."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.pddl.feature_domains import DERIVED
+from tpvqa.errors import WorldFileError
+from tpvqa.pddl import Task, load_task, task_from_text
+from tpvqa.worlds.world_file import load_world_file
+
+UNDO = "undo:\n  - fact: (in_hand ?x ?h)\n    outcomes:\n      - "
+REBIND = "rebind:\n  - action: find\n    argument: ?from\n    to: (near ?from)"
+
+
+@pytest.fixture(scope="module")
+def task() -> Task:
+    return load_task("eat_apple")
+
+
+def test_what_is_written_well_is_read(task: Task, tmp_path: Path) -> None:
+    path = tmp_path / "world.yaml"
+    path.write_text(f'{UNDO}add: "(on ?x floor)"\n{REBIND}\n')
+    rules = load_world_file(path, task)
+    ((outcome,),) = (rule.outcomes for rule in rules.undo)
+    assert [str(pattern) for pattern in outcome.add] == ["(on ?x floor)"]
+    assert rules.rebind[0].argument == "?from"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "says"),
+    [
+        (UNDO + 'add: ["(on ?y floor)"]', 4, "nothing says what ?y stands for"),
+        (UNDO + 'add: ["(on ?x flor)"]', 4, "no object 'flor'. Did you mean 'floor'?"),
+        (UNDO + 'add: ["(onn ?x floor)"]', 4, "no predicate 'onn'. Did you mean 'on'?"),
+        (UNDO + 'add: ["(on ?x)"]', 4, "on takes 2 objects (thing, thing), this has 1"),
+        (UNDO + 'add: ["(on ?h floor)"]', 4, "?h must be a thing here"),
+        (UNDO + 'add: ["(on left floor)"]', 4, "left is a hand, but on takes a thing there"),
+        (UNDO + 'when: ["(on ?x ?d - dsh)"]', 4, "no type 'dsh'. Did you mean 'dish'?"),
+        (UNDO + 'when: ["(on ?x ?d - hand)"]', 4, "?d can be no hand, as on takes a thing there"),
+        (UNDO + 'delete: ["(on ?x"]', 4, "not a fact"),
+        (UNDO + 'last: ["(near ?x)", "(near ?x)"]', 4, "expected one fact"),
+        (UNDO + "ad: (on ?x floor)", 4, "'ad' is not known here. Did you mean 'add'?"),
+        (UNDO + "say: [it]", 4, "expected text"),
+        ("undo:\n  - fact: (opened ?c)", 2, "a list of 'outcomes'"),
+        ("undo: 3", 1, "expected a list"),
+        ("rebind:\n  - action: find", 2, "needs 'action', 'argument' and 'to'"),
+        (REBIND.replace("find", "fnd"), 2, "no action 'fnd'. Did you mean 'find'?"),
+        (REBIND.replace("argument: ?from", "argument: ?fro"), 3, "Did you mean '?from'?"),
+        (REBIND.replace("(near ?from)", "(near ?x)"), 4, "does not speak of ?from"),
+        ("undo: [", 1, "broken YAML"),
+        ("# k\xfcche\nundo: []".encode("latin-1"), 1, "the byte 0xfc is not UTF-8"),
+    ],
+)  # fmt: skip
+def test_a_broken_file_is_a_clear_error_with_its_line(
+    task: Task, tmp_path: Path, text: str | bytes, line: int, says: str
+) -> None:
+    path = tmp_path / "world.yaml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(WorldFileError) as caught:
+        load_world_file(path, task)
+    assert str(caught.value).startswith(f"{path}:{line}: ")
+    assert says in str(caught.value)
+
+
+def test_derived_facts_cannot_be_undone(tmp_path: Path) -> None:
+    path = tmp_path / "world.yaml"
+    path.write_text("undo:\n  - fact: (clear ?x)\n    outcomes: [{say: it ends}]")
+    with pytest.raises(WorldFileError, match=r":2: .*clear is derived"):
+        load_world_file(path, task_from_text(DERIVED.domain, DERIVED.problem))
+
+
+def test_a_missing_file(task: Task, tmp_path: Path) -> None:
+    with pytest.raises(WorldFileError, match="cannot be read"):
+        load_world_file(tmp_path / "gone.yaml", task)
