@@ -4,7 +4,7 @@ import time
 from typing import Any
 
 from tpvqa.errors import PDDLError, PlannerError
-from tpvqa.pddl import State, Task, validate
+from tpvqa.pddl import State, Task, literals, validate
 from tpvqa.pddl.loading import to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
 from tpvqa.pddl.time_limit import limit_of
@@ -104,9 +104,19 @@ class FastDownward:
         if outcome["kind"] == "timeout":
             return TimedOut(limit or 0.0, self.name, seconds)
         if outcome["kind"] == "unsolvable":
-            return Unsolvable(outcome["reason"], self.name, seconds)
+            return Unsolvable(outcome["reason"] + _hint(task), self.name, seconds)
         return Crashed(outcome["reason"], self.name, seconds)
 
     def close(self) -> None:
         """End the idle worker processes. Planning again starts new ones."""
         WORKERS.close()
+
+
+def _hint(task: Task) -> str:
+    """What may be wrong with a goal that cannot be reached."""
+    for literal in literals(task.goal):
+        try:
+            task.check_atom(literal.atom)
+        except PDDLError as error:
+            return f". In the goal, {error}"
+    return ""

@@ -5,7 +5,6 @@ from types import TracebackType
 from typing import Any
 
 from fast_downward.translate import pddl
-from fast_downward.translate.instantiate import get_objects_by_type
 from fast_downward.translate.pddl_parser import parsing_functions
 from fast_downward.translate.pddl_parser.parse_error import ParseError
 
@@ -74,7 +73,6 @@ def read(domain_text: str, problem_text: str) -> Any:
             line,
         ) from None
     _check_types(task, blocks)
-    _check_facts(task)
     _check_derived(task)
     _check_names(task)
     _check_costs(task)
@@ -181,35 +179,6 @@ def _check_types(task: Any, blocks: dict[str, Block]) -> None:
                     part,
                     line_of(name) or line,
                 )
-
-
-def _check_facts(task: Any) -> None:
-    """The translator takes objects of any type in the initial state and in the goal."""
-    members = get_objects_by_type(task.objects, task.types)
-    types = {thing.name: thing.type_name for thing in task.objects}
-    declared = {predicate.name: predicate.arguments for predicate in task.predicates}
-    stated = [fact for fact in task.init if isinstance(fact, pddl.Atom)]
-    for fact in (*stated, *_literals(task.goal)):
-        for name, parameter in zip(fact.args, declared[fact.predicate], strict=True):
-            kind = parameter.type_name
-            kinds = kind[1:] if isinstance(kind, list) else [kind]
-            # Types need not be declared below `object`, which takes all the same.
-            fits = any(each == "object" or name in members[each] for each in kinds)
-            if name in types and not fits:
-                raise ReadingError(
-                    f"({' '.join((fact.predicate, *fact.args))}): {str(name)!r} is a "
-                    f"{types[name]}, but {parameter.name} of {fact.predicate} must be a "
-                    f"{' or a '.join(kinds)}",
-                    "problem",
-                    line_of(name) or line_of(fact.predicate),
-                )
-
-
-def _literals(condition: Any) -> Iterable[Any]:
-    if isinstance(condition, pddl.Literal):
-        yield condition
-    for part in condition.parts:
-        yield from _literals(part)
 
 
 def _check_derived(task: Any) -> None:
