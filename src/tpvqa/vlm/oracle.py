@@ -134,14 +134,19 @@ class Oracle:
                 source="oracle",
                 text="A noise model knows only facts and actions of the task.",
             )
-        yes = self._yes(look, question.text, truth=truth)
+        accuracy = self.accuracy_of(question)
+        yes = self._yes(look, question.text, accuracy, truth=truth)
         return Answer(
             question=question,
             reply=Reply.YES if yes else Reply.NO,
-            p_yes=self.accuracy if yes else 1 - self.accuracy,
+            p_yes=accuracy if yes else 1 - accuracy,
             source="oracle",
             text="yes" if yes else "no",
         )
+
+    def accuracy_of(self, question: Question) -> float:
+        """The probability that a fresh answer to a question is right."""
+        return self.accuracy
 
     def _true_answer(self, question: Question) -> bool | None:
         if question.atom is not None:
@@ -154,12 +159,12 @@ class Oracle:
             return self._truth.successful(question.action)
         return None
 
-    def _yes(self, look: int, text: str, *, truth: bool) -> bool:
+    def _yes(self, look: int, text: str, accuracy: float, *, truth: bool) -> bool:
         last = self._last.get(text)
         if last is not None and last.look == look:
             return last.yes
         key = (text, truth, look)
-        right = chance(self._seed, self._episode, "answer", *key).random() < self.accuracy
+        right = chance(self._seed, self._episode, "answer", *key).random() < accuracy
         yes = truth if right else not truth
         if last is not None and last.truth == truth:
             again = chance(self._seed, self._episode, "answer again", *key).random()

@@ -1,0 +1,110 @@
+"""The recorded answers of real VLMs, in counts.
+
+Recorded by the ViPlan benchmark (Merler et al. 2025, MIT licence, `LICENSE` beside this file), runs
+without chain of thought; made compact by `tools/compact_answers.py`.
+"""
+
+import gzip
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+from tpvqa.errors import AnswerError, UnknownNameError
+
+ENOUGH = 30
+"""Answers of one predicate from which it is drawn by itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """How often an answer was given."""
+
+    yes: bool
+    p_yes: float
+    count: int
+
+
+Key = tuple[str, str, bool]
+"""Kind of question ("precondition" or "effect"), predicate ("" for all), truth."""
+
+
+@dataclass(frozen=True)
+class Recordings:
+    """What one model answered in one environment.
+
+    Attributes:
+        model: Its name.
+        environment: "blocksworld" or "igibson", never both: the same model is right in .965 of
+            the one and in .362 of the other.
+        by_kind: Its answers.
+    """
+
+    model: str
+    environment: str
+    by_kind: Mapping[Key, tuple[Recording, ...]]
+
+    def of(self, kind: str, predicate: str, *, truth: bool) -> tuple[Recording, ...]:
+        """The answers to a kind of question: of the predicate where there are enough, else of
+        all."""
+        own = self.by_kind.get((kind, predicate, truth), ())
+        if sum(recording.count for recording in own) >= ENOUGH:
+            return own
+        return self.by_kind.get((kind, "", truth), ())
+
+
+@cache
+def models() -> dict[str, tuple[str, ...]]:
+    """The environments of each recorded model."""
+    found: dict[str, set[str]] = {}
+    for model, environment, *_ in _rows():
+        found.setdefault(model, set()).add(environment)
+    return {model: tuple(sorted(environments)) for model, environments in sorted(found.items())}
+
+
+@cache
+def recordings(model: str, environment: str, half: int | None = None) -> Recordings:
+    """The answers of a model.
+
+    Args:
+        model: One of `models()`.
+        environment: One of the model's environments.
+        half: Only problems of one half, 0 or 1; None for all.
+
+    Raises:
+        UnknownNameError: There is no such model or environment.
+    """
+    known = models()
+    if model not in known:
+        raise UnknownNameError("recorded model", model, known)
+    if environment not in known[model]:
+        raise UnknownNameError(f"environment recorded of {model}", environment, known[model])
+    counts: dict[Key, dict[tuple[bool, float], int]] = {}
+    for name, where, kind, predicate, truth, part, answer, p_yes, n in _rows():
+        if (name, where) == (model, environment) and half in (None, part):
+            for group in (predicate, ""):
+                told = counts.setdefault((kind, group, bool(truth)), {})
+                told[answer == "yes", p_yes] = told.get((answer == "yes", p_yes), 0) + n
+    return Recordings(
+        model,
+        environment,
+        {
+            key: tuple(Recording(yes, p, n) for (yes, p), n in sorted(told.items()))
+            for key, told in counts.items()
+        },
+    )
+
+
+Row = tuple[str, str, str, str, int, int, str, float, int]
+
+
+@cache
+def _rows() -> tuple[Row, ...]:
+    try:
+        packed = (resources.files(__package__) / "answers.json.gz").read_bytes()
+        return tuple(tuple(row) for row in json.loads(gzip.decompress(packed))["rows"])
+    except (OSError, ValueError, KeyError) as error:
+        raise AnswerError(
+            f"The recorded answers cannot be read ({error}). Install tpvqa again."
+        ) from error
