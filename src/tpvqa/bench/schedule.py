@@ -1,6 +1,6 @@
 """Runs the missing episodes of a bench: in this process, or on Dask's workers."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from tpvqa.bench.cell import Cell
@@ -24,9 +24,9 @@ class Batch:
     episodes: tuple[int, ...]
 
 
-def batches(ledger: Ledger, cells: Sequence[Cell], episodes: int) -> list[Batch]:
+def batches(ledger: Ledger, wanted: Mapping[Cell, int]) -> list[Batch]:
     """What is still to be run, so ordered that all cells grow together."""
-    missing = [(cell, ledger.missing(cell, episodes)) for cell in cells]
+    missing = [(cell, ledger.missing(cell, episodes)) for cell, episodes in wanted.items()]
     most = max((len(numbers) for _, numbers in missing), default=0)
     return [
         Batch(cell, tuple(numbers[first : first + BATCH]))
@@ -38,9 +38,8 @@ def batches(ledger: Ledger, cells: Sequence[Cell], episodes: int) -> list[Batch]
 
 def run_all(
     ledger: Ledger,
-    cells: Sequence[Cell],
+    wanted: Mapping[Cell, int],
     common: TrialConfig,
-    episodes: int,
     *,
     workers: int = 1,
     scheduler: str | None = None,
@@ -52,9 +51,8 @@ def run_all(
 
     Args:
         ledger: Where rows go.
-        cells: What is compared.
+        wanted: How many episodes of each cell.
         common: What all cells share.
-        episodes: How many of each cell.
         workers: Local processes; with one, no other process is started.
         scheduler: Address of a Dask scheduler to use instead.
         done: Told how many episodes have come back, after each batch.
@@ -63,7 +61,7 @@ def run_all(
         MissingExtraError: Dask is needed and not installed.
         BenchError: The scheduler cannot be reached.
     """
-    todo = batches(ledger, cells, episodes)
+    todo = batches(ledger, wanted)
     for batch, rows in _results(todo, common, workers, scheduler):
         ledger.add(rows)
         done(len(batch.episodes))

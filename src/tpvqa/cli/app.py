@@ -6,7 +6,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from tpvqa.cli import dataset, plan, questions, run
+from tpvqa.cli import bench, dataset, plan, questions, run
 from tpvqa.errors import TpvqaError
 
 
@@ -34,6 +34,7 @@ plan.register(app)
 questions.register(app)
 run.register(app)
 dataset.register(app)
+bench.register(app)
 
 
 def main() -> None:
