@@ -66,8 +66,9 @@ class Judge:
 
     def _truth(self, question: Asking) -> bool:
         if question.atom is not None and question.way in _OF_FACTS:
-            atom = Atom.parse(question.atom)
-            return atom in self._simulation.task.extend(self._simulation.state)
+            state = self._simulation.task.extend(self._simulation.state)
+            atoms = (question.atom, *(question.alike or ()))
+            return any(Atom.parse(atom) in state for atom in atoms)
         assert question.action is not None
         action = self._action(question.action)
         if question.way is Way.POSSIBLE:

@@ -120,6 +120,7 @@ class QuestionRecord(BaseModel):
     atom: str | None = None
     action: str | None = None
     expected: bool = True
+    alike: tuple[str, ...] | None = None
 
 
 class Asked(_Event):

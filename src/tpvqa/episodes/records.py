@@ -69,6 +69,7 @@ def question_record(question: Question) -> QuestionRecord:
         atom=None if question.atom is None else question.atom.pddl(),
         action=None if question.action is None else question.action.pddl(),
         expected=question.expected,
+        alike=tuple(atom.pddl() for atom in question.alike) or None,
     )
 
 

@@ -1,6 +1,7 @@
 """The questions of a task: facts and actions put into words."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 from pathlib import Path
 
 from tpvqa.pddl import Action, Atom, Condition, Disjunction, Literal, State, Task, holds, supporting
@@ -33,7 +34,7 @@ class QuestionBook:
         self._predicates, self._actions = parameters_of(task)
         self._questions = dict(wordings.predicates)
         self._say, self._done = dict(wordings.say), dict(wordings.done)
-        self._texts: dict[Atom, str] = {}
+        self._texts: dict[Atom, tuple[str, tuple[Atom, ...]]] = {}
         self._why_not: dict[tuple[Literal, tuple[str, tuple[str, ...]] | None], str | None] = {}
         self._fall_back()
 
@@ -58,11 +59,27 @@ class QuestionBook:
     ) -> Question:
         """The question about a fact; a negative literal expects the answer *no*."""
         atom = literal.atom
-        text = self._texts.get(atom)
-        if text is None:
+        if atom not in self._texts:
             values = dict(zip(self._predicates[atom.predicate], atom.arguments, strict=True))
-            text = self._texts[atom] = self._fill(self._questions[atom.predicate], values)
-        return Question(text, way, atom=atom, action=action, expected=literal.positive)
+            text = self._fill(self._questions[atom.predicate], values)
+            self._texts[atom] = text, self._alike(atom)
+        text, alike = self._texts[atom]
+        return Question(text, way, atom=atom, action=action, expected=literal.positive, alike=alike)
+
+    def _alike(self, atom: Atom) -> tuple[Atom, ...]:
+        """The facts that differ only in objects which the question's words leave out."""
+        said = {place.parameter for place in self._questions[atom.predicate].placeholders()}
+        kinds = self.task.predicates[atom.predicate]
+        choices = [
+            (argument,)
+            if parameter in said
+            else tuple(name for name in self.task.objects if self.task.is_a(name, kind))
+            for argument, parameter, kind in zip(
+                atom.arguments, self._predicates[atom.predicate], kinds, strict=True
+            )
+        ]
+        alike = (Atom(atom.predicate, arguments) for arguments in product(*choices))
+        return tuple(other for other in alike if other != atom)
 
     def asked(self, literal: Literal, action: Action | None = None) -> bool:
         """Whether a literal is asked about (at an action), as a camera can show it."""

@@ -1,5 +1,6 @@
 """A yes/no question about what a picture shows."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -28,6 +29,8 @@ class Question:
         action: The action asked about; None for questions about a fact alone.
         expected: The answer (yes is True) that agrees with the literal the author wrote:
             a negative literal is the positive question with the answer *no* expected.
+        alike: Other facts that the words do not tell from `atom`: asked whether a thing is in a
+            robot's hand, yes is right whichever hand it is in.
     """
 
     text: str
@@ -35,3 +38,10 @@ class Question:
     atom: Atom | None = None
     action: Action | None = None
     expected: bool = True
+    alike: tuple[Atom, ...] = ()
+
+    def true_in(self, holds: Callable[[Atom], bool]) -> bool | None:
+        """Whether yes is right, by whether facts hold; None for questions about actions."""
+        if self.atom is None:
+            return None
+        return holds(self.atom) or any(map(holds, self.alike))

@@ -150,7 +150,7 @@ class Oracle:
 
     def _true_answer(self, question: Question) -> bool | None:
         if question.atom is not None:
-            return self._truth.holds(question.atom)
+            return question.true_in(self._truth.holds)
         if question.action is None:
             return None
         if question.way is Way.POSSIBLE:

@@ -97,7 +97,7 @@ class Recorded:
         predicate = question.atom.predicate
         if self._told.environment == "igibson":
             predicate = COUNTERPART.get(predicate, "")
-        truth = self._truth.holds(question.atom)
+        truth = bool(question.true_in(self._truth.holds))
         choice = self._told.of(kind, predicate, truth=truth)
         if not choice:
             return _silent(question, "No answers to questions of this kind were recorded.")

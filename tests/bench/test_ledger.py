@@ -1,0 +1,50 @@
+"""Finished episodes on disk: never run again, never lost, never mixed with others."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.bench.test_statistics import row
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.ledger import ROWS, Ledger
+from tpvqa.errors import BenchError
+
+CELL = Cell("t", "m", "v", "w")
+
+
+def test_a_killed_bench_knows_what_is_finished(tmp_path: Path) -> None:
+    ledger = Ledger(tmp_path, {"seed": 0})
+    ledger.add([row(episode=0, completed=True), row(episode=2), row(episode=3, error="broke")])
+    ledger.close()
+    with (tmp_path / ROWS).open("ab") as file:
+        file.write(b'{"task": "t", "mon')
+    again = Ledger(tmp_path, {"seed": 0})
+    assert again.missing(CELL, 5) == [1, 3, 4]
+    again.add([row(episode=1), row(episode=3, completed=True)])
+    again.close()
+    last = Ledger(tmp_path, {"seed": 0})
+    assert [each.episode for each in last.of(CELL, 4)] == [0, 1, 2, 3]
+    assert [each.completed for each in last.of(CELL, 4)] == [True, False, False, True]
+
+
+def test_a_bench_with_other_settings_is_not_mixed_in(tmp_path: Path) -> None:
+    Ledger(tmp_path, {"seed": 0, "failure": 0.25}).close()
+    with pytest.raises(BenchError, match=r"seed 0 there, 1 here"):
+        Ledger(tmp_path, {"seed": 1, "failure": 0.25})
+
+
+def test_two_benches_never_write_one_folder(tmp_path: Path) -> None:
+    first = Ledger(tmp_path, {})
+    with pytest.raises(BenchError, match="another bench is at work"):
+        Ledger(tmp_path, {})
+    first.close()
+
+
+def test_a_damaged_row_is_named(tmp_path: Path) -> None:
+    ledger = Ledger(tmp_path, {})
+    ledger.add([row(episode=0)])
+    ledger.close()
+    with (tmp_path / ROWS).open("ab") as file:
+        file.write(b'{"nonsense": 1}\n')
+    with pytest.raises(BenchError, match=r"episodes\.jsonl:2"):
+        Ledger(tmp_path, {})

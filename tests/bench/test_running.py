@@ -1,0 +1,152 @@
+"""Episodes of a bench: common random numbers, any number of workers, kills, errors."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.ledger import ROWS, Ledger
+from tpvqa.bench.schedule import run_all
+from tpvqa.bench.stage import stage
+from tpvqa.trial import TrialConfig
+
+TPVQA = [sys.executable, "-c", "from tpvqa.cli import main; main()"]
+CELLS = [Cell("clean_dishes", m, "oracle:0.8", "symbolic") for m in ("tpvqa", "tp", "palmevqa")]
+
+
+def rows_of(folder: Path) -> dict[tuple[str, str, str, int], dict[str, Any]]:
+    """All rows, without how long they took."""
+    found = {}
+    for line in (folder / ROWS).read_text(encoding="utf-8").splitlines():
+        values = json.loads(line)
+        values.pop("seconds")
+        key = (values["task"], values["monitor"], values["vlm"], values["episode"])
+        assert key not in found, f"{key} was run twice"
+        found[key] = values
+    return found
+
+
+def run(folder: Path, episodes: int, *, workers: int) -> None:
+    ledger = Ledger(folder, {})
+    run_all(ledger, dict.fromkeys(CELLS, episodes), TrialConfig(seed=3), workers=workers)
+    ledger.close()
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("alone")
+    run(folder, 60, workers=1)
+    return folder
+
+
+@pytest.mark.slow
+def test_the_figures_do_not_depend_on_the_workers(alone: Path, tmp_path: Path) -> None:
+    run(tmp_path, 60, workers=2)
+    assert rows_of(tmp_path) == rows_of(alone)
+
+
+@pytest.mark.slow
+def test_a_worker_killed_in_the_middle_changes_nothing(alone: Path, tmp_path: Path) -> None:
+    killed: list[int] = []
+
+    def kill_one(_: int) -> None:
+        if not killed:
+            workers = subprocess.run(
+                ["pgrep", "-P", str(os.getpid()), "-f", "spawn_main"],
+                capture_output=True,
+                text=True,
+                check=False,
+            ).stdout.split()
+            killed.append(int(workers[0]))
+            os.kill(killed[0], signal.SIGKILL)
+
+    ledger = Ledger(tmp_path, {})
+    run_all(ledger, dict.fromkeys(CELLS, 60), TrialConfig(seed=3), workers=2, done=kill_one)
+    ledger.close()
+    assert killed
+    assert rows_of(tmp_path) == rows_of(alone)
+
+
+@pytest.mark.slow
+def test_the_command_killed_in_the_middle_goes_on(tmp_path: Path) -> None:
+    settings = ["bench", "paper", "--tasks", "clean_dishes", "--vlm", "oracle:0.8", "--json"]
+    settings += ["--episodes", "200", "--curve", "0", "--workers", "1"]
+    folder = tmp_path / "killed"
+    process = subprocess.Popen(
+        [*TPVQA, *settings, "--out", folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    while process.poll() is None and not (
+        (folder / ROWS).exists() and (folder / ROWS).stat().st_size > 20_000
+    ):
+        time.sleep(0.005)
+    process.kill()
+    process.wait()
+    before = rows_of(folder)
+    result = subprocess.run(
+        [*TPVQA, *settings, "--out", folder], capture_output=True, text=True, check=True
+    )
+    after = rows_of(folder)
+    assert before.items() <= after.items()
+    table = json.loads(result.stdout)
+    assert [each["episodes"] for each in table] == [200] * 5
+    wanted = "task monitor vlm episodes completed completion_rate ci_low ci_high questions looks"
+    wanted += " actions repeats replans ended_before_first_action errors"
+    assert set(wanted.split()) <= set(table[0])
+    for name in ("report.html", "summary.csv", "summary.parquet", "episodes.parquet"):
+        assert (folder / name).stat().st_size > 500
+
+
+def test_every_monitor_meets_the_same_faults() -> None:
+    here = stage("clean_dishes")
+    common = TrialConfig(seed=5)
+    perfect = "oracle"
+    for episode in range(20):
+        tp = here.run(Cell("clean_dishes", "tp", perfect, "symbolic"), common, episode)
+        tpvqa = here.run(Cell("clean_dishes", "tpvqa", perfect, "symbolic"), common, episode)
+        if not tp.failures:  # nothing went wrong, so there was nothing to notice
+            assert tp.completed
+            assert (tpvqa.completed, tpvqa.failures, tpvqa.repeats) == (True, 0, 0)
+        else:
+            assert tpvqa.failures
+
+
+def test_answers_and_decisions_are_judged_beside_the_truth() -> None:
+    cell = Cell("eat_apple", "tpvqa", "oracle", "symbolic")
+    rows = [stage("eat_apple").run(cell, TrialConfig(), episode) for episode in range(30)]
+    for row in rows:
+        for key in row.answers:
+            _, _, truth, reply, p_yes = key.split("|")
+            assert (reply == "yes") == (truth == "1")
+            assert float(p_yes) == (truth == "1")
+        assert sum(row.answers.values()) == row.questions
+        after = {k: n for k, n in row.decisions.items() if k.startswith("after")}
+        assert set(after) <= {"after|1|1", "after|0|0"}
+        assert row.wasted == 0
+    assert any(row.failures for row in rows)
+
+
+def test_one_broken_episode_is_recorded_and_the_rest_go_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from tpvqa.vlm.oracle import Oracle
+
+    asked = Oracle.ask
+
+    def break_in_episode_2(self: Oracle, *arguments: Any) -> Any:
+        if self._episode == 2:
+            raise RuntimeError("the VLM fell over")
+        return asked(self, *arguments)
+
+    monkeypatch.setattr(Oracle, "ask", break_in_episode_2)
+    here = stage("clean_dishes")
+    rows = [here.run(CELLS[0], TrialConfig(), episode) for episode in range(4)]
+    assert [bool(row.error) for row in rows] == [False, False, True, False]
+    assert "the VLM fell over" in rows[2].error
+    assert (rows[2].completed, rows[2].ending) == (False, "error")
