@@ -22,6 +22,9 @@ from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import VLM
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
+PICTURES = 512
+"""Encoded pictures that are kept: all of the shipped set."""
+
 
 class Stage:
     """Runs episodes of one task. What does not change between them is read and made once.
@@ -106,7 +109,7 @@ def _shared_vlm(spec: str) -> VLM | None:
     target: Callable[..., object] = load(Kind.VLM, spec.partition(":")[0].strip())
     if getattr(target, "noise_model", False):
         return None
-    vlm: VLM = make(Kind.VLM, spec)
+    vlm: VLM = make(Kind.VLM, spec, remember=PICTURES)
     return vlm
 
 

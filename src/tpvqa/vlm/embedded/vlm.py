@@ -1,5 +1,6 @@
 """The embedded VLM: needs no key, no server and no download."""
 
+import hashlib
 import threading
 import time
 from collections import OrderedDict
@@ -17,7 +18,10 @@ from tpvqa.vlm.embedded.lexicon import Unknown
 from tpvqa.vlm.embedded.sessions import Floats, Sessions
 from tpvqa.vlm.embedded.weights import SHIPPED, Weights
 
-_REMEMBERED = 8
+REMEMBERED = 8
+"""Pictures whose maps are kept, 0.1 MB each."""
+_ANSWERS = 100_000
+"""Answers that are kept."""
 
 
 class EmbeddedVLM:
@@ -33,6 +37,8 @@ class EmbeddedVLM:
     Args:
         folder: Holds the network; the shipped one by default.
         threads: CPU cores for one call.
+        remember: Pictures whose maps are kept for further questions, 0.1 MB each. For a fixed set
+            of pictures that are seen again and again: as many as there are.
 
     Example:
         >>> vlm = EmbeddedVLM()
@@ -42,17 +48,25 @@ class EmbeddedVLM:
 
     needs_pictures = True
 
-    def __init__(self, *, folder: str | Path | None = None, threads: int = 2):
+    def __init__(
+        self,
+        *,
+        folder: str | Path | None = None,
+        threads: int = 2,
+        remember: int = REMEMBERED,
+    ):
         self._folder = SHIPPED if folder is None else Path(folder)
         self._threads = threads
         self._lock = threading.Lock()
         self._loaded: tuple[Weights, Sessions] | None = None
         self._maps: OrderedDict[bytes, Floats] = OrderedDict()
+        self._known: OrderedDict[tuple[bytes, tuple[int, ...]], Floats] = OrderedDict()
+        self._remember = remember
 
     @classmethod
-    def from_spec(cls, arguments: str = "") -> "EmbeddedVLM":
+    def from_spec(cls, arguments: str = "", *, remember: int = REMEMBERED) -> "EmbeddedVLM":
         """Make it from `embedded` or `embedded:FOLDER`, a folder with other weights."""
-        return cls(folder=arguments or None)
+        return cls(folder=arguments or None, remember=remember)
 
     @property
     def name(self) -> str:
@@ -75,20 +89,13 @@ class EmbeddedVLM:
             AnswerError: The weights are missing or damaged, or a picture cannot be read.
         """
         began = time.perf_counter()
-        weights, sessions = self._load()
+        weights = self.weights
         found = [weights.lexicon.tokens(question.text) for question in questions]
         known = sorted({tokens for tokens in found if not isinstance(tokens, Unknown)})
         chances: dict[tuple[int, ...], tuple[float, float]] = {}
         if known and observation.frames:
-            rows = np.zeros((len(known), weights.lexicon.longest), np.int64)
-            for i, tokens in enumerate(known):
-                rows[i, : len(tokens)] = tokens
-            logits = np.stack(
-                [
-                    sessions.answer(self._encoded(frame, sessions), rows)
-                    for frame in observation.frames.values()
-                ]
-            )
+            frames = observation.frames.values()
+            logits = np.stack([self._logits(frame, known) for frame in frames])
             p_yes, p_unseen = combine(logits / np.float32(weights.temperature))
             pairs = zip(p_yes.tolist(), p_unseen.tolist(), strict=True)
             chances = dict(zip(known, pairs, strict=True))
@@ -137,6 +144,25 @@ class EmbeddedVLM:
                 self._loaded = weights, Sessions(weights, threads=self._threads)
             return self._loaded
 
+    def _logits(self, frame: Frame, questions: Sequence[tuple[int, ...]]) -> Floats:
+        """Logits of questions about a frame; each is worked out once."""
+        weights, sessions = self._load()
+        picture = hashlib.blake2b(frame.data, digest_size=16).digest()
+        with self._lock:
+            found = {q: self._known[picture, q] for q in questions if (picture, q) in self._known}
+        new = [question for question in questions if question not in found]
+        if new:
+            rows = np.zeros((len(new), weights.lexicon.longest), np.int64)
+            for i, tokens in enumerate(new):
+                rows[i, : len(tokens)] = tokens
+            logits = sessions.answer(self._encoded(frame, sessions), rows)
+            found |= dict(zip(new, logits, strict=True))
+            with self._lock:
+                self._known |= {(picture, q): found[q] for q in new}
+                while len(self._known) > _ANSWERS:
+                    self._known.popitem(last=False)
+        return np.stack([found[question] for question in questions])
+
     def _encoded(self, frame: Frame, sessions: Sessions) -> Floats:
         """The map of a frame, kept for the next questions about it."""
         with self._lock:
@@ -150,7 +176,7 @@ class EmbeddedVLM:
         maps = sessions.encode(pixels)
         with self._lock:
             self._maps[frame.data] = maps
-            while len(self._maps) > _REMEMBERED:
+            while len(self._maps) > self._remember:
                 self._maps.popitem(last=False)
         return maps
 
