@@ -13,7 +13,6 @@ from tpvqa.episodes import Ended, MemoryWriter
 from tpvqa.pddl import load_task
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.plugins import Kind, make
-from tpvqa.tasks import shipped_tasks
 from tpvqa.trial import Trial, TrialConfig
 
 Z = 1.959964  # 97.5% quantile of the normal distribution
@@ -59,6 +58,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--world", default="images")
     parser.add_argument(
+        "--tasks", nargs="+", default=["clean_dishes", "serve_breakfast", "eat_apple"]
+    )
+    parser.add_argument(
         "--cells",
         nargs="+",
         default=["tpvqa/embedded", "none/oracle"],
@@ -72,14 +74,14 @@ def main() -> None:
     print("|---|---|---|---|---|---|---|---|---|---|---|")
     planner = FastDownward()
     try:
-        for files in shipped_tasks():
+        for task in options.tasks:
             for cell in options.cells:
                 monitor, vlm = cell.split("/", 1)
                 began = time.perf_counter()
                 ended = list(
                     trials(
                         planner,
-                        task=files.name,
+                        task=task,
                         world=options.world,
                         monitor=monitor,
                         vlm=vlm,
@@ -87,7 +89,7 @@ def main() -> None:
                         episodes=options.episodes,
                     )
                 )
-                print(row(files.name, monitor, vlm, ended, time.perf_counter() - began), flush=True)
+                print(row(task, monitor, vlm, ended, time.perf_counter() - began), flush=True)
     finally:
         planner.close()
 

@@ -171,7 +171,8 @@ def test_tasks(folder: Path) -> None:
     assert "serve_breakfast  (household)" in done.stdout
     assert "on(bread, plate), turned_on(tv)" in done.stdout
     listed = json.loads(tpvqa("tasks", "--json", cwd=folder).stdout)
-    assert [entry["name"] for entry in listed] == ["clean_dishes", "eat_apple", "serve_breakfast"]
-    assert listed[1]["goal"] == ["halved(apple)"]
-    assert listed[1]["objects"]["apple"] == "fruit"
-    assert Path(listed[1]["problem"]).is_file()
+    names = [entry["name"] for entry in listed]
+    assert names == ["build_tower", "clean_dishes", "eat_apple", "serve_breakfast"]
+    assert listed[2]["goal"] == ["halved(apple)"]
+    assert listed[2]["objects"]["apple"] == "fruit"
+    assert Path(listed[2]["problem"]).is_file()

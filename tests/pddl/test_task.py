@@ -29,7 +29,6 @@ from tpvqa.pddl import (
     task_from_text,
     validate,
 )
-from tpvqa.tasks import shipped_tasks
 
 
 def facts(*texts: str) -> State:
@@ -97,7 +96,7 @@ def test_actions_that_are_none(household: Task, words: tuple[str, ...], message:
         household.action(words[0], words[1:])
 
 
-@pytest.mark.parametrize("name", [files.name for files in shipped_tasks()])
+@pytest.mark.parametrize("name", ["clean_dishes", "serve_breakfast", "eat_apple"])
 def test_household_groups_are_what_the_domain_means(name: str) -> None:
     task = load_task(name)
     things = [thing for thing in task.objects if thing not in ("left", "right")]
