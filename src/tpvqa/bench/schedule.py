@@ -43,6 +43,7 @@ def run_all(
     *,
     workers: int = 1,
     scheduler: str | None = None,
+    distributed: bool | None = None,
     done: Callable[[int], None] = lambda count: None,
 ) -> None:
     """Run every missing episode; each batch is on disk as soon as it is back.
@@ -53,8 +54,9 @@ def run_all(
         ledger: Where rows go.
         wanted: How many episodes of each cell.
         common: What all cells share.
-        workers: Local processes; with one, no other process is started.
+        workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
+        distributed: Whether to use Dask; by default with more than one worker, or a scheduler.
         done: Told how many episodes have come back, after each batch.
 
     Raises:
@@ -62,18 +64,22 @@ def run_all(
         BenchError: The scheduler cannot be reached.
     """
     todo = batches(ledger, wanted)
-    for batch, rows in _results(todo, common, workers, scheduler):
+    if distributed is None:
+        distributed = workers > 1 or scheduler is not None
+    results = _on_dask(todo, common, workers, scheduler) if distributed else _here(todo, common)
+    for batch, rows in results:
         ledger.add(rows)
         done(len(batch.episodes))
 
 
-def _results(
+def _here(todo: Sequence[Batch], common: TrialConfig) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
+    for batch in todo:
+        yield batch, _rows(run_batch(batch.cell, common, batch.episodes))
+
+
+def _on_dask(
     todo: Sequence[Batch], common: TrialConfig, workers: int, scheduler: str | None
 ) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
-    if workers <= 1 and scheduler is None:
-        for batch in todo:
-            yield batch, _rows(run_batch(batch.cell, common, batch.episodes))
-        return
     if not todo:
         return
     try:
