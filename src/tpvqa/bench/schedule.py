@@ -1,6 +1,9 @@
 """Runs the missing episodes of a bench: in this process, or on Dask's workers."""
 
+import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from tpvqa.bench.cell import Cell
@@ -89,12 +92,13 @@ def _on_dask(
     cluster = None
     try:
         if scheduler is None:
-            cluster = LocalCluster(
-                n_workers=min(workers, len(todo)),
-                threads_per_worker=1,
-                dashboard_address=None,
-                silence_logs="ERROR",
-            )
+            with _deaf_to_interrupts():
+                cluster = LocalCluster(
+                    n_workers=min(workers, len(todo)),
+                    threads_per_worker=1,
+                    dashboard_address=None,
+                    silence_logs="ERROR",
+                )
         client = Client(cluster or scheduler, timeout="20s")
     except OSError as error:
         raise BenchError(
@@ -124,6 +128,19 @@ def _on_dask(
         client.close()
         if cluster is not None:
             cluster.close()
+
+
+@contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Let processes that start meanwhile ignore Ctrl-C: who started them ends them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _rows(values: Sequence[dict[str, object]]) -> list[EpisodeRow]:
