@@ -25,7 +25,7 @@ from PIL import Image
 
 from tpvqa.chance import chance
 from tpvqa.errors import PictureSetError
-from tpvqa.worlds.images.contrast import DISTINCT, distinctness
+from tpvqa.worlds.images.contrast import DIRTY, DISTINCT, distinctness
 from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Picture, Renderer, digest
 from tpvqa.worlds.images.recipe import FACTS, TRIES, Job, objection
 from tpvqa.worlds.kitchen.household import ITEMS
@@ -304,12 +304,15 @@ class _Maker:
 
 
 def _faint(scene: "KitchenScene", pixels: NDArray[np.uint8]) -> list[str]:
-    """The items in view that a person would overlook in a picture."""
+    """What is in view, dirt too, and a person would overlook in a picture."""
     if len(pixels) != SIDE:
         pixels = np.asarray(Image.fromarray(pixels).resize((SIDE, SIDE), Image.Resampling.LANCZOS))
-    masks = {item: scene.mask(item) for item in ITEMS}
+    wanted = {**dict.fromkeys(ITEMS, DISTINCT), "dirt": DIRTY}
+    masks = {thing: scene.mask(thing) for thing in wanted}
     return [
-        item for item, mask in masks.items() if mask.any() and distinctness(pixels, mask) < DISTINCT
+        thing
+        for thing, mask in masks.items()
+        if mask.any() and distinctness(pixels, mask) < wanted[thing]
     ]
 
 
