@@ -8,7 +8,7 @@ from PIL import Image, ImageFilter
 
 AROUND = 9
 """Width of the box, pixels, that grows a thing by its surroundings."""
-DISTINCT = 0.55
+DISTINCT = 0.85
 """Of things that stand out less, a person looking at the shipped pictures is not sure."""
 DIRTY = 1.0
 """Of dirt that stands out less, as the rim of a stain beside a loaf does, neither."""
