@@ -13,6 +13,7 @@ import pytest
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import ROWS, Ledger
+from tpvqa.bench.paper import PaperBench
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.stage import stage
 from tpvqa.errors import BenchError
@@ -193,3 +194,14 @@ def test_one_broken_episode_is_recorded_and_the_rest_go_on(
     assert [bool(row.error) for row in rows] == [False, False, True, False]
     assert "the VLM fell over" in rows[2].error
     assert (rows[2].completed, rows[2].ending) == (False, "error")
+
+
+def test_cells_that_a_recording_cannot_fill_stay_empty() -> None:
+    bench = PaperBench(tasks=["clean_dishes"], vlms=["recorded:internvl3-8b", "paper-table"])
+    cells = [(cell.vlm, cell.monitor) for cell in bench.cells()]
+    assert [monitor for vlm, monitor in cells if vlm.startswith("recorded")] == [
+        "tpvqa",
+        "effectvqa",
+        "tp",
+    ]
+    assert len([vlm for vlm, _ in cells if vlm == "paper-table"]) == 5
