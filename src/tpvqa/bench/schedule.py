@@ -13,8 +13,10 @@ from tpvqa.bench.stage import run_batch
 from tpvqa.errors import BenchError, MissingExtraError
 from tpvqa.trial import TrialConfig
 
-BATCH = 25
-"""Episodes that a worker is sent at once."""
+BATCH: Mapping[str, int] = {"symbolic": 100, "images": 50}
+"""Episodes that a worker is sent at once, by world: about a second's work."""
+SMALL_BATCH = 5
+"""In other worlds."""
 RETRIES = 3
 """How often a batch whose worker died is given to another."""
 
@@ -29,14 +31,15 @@ class Batch:
 
 def batches(ledger: Ledger, wanted: Mapping[Cell, int]) -> list[Batch]:
     """What is still to be run, so ordered that all cells grow together."""
-    missing = [(cell, ledger.missing(cell, episodes)) for cell, episodes in wanted.items()]
-    most = max((len(numbers) for _, numbers in missing), default=0)
-    return [
-        Batch(cell, tuple(numbers[first : first + BATCH]))
-        for first in range(0, most, BATCH)
-        for cell, numbers in missing
-        if first < len(numbers)
-    ]
+    made = []
+    for place, (cell, episodes) in enumerate(wanted.items()):
+        missing = ledger.missing(cell, episodes)
+        size = BATCH.get(cell.world.partition(":")[0], SMALL_BATCH)
+        made += [
+            (first, place, Batch(cell, tuple(missing[first : first + size])))
+            for first in range(0, len(missing), size)
+        ]
+    return [batch for _, _, batch in sorted(made, key=lambda entry: entry[:2])]
 
 
 def run_all(
