@@ -1,4 +1,4 @@
-"""`tpvqa dataset`: make, check, show and score a set of pictures."""
+"""`tpvqa dataset`: make, compose, check, show and score a set of pictures."""
 
 import json
 from enum import StrEnum
@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from tpvqa.cli.compose import compose
 
 dataset = typer.Typer(help="The pictures that `--world images` draws from.", no_args_is_help=True)
 
@@ -26,6 +28,9 @@ class RendererName(StrEnum):
 def register(app: typer.Typer) -> None:
     """Add the commands to the application."""
     app.add_typer(dataset, name="dataset")
+
+
+dataset.command()(compose)
 
 
 @dataset.command()
@@ -110,6 +115,7 @@ def verify(pictures: Folder = None, as_json: AsJson = False) -> None:
                     "pictures": report.pictures,
                     "bytes": report.size,
                     "renderers": dict(report.renderers),
+                    "origins": dict(report.origins),
                     "meshes": dict(report.meshes),
                     "states": report.states,
                     "observations": [

@@ -75,9 +75,7 @@ class DiffusersImages:
         """Text to image."""
         if self._from_text is None:
             self._from_text = self._load("AutoPipelineForText2Image", self._from_image)
-        return self._draw(
-            self._from_text, seed, prompt=prompt, width=self._side, height=self._side
-        )
+        return self._draw(self._from_text, seed, prompt=prompt, width=self._side, height=self._side)
 
     def close(self) -> None:
         """Let go of the model. Can be called twice."""

@@ -19,9 +19,7 @@ def photographed(image: Image.Image, seed: int) -> Image.Image:
     """
     rng = chance_array(seed, 0, "camera")
     width, height = image.size
-    turned = image.rotate(
-        float(rng.uniform(-2.5, 2.5)), Image.Resampling.BICUBIC, expand=False
-    )
+    turned = image.rotate(float(rng.uniform(-2.5, 2.5)), Image.Resampling.BICUBIC, expand=False)
     # A turn of 2.5 degrees leaves corners empty up to 4% of the side: they are cut off.
     margin = rng.uniform(0.045, 0.075)
     left, top = rng.uniform(0.0, 0.005, 2) * (width, height) + (margin * width, margin * height)
@@ -32,7 +30,7 @@ def photographed(image: Image.Image, seed: int) -> Image.Image:
     light = np.asarray(framed.filter(ImageFilter.GaussianBlur(sharp)), np.float64) / 255
     light = np.clip(light, 0, 1) ** rng.uniform(0.8, 1.25)
     light *= rng.uniform(0.92, 1.08, 3) * rng.uniform(0.85, 1.15)
-    rows, columns = np.mgrid[-1:1:height * 1j, -1:1:width * 1j]
+    rows, columns = np.mgrid[-1 : 1 : height * 1j, -1 : 1 : width * 1j]
     light *= (1 - rng.uniform(0.0, 0.2) * (rows**2 + columns**2) / 2)[..., None]
     grain = rng.uniform(0.0, 0.03)
     light += rng.normal(0.0, 1.0, light.shape) * grain * np.sqrt(np.clip(light, 0.02, 1))

@@ -2,7 +2,7 @@
 
 import csv
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -67,16 +67,15 @@ def stock(photos: Sequence[Photo], labels: Sequence[Label], *, wanted: int = 10)
     return [Shelf(label, counts[label.shows], wanted) for label in labels]
 
 
-def read_photos(
-    folder: Path, labels: Sequence[Label], *, table: Path | None = None
-) -> list[Photo]:
+def read_photos(folder: Path, labels: Sequence[Label], *, table: Path | None = None) -> list[Photo]:
     """Read the photos of a folder, labelled by subfolders or by a table.
 
     Subfolders are `<action>/<outcome>`, or `<task>/<action>/<outcome>` where several tasks have
     the action; an action is written as in the manifest, `wash(plate, sink)`, or `wash_plate_sink`.
-    A table is CSV with the columns file, task, action, outcome, and facts if wanted: all that is
-    true, as PDDL atoms. Without it, the plan's next state is true after a success, and the state
-    before the action after a failure.
+    What is true after a success is the plan's next state; after a failure, the state before the
+    action. A table is CSV with the columns file, task, action, outcome and, where something else
+    is true, facts: PDDL atoms that say all of the things that they name; of other things the
+    plan's state holds.
 
     Args:
         folder: The photos.
@@ -226,14 +225,30 @@ def _state(claim: _Claim, label: Label) -> State:
         raise claim.wrong(
             f"{strange[0].pddl()} is no fact{suggestion_or_list(strange[0].pddl(), known)}"
         )
+    state = _changed(label.state, atoms)
     try:
-        visible = visible_state(frozenset(atoms))
+        visible = visible_state(state)
     except WorldError as error:
         raise claim.wrong(f"the facts are no state of the kitchen: {error}") from error
     if visible not in label.possible:
-        known = sorted(describe(state) for state in label.possible)
+        possible = sorted(describe(state) for state in label.possible)
         raise claim.wrong(
             f"the facts look like: {describe(visible)}, which is not seen after {claim.outcome} of "
-            f"{label.shows.action}. Possible: {'; '.join(known)}"
+            f"{label.shows.action}. Possible: {'; '.join(possible)}"
         )
-    return frozenset(atoms)
+    return state
+
+
+def _changed(usual: State, facts: Set[Atom]) -> State:
+    """A state in which the facts hold, and of other things what usually does."""
+    moved = any(atom.predicate == "near" for atom in facts)
+    things = {atom.arguments[0] for atom in facts if atom.predicate not in ("near", "free")}
+    kept = {
+        atom
+        for atom in usual
+        if (not moved if atom.predicate == "near" else atom.arguments[0] not in things)
+    }
+    state = {atom for atom in facts | kept if atom.predicate != "free"}
+    full = {atom.arguments[1] for atom in state if atom.predicate == "in_hand"}
+    free = {atom for atom in FACTS if atom.predicate == "free" and atom.arguments[0] not in full}
+    return frozenset(state | free)

@@ -96,9 +96,7 @@ def _read_task(place: Place, labels: Sequence[Label]) -> dict[Shows, tuple[str, 
     for name, key, value in place.entries():
         action = file_name(name)
         if action not in actions:
-            raise key.wrong(
-                f"the plan has no action {name!r}{suggestion_or_list(action, actions)}"
-            )
+            raise key.wrong(f"the plan has no action {name!r}{suggestion_or_list(action, actions)}")
         for outcome, entry in value.sections(*OUTCOMES).items():
             prompts = tuple(text.text() for text in entry.texts())
             if not prompts:
