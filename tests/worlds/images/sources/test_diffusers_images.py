@@ -60,7 +60,9 @@ def tiny(tmp_path_factory: pytest.TempPathFactory) -> Path:
             attention_head_dim=2,
             norm_num_groups=4,
         ),
-        scheduler=diffusers.DDIMScheduler(num_train_timesteps=20),
+        scheduler=diffusers.DDIMScheduler(
+            num_train_timesteps=20, steps_offset=1, clip_sample=False
+        ),
         safety_checker=None,
         feature_extractor=None,
         requires_safety_checker=False,

@@ -1,5 +1,6 @@
 """What a camera does to a picture: exposure, white balance, framing, blur, noise, compression."""
 
+import math
 from io import BytesIO
 
 import numpy as np
@@ -19,11 +20,12 @@ def photographed(image: Image.Image, seed: int) -> Image.Image:
     """
     rng = chance_array(seed, 0, "camera")
     width, height = image.size
-    turned = image.rotate(float(rng.uniform(-2.5, 2.5)), Image.Resampling.BICUBIC, expand=False)
-    # A turn of 2.5 degrees leaves corners empty up to 4% of the side: they are cut off.
-    margin = rng.uniform(0.045, 0.075)
-    left, top = rng.uniform(0.0, 0.005, 2) * (width, height) + (margin * width, margin * height)
-    scale = 1 - 2 * margin - 0.01
+    angle = float(rng.uniform(-1.5, 1.5))
+    turned = image.rotate(angle, Image.Resampling.BICUBIC)
+    # The largest middle part that the turn leaves no empty corner in, or somewhat less.
+    aspect = max(width, height) / min(width, height)
+    scale = rng.uniform(0.96, 1) / (1 + aspect * math.sin(math.radians(abs(angle))))
+    left, top = (1 - scale) / 2 * width, (1 - scale) / 2 * height
     box = (left, top, left + scale * width, top + scale * height)
     framed = turned.resize(image.size, Image.Resampling.BICUBIC, box=box)
     sharp = float(rng.uniform(0.0, 0.9)) * width / 224
