@@ -7,13 +7,17 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from tests.worlds.images.sources.images_server import Act, ImagesServer, picture, refusal
+from tpvqa.cli import main
 from tpvqa.cli.dataset import dataset
+from tpvqa.episodes import read_episode
+from tpvqa.episodes.events import Observed
 from tpvqa.errors import MissingExtraError, PictureSetError, PluginError, UnknownNameError
 from tpvqa.worlds.images.manifest import load_pictures
 
@@ -98,6 +102,23 @@ def test_photos_of_other_tasks_do_not_matter(tmp_path: Path) -> None:
     assert "1 photo, 4 rendered" in text
     assert '<span class="badge photo">photo</span>' in text
     assert "wash_plate_sink/success/one.png" in text
+
+
+def test_a_composed_set_is_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "photos" / "wash_plate_sink" / "success"
+    folder.mkdir(parents=True)
+    for number in range(10):
+        (folder / f"{number}.png").write_bytes(picture(number))
+    asked = ["compose", "--out", str(tmp_path / "set"), "--photos", str(tmp_path / "photos")]
+    asked += ["--task", "clean_dishes", "--shares", "100,0,0", "--variations", "none"]
+    assert CliRunner().invoke(dataset, asked).exit_code == 0
+    words = ["tpvqa", "run", "clean_dishes", "--pictures", str(tmp_path / "set"), "--failure", "0"]
+    words += ["--vlm", "oracle", "--out", str(tmp_path / "episode")]
+    monkeypatch.setattr(sys, "argv", words)
+    with suppress(SystemExit):
+        main()
+    looks = [event for event in read_episode(tmp_path / "episode") if isinstance(event, Observed)]
+    assert "-photo-" in looks[-1].frames[0].source
 
 
 @pytest.mark.parametrize(

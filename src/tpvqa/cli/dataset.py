@@ -101,7 +101,7 @@ def build(
 @dataset.command()
 def verify(pictures: Folder = None, as_json: AsJson = False) -> None:
     """Check files, hashes, counts and truth of a set. Exit code 1: something is wrong."""
-    from tpvqa.worlds.images.manifest import load_pictures
+    from tpvqa.worlds.images.manifest import ORIGINS, load_pictures
     from tpvqa.worlds.images.shipped_tasks import all_reachable
     from tpvqa.worlds.images.verify import verify as check
 
@@ -130,12 +130,17 @@ def verify(pictures: Folder = None, as_json: AsJson = False) -> None:
         if report.gaps:
             raise typer.Exit(1)
         return
-    by_renderer = ", ".join(f"{n} by {name}" for name, n in sorted(report.renderers.items()))
+    by_renderer = ", ".join(
+        f"{n} {name}" if name in ORIGINS else f"{n} by {name}"
+        for name, n in sorted(report.renderers.items())
+    )
     typer.echo(
         f"{opened.folder}: {report.pictures} pictures ({by_renderer}; "
         f"{report.meshes['known']} with known and {report.meshes['held_out']} with held-out "
         f"meshes), {report.size / 1e6:.1f} MB"
     )
+    if len(report.origins) > 1:
+        typer.echo(", ".join(f"{n} {kind}" for kind, n in sorted(report.origins.items())))
     counts = list(report.states.values())
     typer.echo(f"{len(counts)} reachable visible states, {min(counts)} to {max(counts)} pictures")
     for (task, action, outcome), count in report.observations.items():

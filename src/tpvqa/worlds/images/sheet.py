@@ -13,7 +13,8 @@ body { font: 14px/1.4 system-ui, sans-serif; margin: 1.5rem; color: #222; }
 h2 { margin: 2rem 0 .3rem; font-size: 1.05rem; } h3 { margin: .8rem 0 .3rem; font-weight: 600; }
 .row { display: flex; flex-wrap: wrap; gap: 6px; }
 figure { margin: 0; width: 168px; } img { width: 168px; height: 168px; display: block; }
-figcaption { font-size: 11px; color: #555; } details { max-width: 168px; overflow: hidden; }
+figcaption { font-size: 11px; color: #555; overflow-wrap: anywhere; }
+summary { cursor: pointer; }
 .failure { color: #a30; } .success { color: #063; }
 .frame { position: relative; }
 .badge { position: absolute; left: 4px; top: 4px; padding: 0 5px; border-radius: 3px;

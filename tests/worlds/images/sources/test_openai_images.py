@@ -119,6 +119,8 @@ def test_garbled_replies_are_asked_for_again(fault: Act) -> None:
     with ImagesServer(script=first(fault)) as server:
         images = OpenAIImages("some", base_url=server.url)
         assert images.generate("a plate", seed=1).data == picture(1)
+        one, two = (request.headers["idempotency-key"] for request in server.requests)
+        assert one != two, "otherwise a server could give the same again"
     with ImagesServer(script=lambda _: fault) as server:
         images = OpenAIImages("some", base_url=server.url, retries=1)
         with pytest.raises(GeneratorError, match="2 times"):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from tpvqa.chance import chance
 from tpvqa.errors import GeneratorError, MissingExtraError, PictureRefused
+from tpvqa.worlds.images.manifest import digest
 from tpvqa.worlds.images.sources.generator import Drawn, Original
 from tpvqa.worlds.images.sources.images_reply import (
     Elsewhere,
@@ -29,9 +30,9 @@ _LARGEST = 50_000_000  # bytes of a picture that is fetched from an address
 
 
 class _Again(Exception):  # noqa: N818 — a request to try again, not an error
-    def __init__(self, why: str, *, pause: float | None = None):
+    def __init__(self, why: str, *, pause: float | None = None, garbled: bool = False):
         super().__init__(why)
-        self.why, self.pause = why, pause
+        self.why, self.pause, self.garbled = why, pause, garbled
 
 
 class OpenAIImages:
@@ -110,12 +111,12 @@ class OpenAIImages:
         if self.model != "dall-e-2":
             ask = images.edit
             sent["prompt"] = original.prompt
-        return self._insist(ask, sent, seed)
+        return self._insist(ask, sent, seed, of=digest(original.data))
 
     def generate(self, prompt: str, *, seed: int) -> Drawn:
         """A picture from words."""
         images = self._connect().images.with_raw_response
-        return self._insist(images.generate, {"prompt": prompt, **self._form()}, seed)
+        return self._insist(images.generate, {"prompt": prompt, **self._form()}, seed, of="")
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
@@ -152,23 +153,28 @@ class OpenAIImages:
                 raise GeneratorError(f"{self._where()} cannot be asked: {error}") from error
         return self._client
 
-    def _insist(self, ask: Callable[..., Any], sent: dict[str, Any], seed: int) -> Drawn:
+    def _insist(
+        self, ask: Callable[..., Any], sent: dict[str, Any], seed: int, *, of: str
+    ) -> Drawn:
         """Ask for one picture, again after failures that may pass."""
         time.sleep(max(0.0, self._next_turn - time.monotonic()))
         end = time.monotonic() + self._deadline
-        # New for each picture, the same for each repetition.
-        headers = {"Idempotency-Key": str(uuid.uuid4())}
         found: bytes | Elsewhere | None = None
-        times = 0
+        times = garbled = 0
         while True:
+            # The same for each repetition, in a later process too; but a garbled picture would
+            # only be given again.
+            decides = (self.name, self.settings, sent.get("prompt"), of, seed, garbled)
+            key = str(uuid.uuid5(uuid.NAMESPACE_OID, repr(decides)))
             try:
                 if found is None:
-                    found = self._request(ask, {**sent, "extra_headers": headers}, end)
+                    headers = {"extra_headers": {"Idempotency-Key": key}}
+                    found = self._request(ask, {**sent, **headers}, end)
                 if isinstance(found, Elsewhere):
                     found = self._fetch(found, end)
                 return Drawn(found)
             except _Again as again:
-                times += 1
+                times, garbled = times + 1, garbled + again.garbled
                 why = again.why if times == 1 else f"{again.why}, {times} times"
                 if times > self._retries:
                     raise GeneratorError(f"{self._where()}: {why}") from None
@@ -198,7 +204,7 @@ class OpenAIImages:
         except openai.APIStatusError as error:
             self._refused(error)
         except ValueError as error:
-            raise _Again(str(error)) from None
+            raise _Again(str(error), garbled=True) from None
 
     def _fetch(self, at: Elsewhere, end: float) -> bytes:
         import httpx
