@@ -107,7 +107,13 @@ def compose(
     options = Options(base_url, price, per_minute, size, strength, steps)
     by_visible = jobs_by_visible(jobs(every))
     varier = generator(variations, options, by_visible, from_prompts=False)
-    prompted = generator(prompts, options, by_visible, from_prompts=True)
+    # One generator for both keeps one distance between requests, and one model in memory.
+    prompted = (
+        varier
+        if prompts == variations != "rerender"
+        else generator(prompts, options, by_visible, from_prompts=True)
+    )
+    generators = list({id(one): one for one in (varier, prompted) if one is not None}.values())
     try:
         ingredients = Ingredients(
             wanted_labels,
@@ -151,10 +157,9 @@ def compose(
                 raise typer.Exit(1)
         composed = _with_progress(wanted, out, every, shown=not as_json)
     finally:
-        for made in {id(one): one for one in (varier, prompted) if one is not None}.values():
+        for made in generators:
             made.close()
-    sent = sum(one.requests for one in (varier, prompted) if one is not None)
-    after = _after(composed, sent)
+    after = _after(composed, sum(one.requests for one in generators))
     if as_json:
         typer.echo(json.dumps({**before, **after}, indent=2))
     else:

@@ -235,3 +235,12 @@ def test_shares_make_whole_pictures(text: str, count: int, parts: tuple[int, int
 def test_shares_that_are_none(text: str) -> None:
     with pytest.raises(PictureSetError, match=r"100|percentages"):
         Shares.parse(text)
+
+
+def test_a_refused_key_leaves_a_folder_that_can_be_gone_on_in(kitchen: Kitchen) -> None:
+    kitchen.out.mkdir()
+    with ImagesServer(script=lambda n: refusal(401, "wrong") if n == 0 else None) as server:
+        with pytest.raises(GeneratorError, match="refuses the key"):
+            kitchen.compose(server, count=5)
+        assert load_pictures(kitchen.out).manifest.pictures
+        assert kitchen.compose(server, count=5).refused == []

@@ -181,6 +181,7 @@ class _Composer:
 
     def _write(self, wanted: Sequence[Wanted], done: Mapping[str, Picture], to: Composed) -> None:
         if not done:
+            (self._folder / MANIFEST).unlink(missing_ok=True)
             return
         to.manifest = Manifest(
             facts=tuple(atom.pddl() for atom in FACTS),
