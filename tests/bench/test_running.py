@@ -13,8 +13,10 @@ import pytest
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import ROWS, Ledger
+from tpvqa.bench.paper import PaperBench
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.stage import stage
+from tpvqa.errors import BenchError
 from tpvqa.trial import TrialConfig
 
 TPVQA = [sys.executable, "-c", "from tpvqa.cli import main; main()"]
@@ -72,6 +74,48 @@ def test_a_worker_killed_in_the_middle_changes_nothing(alone: Path, tmp_path: Pa
     ledger.close()
     assert killed
     assert rows_of(tmp_path) == rows_of(alone)
+
+
+@pytest.mark.slow
+def test_a_scheduler_by_its_address(alone: Path, tmp_path: Path) -> None:
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        ledger = Ledger(tmp_path, {})
+        run_all(
+            ledger,
+            dict.fromkeys(CELLS, 60),
+            TrialConfig(seed=3),
+            scheduler=cluster.scheduler_address,
+        )
+        ledger.close()
+    assert rows_of(tmp_path) == rows_of(alone)
+
+
+def test_a_scheduler_that_is_not_there(tmp_path: Path) -> None:
+    ledger = Ledger(tmp_path, {})
+    with pytest.raises(BenchError, match="cannot be reached"):
+        run_all(ledger, {CELLS[0]: 1}, TrialConfig(), scheduler="tcp://127.0.0.1:9")
+    ledger.close()
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (["--monitors", "tpvq"], "Did you mean 'tpvqa'"),
+        (["--tasks", "clean_dish"], "Did you mean 'clean_dishes'"),
+        (["--vlm", "oracel:0.8"], "Did you mean 'oracle'"),
+    ],
+)
+def test_what_is_not_there_is_said_before_anything_runs(
+    option: list[str], message: str, tmp_path: Path
+) -> None:
+    command = [*TPVQA, "bench", "paper", *option, "--out", str(tmp_path / "b")]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode == 2
+    assert message in result.stderr
+    assert "Traceback" not in result.stderr
+    assert not (tmp_path / "b").exists()
 
 
 @pytest.mark.slow
@@ -150,3 +194,14 @@ def test_one_broken_episode_is_recorded_and_the_rest_go_on(
     assert [bool(row.error) for row in rows] == [False, False, True, False]
     assert "the VLM fell over" in rows[2].error
     assert (rows[2].completed, rows[2].ending) == (False, "error")
+
+
+def test_cells_that_a_recording_cannot_fill_stay_empty() -> None:
+    bench = PaperBench(tasks=["clean_dishes"], vlms=["recorded:internvl3-8b", "paper-table"])
+    cells = [(cell.vlm, cell.monitor) for cell in bench.cells()]
+    assert [monitor for vlm, monitor in cells if vlm.startswith("recorded")] == [
+        "tpvqa",
+        "effectvqa",
+        "tp",
+    ]
+    assert len([vlm for vlm, _ in cells if vlm == "paper-table"]) == 5

@@ -56,6 +56,7 @@ class PaperBench:
             for vlm in self.vlms
             for task in self.tasks
             for monitor in self.monitors
+            if can_answer(vlm, monitor)
         ]
 
     def curve_cells(self) -> list[Cell]:
@@ -92,6 +93,13 @@ class PaperBench:
 def looks(vlm: str) -> bool:
     """Whether a VLM looks at pictures; noise models do not."""
     return not getattr(load(Kind.VLM, vlm.partition(":")[0]), "noise_model", False)
+
+
+def can_answer(vlm: str, monitor: str) -> bool:
+    """Whether a VLM has any answers to what a monitor asks; recorded ones know no whole actions."""
+    facts_only = getattr(load(Kind.VLM, vlm.partition(":")[0]), "facts_only", False)
+    asks_actions = getattr(load(Kind.MONITOR, monitor.partition(":")[0]), "asks_actions", False)
+    return not (facts_only and asks_actions)
 
 
 def run_paper_bench(

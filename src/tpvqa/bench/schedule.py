@@ -1,6 +1,9 @@
 """Runs the missing episodes of a bench: in this process, or on Dask's workers."""
 
+import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from tpvqa.bench.cell import Cell
@@ -10,8 +13,10 @@ from tpvqa.bench.stage import run_batch
 from tpvqa.errors import BenchError, MissingExtraError
 from tpvqa.trial import TrialConfig
 
-BATCH = 25
-"""Episodes that a worker is sent at once."""
+BATCH: Mapping[str, int] = {"symbolic": 100, "images": 50}
+"""Episodes that a worker is sent at once, by world: about a second's work."""
+SMALL_BATCH = 5
+"""In other worlds."""
 RETRIES = 3
 """How often a batch whose worker died is given to another."""
 
@@ -26,14 +31,15 @@ class Batch:
 
 def batches(ledger: Ledger, wanted: Mapping[Cell, int]) -> list[Batch]:
     """What is still to be run, so ordered that all cells grow together."""
-    missing = [(cell, ledger.missing(cell, episodes)) for cell, episodes in wanted.items()]
-    most = max((len(numbers) for _, numbers in missing), default=0)
-    return [
-        Batch(cell, tuple(numbers[first : first + BATCH]))
-        for first in range(0, most, BATCH)
-        for cell, numbers in missing
-        if first < len(numbers)
-    ]
+    made = []
+    for place, (cell, episodes) in enumerate(wanted.items()):
+        missing = ledger.missing(cell, episodes)
+        size = BATCH.get(cell.world.partition(":")[0], SMALL_BATCH)
+        made += [
+            (first, place, Batch(cell, tuple(missing[first : first + size])))
+            for first in range(0, len(missing), size)
+        ]
+    return [batch for _, _, batch in sorted(made, key=lambda entry: entry[:2])]
 
 
 def run_all(
@@ -43,6 +49,7 @@ def run_all(
     *,
     workers: int = 1,
     scheduler: str | None = None,
+    distributed: bool | None = None,
     done: Callable[[int], None] = lambda count: None,
 ) -> None:
     """Run every missing episode; each batch is on disk as soon as it is back.
@@ -53,8 +60,9 @@ def run_all(
         ledger: Where rows go.
         wanted: How many episodes of each cell.
         common: What all cells share.
-        workers: Local processes; with one, no other process is started.
+        workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
+        distributed: Whether to use Dask; by default with more than one worker, or a scheduler.
         done: Told how many episodes have come back, after each batch.
 
     Raises:
@@ -62,18 +70,22 @@ def run_all(
         BenchError: The scheduler cannot be reached.
     """
     todo = batches(ledger, wanted)
-    for batch, rows in _results(todo, common, workers, scheduler):
+    if distributed is None:
+        distributed = workers > 1 or scheduler is not None
+    results = _on_dask(todo, common, workers, scheduler) if distributed else _here(todo, common)
+    for batch, rows in results:
         ledger.add(rows)
         done(len(batch.episodes))
 
 
-def _results(
+def _here(todo: Sequence[Batch], common: TrialConfig) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
+    for batch in todo:
+        yield batch, _rows(run_batch(batch.cell, common, batch.episodes))
+
+
+def _on_dask(
     todo: Sequence[Batch], common: TrialConfig, workers: int, scheduler: str | None
 ) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
-    if workers <= 1 and scheduler is None:
-        for batch in todo:
-            yield batch, _rows(run_batch(batch.cell, common, batch.episodes))
-        return
     if not todo:
         return
     try:
@@ -83,12 +95,13 @@ def _results(
     cluster = None
     try:
         if scheduler is None:
-            cluster = LocalCluster(
-                n_workers=min(workers, len(todo)),
-                threads_per_worker=1,
-                dashboard_address=None,
-                silence_logs="ERROR",
-            )
+            with _deaf_to_interrupts():
+                cluster = LocalCluster(
+                    n_workers=min(workers, len(todo)),
+                    threads_per_worker=1,
+                    dashboard_address=None,
+                    silence_logs="ERROR",
+                )
         client = Client(cluster or scheduler, timeout="20s")
     except OSError as error:
         raise BenchError(
@@ -118,6 +131,19 @@ def _results(
         client.close()
         if cluster is not None:
             cluster.close()
+
+
+@contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Let processes that start meanwhile ignore Ctrl-C: who started them ends them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _rows(values: Sequence[dict[str, object]]) -> list[EpisodeRow]:

@@ -19,6 +19,8 @@ class PaLMEVQA:
         looks: How often to look again where the answer abstains, before stopping.
     """
 
+    asks_actions = True
+
     def __init__(self, *, start_over: bool = False, looks: int = 3):
         self._asker, self.start_over = Asker(looks=looks), start_over
         self._memory: FactMemory | None = None

@@ -13,6 +13,7 @@ class SuccessVQA:
     """
 
     name = "successvqa"
+    asks_actions = True
 
     def __init__(self, *, looks: int = 3):
         self._asker = Asker(looks=looks)

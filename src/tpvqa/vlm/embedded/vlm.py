@@ -36,7 +36,8 @@ class EmbeddedVLM:
 
     Args:
         folder: Holds the network; the shipped one by default.
-        threads: CPU cores for one call.
+        threads: CPU cores for one call. One is quick enough, 13 ms a picture, and leaves the
+            others to other work.
         remember: Pictures whose maps are kept for further questions, 0.1 MB each. For a fixed set
             of pictures that are seen again and again: as many as there are.
 
@@ -52,7 +53,7 @@ class EmbeddedVLM:
         self,
         *,
         folder: str | Path | None = None,
-        threads: int = 2,
+        threads: int = 1,
         remember: int = REMEMBERED,
     ):
         self._folder = SHIPPED if folder is None else Path(folder)

@@ -52,6 +52,7 @@ class Recorded:
     """
 
     noise_model = True
+    facts_only = True
 
     def __init__(
         self, truth: TruthSource, told: Recordings, *, spec: str, seed: int = 0, episode: int = 0

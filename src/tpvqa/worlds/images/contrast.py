@@ -14,8 +14,10 @@ if TYPE_CHECKING:
 
 AROUND = 9
 """Width of the box, pixels, that grows a thing by its surroundings."""
-DISTINCT = 0.55
+DISTINCT = 0.85
 """Of things that stand out less, a person looking at the shipped pictures is not sure."""
+DIRTY = 1.0
+"""Of dirt that stands out less, as the rim of a stain beside a loaf does, neither."""
 
 
 def distinctness(pixels: NDArray[np.uint8], mask: NDArray[np.bool_]) -> float:
@@ -41,11 +43,14 @@ def distinctness(pixels: NDArray[np.uint8], mask: NDArray[np.bool_]) -> float:
 
 
 def overlooked(scene: "KitchenScene", pixels: NDArray[np.uint8]) -> list[str]:
-    """The items in view that a person would overlook in a picture of a scene."""
+    """What is in view, dirt too, and a person would overlook in a picture of a scene."""
     side = scene.size
     if len(pixels) != side:
         pixels = np.asarray(Image.fromarray(pixels).resize((side, side), Image.Resampling.LANCZOS))
-    masks = {item: scene.mask(item) for item in ITEMS}
+    wanted = {**dict.fromkeys(ITEMS, DISTINCT), "dirt": DIRTY}
+    masks = {thing: scene.mask(thing) for thing in wanted}
     return [
-        item for item, mask in masks.items() if mask.any() and distinctness(pixels, mask) < DISTINCT
+        thing
+        for thing, mask in masks.items()
+        if mask.any() and distinctness(pixels, mask) < wanted[thing]
     ]
