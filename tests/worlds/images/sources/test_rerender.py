@@ -57,6 +57,16 @@ def test_a_photo_is_only_taken_by_another_camera(rerender: Rerender) -> None:
     assert read_picture(drawn.data).size == (96, 96)
 
 
+def test_where_no_other_view_serves_the_picture_is_taken_by_another_camera(
+    rerender: Rerender, entry: Picture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tpvqa.worlds.images.sources.rerender.TRIES", 0)
+    data = load_pictures().read(entry)
+    drawn = rerender.vary(Original(data, "", entry), seed=1)
+    assert drawn.data != data
+    assert (drawn.seen, drawn.look, drawn.renderer) == (entry.seen, entry.look, entry.renderer)
+
+
 def test_what_no_task_leads_to_is_refused(entry: Picture) -> None:
     with pytest.raises(PictureRefused, match="no task leads to"):
         Rerender({}).vary(Original(b"", "", entry), seed=1)
