@@ -4,12 +4,15 @@ TpvqaError
 ├── PlacedError            a file that a user wrote is wrong; says where
 │   ├── PDDLError          the domain or problem cannot be read
 │   ├── QuestionsError     a questions file is broken
-│   └── WorldFileError     a world file or a script is broken
+│   ├── WorldFileError     a world file or a script is broken
+│   └── PhotosError        a photo, its label or a file of prompts is wrong
 ├── PlannerError           the planner itself could not be run (never "there is no plan")
 │   └── GroundingTimedOut  reading and grounding took longer than allowed
 ├── AnswerError            a VLM could not be asked at all
 ├── WorldError             a world cannot do what it is asked to
 ├── PictureSetError        the set of pictures is incomplete or damaged
+├── GeneratorError         pictures cannot be varied or generated (no key, say)
+│   └── PictureRefused     this one picture was refused, others may be made
 ├── EpisodeError           an episode cannot be read or resumed
 ├── BenchError             a bench cannot be run, read or written
 ├── UnknownNameError       no plug-in or task of that name
@@ -89,6 +92,18 @@ class WorldError(TpvqaError):
 
 class PictureSetError(TpvqaError):
     """The set of pictures is incomplete or damaged."""
+
+
+class PhotosError(PlacedError):
+    """A photo of the user's, its label or a file of prompts is wrong."""
+
+
+class GeneratorError(TpvqaError):
+    """Pictures cannot be varied or generated: no key, no model, a server that does not answer."""
+
+
+class PictureRefused(GeneratorError):  # noqa: N818
+    """The generator refuses this one picture (for what it shows, say); it may make others."""
 
 
 class EpisodeError(TpvqaError):

@@ -1,4 +1,4 @@
-"""`tpvqa dataset`: make, check, show and score a set of pictures."""
+"""`tpvqa dataset`: make, compose, check, show and score a set of pictures."""
 
 import json
 from enum import StrEnum
@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from tpvqa.cli.compose import compose
 
 dataset = typer.Typer(help="The pictures that `--world images` draws from.", no_args_is_help=True)
 
@@ -26,6 +28,9 @@ class RendererName(StrEnum):
 def register(app: typer.Typer) -> None:
     """Add the commands to the application."""
     app.add_typer(dataset, name="dataset")
+
+
+dataset.command()(compose)
 
 
 @dataset.command()
@@ -96,7 +101,7 @@ def build(
 @dataset.command()
 def verify(pictures: Folder = None, as_json: AsJson = False) -> None:
     """Check files, hashes, counts and truth of a set. Exit code 1: something is wrong."""
-    from tpvqa.worlds.images.manifest import load_pictures
+    from tpvqa.worlds.images.manifest import ORIGINS, load_pictures
     from tpvqa.worlds.images.shipped_tasks import all_reachable
     from tpvqa.worlds.images.verify import verify as check
 
@@ -110,6 +115,7 @@ def verify(pictures: Folder = None, as_json: AsJson = False) -> None:
                     "pictures": report.pictures,
                     "bytes": report.size,
                     "renderers": dict(report.renderers),
+                    "origins": dict(report.origins),
                     "meshes": dict(report.meshes),
                     "states": report.states,
                     "observations": [
@@ -124,12 +130,17 @@ def verify(pictures: Folder = None, as_json: AsJson = False) -> None:
         if report.gaps:
             raise typer.Exit(1)
         return
-    by_renderer = ", ".join(f"{n} by {name}" for name, n in sorted(report.renderers.items()))
+    by_renderer = ", ".join(
+        f"{n} {name}" if name in ORIGINS else f"{n} by {name}"
+        for name, n in sorted(report.renderers.items())
+    )
     typer.echo(
         f"{opened.folder}: {report.pictures} pictures ({by_renderer}; "
         f"{report.meshes['known']} with known and {report.meshes['held_out']} with held-out "
         f"meshes), {report.size / 1e6:.1f} MB"
     )
+    if len(report.origins) > 1:
+        typer.echo(", ".join(f"{n} {kind}" for kind, n in sorted(report.origins.items())))
     counts = list(report.states.values())
     typer.echo(f"{len(counts)} reachable visible states, {min(counts)} to {max(counts)} pictures")
     for (task, action, outcome), count in report.observations.items():

@@ -59,6 +59,9 @@ def run(
             help="images world: state (the default), or paper (the paper's to the letter)."
         ),
     ] = None,
+    pictures: Annotated[
+        Path | None, typer.Option(help="images world: folder of a set of your own.")
+    ] = None,
     failure: Annotated[float, typer.Option(help="P(an action fails).", min=0, max=1)] = 0.25,
     disturbance: Annotated[
         float, typer.Option(help="P(a failure undoes something achieved).", min=0, max=1)
@@ -89,7 +92,12 @@ def run(
     if not monitor.strip() or (vlm is not None and not vlm.strip()):
         raise TpvqaError("--monitor and --vlm must not be empty.")
     own = task is None
-    options = {"majority": majority, "simulator": simulator, "base_url": base_url}
+    options = {
+        "majority": majority,
+        "simulator": simulator,
+        "pictures": None if pictures is None else str(pictures.resolve()),
+        "base_url": base_url,
+    }
     config = TrialConfig(
         task=task,
         domain=None if domain is None else str(domain.resolve()),

@@ -28,7 +28,7 @@ def task_and_rules(name: str) -> tuple[Task, WorldRules]:
 
 @pytest.fixture(scope="session")
 def shipped_reachable() -> list[Reachable]:
-    return all_reachable()
+    return list(all_reachable())
 
 
 @pytest.fixture(scope="session")

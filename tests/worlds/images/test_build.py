@@ -1,6 +1,7 @@
 """Making pictures: needs MuJoCo and software GL. Cycles itself is not run here."""
 
 import fcntl
+import json
 import os
 import sys
 from pathlib import Path
@@ -12,7 +13,7 @@ from tpvqa.cli.dataset import dataset
 from tpvqa.errors import PictureSetError, WorldError
 from tpvqa.worlds.images.blender import VARIABLE, Cycles, find_blender_python
 from tpvqa.worlds.images.build import Settings, build
-from tpvqa.worlds.images.manifest import load_pictures
+from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
 from tpvqa.worlds.images.reachable import Reachable
 from tpvqa.worlds.images.recipe import FACTS, Job, jobs, objection
 from tpvqa.worlds.images.verify import verify
@@ -55,7 +56,7 @@ def test_what_is_built_is_true_and_the_same_again(
     assert one == two
     gaps = verify(load_pictures(tmp_path / "one"), [clean_dishes]).gaps
     assert all("needed" in gap for gap in gaps), "only counts may be short"
-    for job, picture in zip(few, sorted(one.pictures, key=lambda p: p.seed), strict=True):
+    for job, picture in zip(few, sorted(one.pictures, key=lambda p: p.seed or 0), strict=True):
         assert picture.true_state in job.states
         for atom in job.visible:
             assert any(fact.startswith(f"({atom.predicate} ") for fact in picture.seen)
@@ -79,6 +80,19 @@ def test_two_builds_do_not_share_a_folder(tmp_path: Path) -> None:
             build([], tmp_path, Settings("mujoco"))
     finally:
         os.close(lock)
+
+
+def test_a_build_deletes_no_set_that_was_composed(
+    painted: Path, few: list[Job], clean_dishes: Reachable
+) -> None:
+    path = painted / MANIFEST
+    document = json.loads(path.read_text())
+    document["pictures"][0]["origin"] = {"kind": "photo", "source": "kitchen.jpg"}
+    path.write_text(json.dumps(document))
+    before = modified(painted)
+    with pytest.raises(PictureSetError, match="Name another folder"):
+        build(few, painted, Settings("mujoco"))
+    assert modified(painted) == before
 
 
 def test_a_view_that_hides_what_matters_cannot_serve(few: list[Job]) -> None:

@@ -4,13 +4,9 @@ The manifest names only pictures that are whole on disk, and is replaced in one 
 of them, so a build can be stopped at any moment and goes on where it was.
 """
 
-import fcntl
-import json
-import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from itertools import groupby
@@ -25,10 +21,10 @@ from PIL import Image
 
 from tpvqa.chance import chance
 from tpvqa.errors import PictureSetError
-from tpvqa.worlds.images.contrast import DIRTY, DISTINCT, distinctness
-from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Picture, Renderer, digest
+from tpvqa.worlds.images.contrast import overlooked
+from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Origin, Picture, Renderer, digest
 from tpvqa.worlds.images.recipe import FACTS, TRIES, Job, objection
-from tpvqa.worlds.kitchen.household import ITEMS
+from tpvqa.worlds.images.writing import alone, replace, write_manifest
 from tpvqa.worlds.kitchen.layout import Split
 
 if TYPE_CHECKING:
@@ -90,25 +86,10 @@ def build(
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with _alone(folder):
+        with alone(folder):
             return _build(jobs, folder, settings, workers, progress or (lambda done, total: None))
     except OSError as error:
         raise PictureSetError(f"{folder}: cannot be written to ({error})") from error
-
-
-@contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Let no other build into a folder; the lock ends with this process, however it ends."""
-    lock = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        yield
-    except BlockingIOError:
-        raise PictureSetError(
-            f"{folder}: another build is at work there. Wait for it, or name another folder"
-        ) from None
-    finally:
-        os.close(lock)
 
 
 def _build(
@@ -119,7 +100,13 @@ def _build(
     progress: Callable[[int, int], None],
 ) -> Manifest:
     wanted = {job.key: job for job in jobs}
-    kept = {key: picture for key, picture in _existing(folder).items() if key in wanted}
+    existing = _existing(folder)
+    if any(picture.origin != Origin() for picture in existing.values()):
+        raise PictureSetError(
+            f"{folder}: holds pictures that `tpvqa dataset compose` got, which a build would "
+            "delete. Name another folder"
+        )
+    kept = {key: picture for key, picture in existing.items() if key in wanted}
     missing = [
         job
         for job in jobs
@@ -130,7 +117,7 @@ def _build(
     for made in _made(missing, settings, workers):
         replaced = kept.get(made.job.key)
         kept[made.job.key] = made.picture
-        _replace(folder / made.picture.file, made.data)
+        replace(folder / made.picture.file, made.data)
         _write(folder, kept)
         if replaced is not None and replaced.file != made.picture.file:
             (folder / replaced.file).unlink(missing_ok=True)
@@ -158,6 +145,7 @@ def _current(picture: Picture, job: Job, settings: Settings, folder: Path) -> bo
     return (
         picture.renderer == settings.renderer
         and picture.meshes == job.meshes
+        and picture.seed is not None
         and job.seed <= picture.seed < job.seed + TRIES
         and set(picture.shows) == set(job.shows)
         and picture.true_state in job.states
@@ -243,7 +231,7 @@ class _Maker:
                 if reason is None:
                     seen = frozenset(atom.pddl() for atom in FACTS if shown[atom].visible)
                     pixels = self._render(scene, look)
-                    faint = _faint(scene, pixels)
+                    faint = overlooked(scene, pixels)
                     if not faint:
                         data = _encoded(pixels)
                         return Made(job, data, self._picture(job, seed, look, data, state, seen))
@@ -303,19 +291,6 @@ class _Maker:
         return rendered
 
 
-def _faint(scene: "KitchenScene", pixels: NDArray[np.uint8]) -> list[str]:
-    """What is in view, dirt too, and a person would overlook in a picture."""
-    if len(pixels) != SIDE:
-        pixels = np.asarray(Image.fromarray(pixels).resize((SIDE, SIDE), Image.Resampling.LANCZOS))
-    wanted = {**dict.fromkeys(ITEMS, DISTINCT), "dirt": DIRTY}
-    masks = {thing: scene.mask(thing) for thing in wanted}
-    return [
-        thing
-        for thing, mask in masks.items()
-        if mask.any() and distinctness(pixels, mask) < wanted[thing]
-    ]
-
-
 def _encoded(pixels: NDArray[np.uint8]) -> bytes:
     image = Image.fromarray(pixels)
     if image.size != (SIDE, SIDE):
@@ -330,21 +305,5 @@ def _write(folder: Path, kept: dict[tuple[str, int], Picture]) -> Manifest:
         facts=tuple(atom.pddl() for atom in FACTS),
         pictures=tuple(sorted(kept.values(), key=lambda p: (p.visible, p.number))),
     )
-    document = manifest.model_dump(mode="json")
-    for picture in document["pictures"]:
-        picture["seen"].sort()
-    lines = ",\n  ".join(json.dumps(picture) for picture in document.pop("pictures"))
-    head = json.dumps(document)[:-1]
-    text = f'{head}, "pictures": [\n  {lines}\n]}}\n'
-    _replace(folder / MANIFEST, text.encode())
+    write_manifest(folder, manifest)
     return manifest
-
-
-def _replace(path: Path, data: bytes) -> None:
-    """Write a file that is either the old one or the whole new one."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        temporary.write_bytes(data)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -1,10 +1,16 @@
 """How well a thing stands out from what is around it in a picture."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageFilter
+
+from tpvqa.worlds.kitchen.household import ITEMS
+
+if TYPE_CHECKING:
+    from tpvqa.worlds.kitchen.scene import KitchenScene
 
 AROUND = 9
 """Width of the box, pixels, that grows a thing by its surroundings."""
@@ -34,3 +40,17 @@ def distinctness(pixels: NDArray[np.uint8], mask: NDArray[np.bool_]) -> float:
     common = np.quantile(around, [0.1, 0.5, 0.9], axis=0)
     distances = np.sqrt(((thing[:, None] - common[None]) ** 2).mean(-1)).min(1)
     return float(distances.mean()) * math.sqrt(mask.sum())
+
+
+def overlooked(scene: "KitchenScene", pixels: NDArray[np.uint8]) -> list[str]:
+    """What is in view, dirt too, and a person would overlook in a picture of a scene."""
+    side = scene.size
+    if len(pixels) != side:
+        pixels = np.asarray(Image.fromarray(pixels).resize((side, side), Image.Resampling.LANCZOS))
+    wanted = {**dict.fromkeys(ITEMS, DISTINCT), "dirt": DIRTY}
+    masks = {thing: scene.mask(thing) for thing in wanted}
+    return [
+        thing
+        for thing, mask in masks.items()
+        if mask.any() and distinctness(pixels, mask) < wanted[thing]
+    ]

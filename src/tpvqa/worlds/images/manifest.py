@@ -17,6 +17,8 @@ MANIFEST = "manifest.json"
 Meshes = Choice["known", "held_out"]
 Renderer = Choice["cycles", "mujoco"]
 Outcome = Choice["success", "failure"]
+OriginKind = Choice["photo", "rendered", "variation", "generated"]
+ORIGINS: tuple[OriginKind, ...] = ("photo", "rendered", "variation", "generated")
 OUTCOMES: tuple[Outcome, ...] = ("success", "failure")
 
 
@@ -38,6 +40,32 @@ class Shows(_Model):
     outcome: Outcome
 
 
+class Origin(_Model):
+    """Where a picture comes from.
+
+    Attributes:
+        kind: "photo": taken by a camera; "rendered": by this package, also where it stands in for
+            a photo; "variation": of another picture; "generated": from a prompt.
+        got_for: The action and outcome that it was got for, in a set that was composed.
+        source: The file that it is, or is a variation of: below the folder of photos, or of the
+            set that comes with the package.
+        source_sha256: Of that file.
+        prompt: What a generator was asked for, where it was asked in words.
+        generator: What made it, e.g. "openai:MODEL".
+        seed: What the generator was given, where it takes one; tells requests apart otherwise.
+        cost: Dollars, where known.
+    """
+
+    kind: OriginKind = "rendered"
+    got_for: Shows | None = None
+    source: str = ""
+    source_sha256: str = ""
+    prompt: str = ""
+    generator: str = ""
+    seed: int | None = None
+    cost: float | None = None
+
+
 class Picture(_Model):
     """One picture and what is true in it.
 
@@ -46,31 +74,33 @@ class Picture(_Model):
         sha256: Of the file.
         width: Pixels.
         height: Pixels.
-        renderer: What rendered it.
+        renderer: What rendered it; None where nothing did.
         meshes: "known": objects as in training, in new kitchens; "held_out": objects, grippers
-            and dirt that training never saw.
-        seed: Of the kitchen.
+            and dirt that training never saw, as on every photo.
+        seed: Of the kitchen; None where it was not rendered.
         look: Of the arrangement and the camera in it.
         visible: What the camera shows, as `visible.describe` writes it.
         number: Tells it from others that show the same, from 0.
         state: The facts that are true in it, as PDDL atoms; all others are false.
         seen: The facts, true or false, that can be told from it.
         shows: The actions that it is an observation of.
+        origin: Where it comes from.
     """
 
     file: str
     sha256: str
     width: int
     height: int
-    renderer: Renderer
+    renderer: Renderer | None = None
     meshes: Meshes
-    seed: int
+    seed: int | None = None
     look: int = 0
     visible: str
     number: int
     state: tuple[str, ...]
     seen: frozenset[str]
     shows: tuple[Shows, ...]
+    origin: Origin = Origin()
 
     @cached_property
     def true_state(self) -> State:

@@ -68,6 +68,7 @@ def jobs(tasks: Sequence[Reachable]) -> list[Job]:
                     counts[visible] = max(counts[visible], -(-PER_OUTCOME // len(outcome)))
     made = []
     for place, visible in enumerate(sorted(classes, key=describe)):
+        shows = observations(visible, tasks)
         made += [
             Job(
                 visible=visible,
@@ -76,7 +77,7 @@ def jobs(tasks: Sequence[Reachable]) -> list[Job]:
                 seed=TEST_SEEDS + (place // SHARING * MOST + number) * TRIES,
                 turn=place % SHARING,
                 states=tuple(sorted(classes[visible], key=sorted)),
-                shows=observations(visible, tasks),
+                shows=shows,
             )
             for number in range(counts[visible])
         ]

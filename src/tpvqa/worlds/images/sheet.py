@@ -1,53 +1,74 @@
 """A contact sheet of a set of pictures: one self-contained HTML page."""
 
 import base64
+import json
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from tpvqa.worlds.images.manifest import OUTCOMES, Picture, PictureSet
+from tpvqa.worlds.images.manifest import ORIGINS, OUTCOMES, Picture, PictureSet, Shows
 
 STYLE = """
 body { font: 14px/1.4 system-ui, sans-serif; margin: 1.5rem; color: #222; }
 h2 { margin: 2rem 0 .3rem; font-size: 1.05rem; } h3 { margin: .8rem 0 .3rem; font-weight: 600; }
 .row { display: flex; flex-wrap: wrap; gap: 6px; }
 figure { margin: 0; width: 168px; } img { width: 168px; height: 168px; display: block; }
-figcaption { font-size: 11px; color: #555; } details { max-width: 168px; overflow: hidden; }
+figcaption { font-size: 11px; color: #555; overflow-wrap: anywhere; }
+summary { cursor: pointer; }
 .failure { color: #a30; } .success { color: #063; }
+.frame { position: relative; }
+.badge { position: absolute; left: 4px; top: 4px; padding: 0 5px; border-radius: 3px;
+  color: #fff; font-size: 11px; background: #666; }
+.badge.photo { background: #06763f; } .badge.variation { background: #1d55b5; }
+.badge.generated { background: #7a2d9c; }
+table { border-collapse: collapse; }
+td, th { padding: 1px 10px 1px 0; text-align: left; }
 """
 
 
 def contact_sheet(pictures: PictureSet) -> str:
     """All pictures by task, action and outcome, then by visible state, as an HTML page."""
-    sections = []
-    actions = {
-        (shows.task, shows.action): None
-        for picture in pictures.manifest.pictures
-        for shows in picture.shows
-    }
-    for task, action in sorted(actions):
-        sections.append(f"<h2>{escape(task)}: {escape(action)}</h2>")
+    manifest = pictures.manifest
+    sections, lines = [], []
+    actions = {(shows.task, shows.action) for p in manifest.pictures for shows in p.shows}
+    for number, (task, action) in enumerate(sorted(actions)):
+        sections.append(f'<h2 id="a{number}">{escape(task)}: {escape(action)}</h2>')
         for outcome in OUTCOMES:
-            found = [
-                picture
-                for picture in pictures.manifest.pictures
-                if any(
-                    (s.task, s.action, s.outcome) == (task, action, outcome) for s in picture.shows
+            wanted = Shows(task=task, action=action, outcome=outcome)
+            got_for = [p for p in manifest.pictures if p.origin.got_for == wanted]
+            others = [p for p in manifest.pictures if wanted in p.shows and p not in got_for]
+            heading = f"{outcome}: {len(got_for) + len(others)} pictures"
+            if got_for:
+                heading = f"{outcome}: {len(got_for)} pictures got for it, {_counted(got_for)}"
+            sections.append(f'<h3 class="{outcome}">{heading}</h3>')
+            sections.append(_row(pictures, got_for or others))
+            if got_for and others:
+                sections.append(
+                    f"<details><summary>{len(others)} of other actions show it too</summary>"
+                    f"{_row(pictures, others)}</details>"
                 )
-            ]
-            sections.append(f'<h3 class="{outcome}">{outcome}: {len(found)} pictures</h3>')
-            sections.append(_row(pictures, found))
+            lines.append(
+                f'<tr><td>{escape(task)}</td><td><a href="#a{number}">{escape(action)}</a></td>'
+                f'<td class="{outcome}">{outcome}</td>'
+                f"<td>{_counted(got_for or others)}</td></tr>"
+            )
     sections.append("<h2>Every visible state</h2>")
-    for visible in sorted({picture.visible for picture in pictures.manifest.pictures}):
-        found = [p for p in pictures.manifest.pictures if p.visible == visible]
+    for visible in sorted({picture.visible for picture in manifest.pictures}):
+        found = [p for p in manifest.pictures if p.visible == visible]
         sections.append(f"<h3>{escape(visible)}: {len(found)} pictures</h3>")
         sections.append(_row(pictures, found))
-    data = _images(pictures)
     return (
         "<!doctype html><html lang='en'><meta charset='utf-8'>"
         f"<title>Pictures of the kitchen</title><style>{STYLE}</style>"
-        f"<h1>{len(pictures.manifest.pictures)} pictures</h1>"
-        f"{''.join(sections)}{data}</html>"
+        f"<h1>{len(manifest.pictures)} pictures: {_counted(manifest.pictures)}</h1>"
+        f"<table>{''.join(lines)}</table>"
+        f"{''.join(sections)}{_images(pictures)}</html>"
     )
+
+
+def _counted(found: Iterable[Picture]) -> str:
+    counts = Counter(picture.origin.kind for picture in found)
+    return ", ".join(f"{counts[kind]} {kind}" for kind in ORIGINS if counts[kind])
 
 
 def _row(pictures: PictureSet, found: Iterable[Picture]) -> str:
@@ -62,17 +83,28 @@ def _figure(picture: Picture) -> str:
         f"<b>{name}</b><br>{escape(' '.join(sorted(texts)))}<br>"
         for name, texts in (("true", true), ("false", false), ("true, not seen", hidden))
     )
+    origin = picture.origin
+    made = [picture.renderer or "", origin.generator, picture.meshes]
+    came = [
+        ("from", origin.source if origin.source != picture.file else ""),
+        ("prompt", origin.prompt),
+        ("seed", "" if origin.seed is None else str(origin.seed)),
+        ("cost", "" if not origin.cost else f"${origin.cost:g}"),
+    ]
+    facts += "".join(f"<b>{name}</b> {escape(said)}<br>" for name, said in came if said)
     return (
-        f'<figure><img data-file="{escape(picture.file)}" alt="{escape(picture.visible)}">'
-        f"<figcaption>{escape(picture.file)} · {picture.renderer} · {picture.meshes}"
-        f"<details><summary>facts</summary>{facts}</details></figcaption></figure>"
+        f'<figure><div class="frame"><img data-file="{escape(picture.file)}" '
+        f'alt="{escape(picture.visible)}">'
+        f'<span class="badge {origin.kind}">{origin.kind}</span></div>'
+        f"<figcaption>{escape(picture.file)} · {escape(' · '.join(filter(None, made)))}"
+        f"<details><summary>facts and origin</summary>{facts}</details></figcaption></figure>"
     )
 
 
 def _images(pictures: PictureSet) -> str:
     # Each picture stands in the page once, however often it is shown.
     entries = ",".join(
-        f'"{picture.file}":"{base64.b64encode(pictures.read(picture)).decode()}"'
+        f'{_in_script(picture.file)}:"{base64.b64encode(pictures.read(picture)).decode()}"'
         for picture in pictures.manifest.pictures
     )
     return (
@@ -80,6 +112,10 @@ def _images(pictures: PictureSet) -> str:
         "for (const image of document.querySelectorAll('img'))"
         " image.src='data:image/jpeg;base64,'+data[image.dataset.file];</script>"
     )
+
+
+def _in_script(text: str) -> str:
+    return json.dumps(text).replace("<", "\\u003c")
 
 
 def table(pictures: PictureSet, chosen: Sequence[Picture], *, columns: int = 8) -> bytes:

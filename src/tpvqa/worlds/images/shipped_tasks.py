@@ -1,5 +1,7 @@
 """What the shipped tasks of the household can lead to."""
 
+from functools import cache
+
 from tpvqa.pddl import load_task
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.tasks import find_task
@@ -10,8 +12,9 @@ TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 """The paper's, which the pictures are made for."""
 
 
-def all_reachable() -> list[Reachable]:
-    """Enumerate the visible states of all tasks; takes some seconds."""
+@cache
+def all_reachable() -> tuple[Reachable, ...]:
+    """Enumerate the visible states of all tasks; takes some seconds, the first time."""
     found = []
     planner = FastDownward()
     try:
@@ -21,4 +24,4 @@ def all_reachable() -> list[Reachable]:
             found.append(reachable(task, load_world_file(files.world, task), planner, name))
     finally:
         planner.close()
-    return found
+    return tuple(found)

@@ -34,7 +34,8 @@ class Report:
         pictures: How many there are.
         states: Pictures by visible state that some task can lead to.
         observations: Pictures by task, action and outcome.
-        renderers: Pictures by renderer.
+        renderers: Pictures by renderer, those that none rendered by origin.
+        origins: Pictures by origin.
         meshes: Pictures by "known" and "held_out".
         size: Bytes in all.
     """
@@ -44,6 +45,7 @@ class Report:
     states: dict[str, int] = field(default_factory=dict)
     observations: dict[tuple[str, str, Outcome], int] = field(default_factory=dict)
     renderers: Counter[str] = field(default_factory=Counter)
+    origins: Counter[str] = field(default_factory=Counter)
     meshes: Counter[str] = field(default_factory=Counter)
     size: int = 0
 
@@ -86,7 +88,8 @@ def verify(pictures: PictureSet, tasks: Sequence[Reachable]) -> Report:
         for visible in {picture.visible_state for picture in pictures.manifest.pictures}
     }
     for picture in pictures.manifest.pictures:
-        report.renderers[picture.renderer] += 1
+        report.renderers[picture.renderer or picture.origin.kind] += 1
+        report.origins[picture.origin.kind] += 1
         report.meshes[picture.meshes] += 1
         report.size += _check_file(pictures, picture, report.gaps)
         _check_truth(picture, facts, certain, tags[picture.visible_state], report.gaps)

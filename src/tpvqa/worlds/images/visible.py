@@ -7,6 +7,8 @@ a picture does not say which of the hands holds it. What lies in a container is 
 robot looks for it there, and what else lies beside the thing looked at stays out of the picture.
 """
 
+from functools import lru_cache
+
 from tpvqa.pddl import Atom, State
 from tpvqa.worlds.kitchen.household import ITEMS, Household
 
@@ -39,6 +41,7 @@ def mirrored(atom: Atom) -> Atom:
     return Atom(atom.predicate, tuple(other.get(name, name) for name in atom.arguments))
 
 
+@lru_cache(maxsize=4096)
 def visible_state(state: State) -> VisibleState:
     """What the camera shows of a true state.
 
