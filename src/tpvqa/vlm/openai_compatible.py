@@ -195,10 +195,13 @@ class OpenAICompatibleVLM:
                 return _Outcome(late, time.monotonic() - started, final=False)
 
         try:
-            async with asyncio.TaskGroup() as group:
-                tasks = [group.create_task(one(text)) for text in texts]
-        except* AnswerError as errors:
-            raise errors.exceptions[0] from None
+            async with asyncio.TaskGroup() as asking:
+                tasks = [asking.create_task(one(text)) for text in texts]
+        except ExceptionGroup as group:  # what is raised in an `except*` stays in a group
+            refused, other = group.split(AnswerError)
+            if refused is None or other is not None:
+                raise
+            raise refused.exceptions[0] from None
         outcomes = [task.result() for task in tasks]
         if outcomes and all(outcome.unreachable for outcome in outcomes):
             raise AnswerError(
