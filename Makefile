@@ -13,6 +13,7 @@ demo: install
 	@$(BIN)/tpvqa run serve_breakfast --seed $(SEED) --out $(DEMO) || [ $$? -eq 1 ]
 	@$(BIN)/tpvqa report $(DEMO) > /dev/null
 	@echo "report:  $$PWD/$(DEMO)/report.html  (open it in a browser)"
+	@echo "next:    . $(BIN)/activate; tpvqa --help"
 
 test: install-dev gl lint types tests
 

@@ -205,3 +205,25 @@ def test_cells_that_a_recording_cannot_fill_stay_empty() -> None:
         "tp",
     ]
     assert len([vlm for vlm, _ in cells if vlm == "paper-table"]) == 5
+
+
+def test_an_interrupt_ends_the_bench_and_leaves_no_row(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    from tpvqa.vlm.oracle import Oracle
+
+    asked = Oracle.ask
+
+    def interrupt_episode_150(self: Oracle, *arguments: Any) -> Any:
+        if self._episode == 150:
+            raise KeyboardInterrupt
+        return asked(self, *arguments)
+
+    monkeypatch.setattr(Oracle, "ask", interrupt_episode_150)
+    ledger = Ledger(tmp_path, {})
+    with pytest.raises(KeyboardInterrupt):
+        run_all(ledger, {CELLS[0]: 300}, TrialConfig())
+    ledger.close()
+    rows = [values for _, values in sorted(rows_of(tmp_path).items())]
+    assert [values["episode"] for values in rows] == list(range(100))
+    assert not any(values["because"] == "cancelled" for values in rows)

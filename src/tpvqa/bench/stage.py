@@ -74,6 +74,8 @@ class Stage:
             simulation = getattr(trial.world, "simulation", trial.simulation)
             judge = Judge(simulation, self.actions)
             ended = trial.run(MemoryWriter(resumable=False, keep=False), listeners=[judge])
+        if ended.because == "cancelled":  # Ctrl-C ends the bench, and this episode is none of it
+            raise KeyboardInterrupt
         return {
             "completed": bool(ended.completed),
             "because": ended.because,

@@ -187,8 +187,8 @@ def load_pictures(folder: Path | None = None) -> PictureSet:
         text = path.read_bytes()
     except OSError as error:
         raise PictureSetError(
-            f"{path}: cannot be read ({error.strerror}). Make the pictures with "
-            "`tpvqa dataset build`, or name the folder that holds them"
+            f"{path}: cannot be read ({error.strerror}). Make them with "
+            "`tpvqa dataset compose` or `build`, or name the folder that holds them"
         ) from error
     try:
         manifest = Manifest.model_validate_json(text)
