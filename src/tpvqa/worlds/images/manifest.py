@@ -188,7 +188,7 @@ def load_pictures(folder: Path | None = None) -> PictureSet:
     except OSError as error:
         raise PictureSetError(
             f"{path}: cannot be read ({error.strerror}). Make them with "
-            "`tpvqa dataset compose` or `build`, or name the folder that holds them"
+            "`tpvqa dataset compose` or `tpvqa dataset build`, or name the folder that holds them"
         ) from error
     try:
         manifest = Manifest.model_validate_json(text)
