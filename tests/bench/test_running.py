@@ -143,8 +143,10 @@ def test_the_command_killed_in_the_middle_goes_on(tmp_path: Path) -> None:
     wanted = "task monitor vlm episodes completed completion_rate ci_low ci_high questions looks"
     wanted += " actions repeats replans ended_before_first_action errors"
     assert set(wanted.split()) <= set(table[0])
-    for name in ("report.html", "summary.csv", "summary.parquet", "episodes.parquet"):
-        assert (folder / name).stat().st_size > 500
+    for name in ("summary", "episodes", "answers", "decisions", "limits"):
+        for ending in ("csv", "parquet"):
+            assert (folder / f"{name}.{ending}").stat().st_size > 200
+    assert (folder / "report.html").stat().st_size > 500
 
 
 def test_every_monitor_meets_the_same_faults() -> None:

@@ -144,8 +144,7 @@ def run_paper_bench(
         results = _results(bench, ledger)
     finally:
         ledger.close()
-    episodes_run = [row for rows in results.rows.values() for row in rows]
-    write_tables(folder, results.summaries, episodes_run)
+    write_tables(folder, results)
     write_bench_report(folder, results)
     return results
 
@@ -156,12 +155,7 @@ def _results(bench: PaperBench, ledger: Ledger) -> Results:
         cell: ledger.of(cell, bench.curve) for cell in bench.curve_cells()
     }
     known = [task for task in bench.tasks if task in TASKS]
-    lines = [
-        line
-        for vlm in bench.vlms
-        if looks(vlm)
-        for line in balanced_lines(vlm, known, bench.common)
-    ]
+    lines = {vlm: balanced_lines(vlm, known, bench.common) for vlm in filter(looks, bench.vlms)}
     return Results(
         settings={
             **bench.settings(),
@@ -194,7 +188,7 @@ def balanced_lines(vlm_spec: str, tasks: Sequence[str], common: TrialConfig) -> 
                         AnswerLine(
                             task,
                             WORDS[way],
-                            f"balanced {vlm_spec}",
+                            "balanced",
                             measure(scored),
                             sum(decided) / len(decided),
                             PAPER_TABLE.get(way, {}).get(task),

@@ -1,31 +1,74 @@
 """Tables of a bench as files: CSV and Parquet."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.summary import Summary
+from tpvqa.bench.limits import sensitivity
+from tpvqa.bench.report import Results
 from tpvqa.errors import BenchError, MissingExtraError
 
 
-def write_tables(
-    folder: Path, found: Sequence[Summary], episodes: Sequence[EpisodeRow]
-) -> list[Path]:
-    """Write `summary` and `episodes`, each as CSV and Parquet; a file is written whole or not.
+def write_tables(folder: Path, results: Results) -> list[Path]:
+    """Write every table as CSV and Parquet; a file is written whole or not.
+
+    `summary` (a row for every task and monitor), `episodes`, `answers` (how right they were),
+    `decisions`, `limits` (completion under tighter ones) and `curve` (completion by accuracy).
 
     Raises:
         MissingExtraError: PyArrow is not installed.
         BenchError: The folder cannot be written to.
     """
-    rows = [row.model_dump() for row in episodes]
-    for row in rows:
-        row["answers"], row["decisions"] = json.dumps(row["answers"]), json.dumps(row["decisions"])
-    written = []
-    for name, values in (("summary", [each.flat() for each in found]), ("episodes", rows)):
-        written += _write(folder, name, values)
-    return written
+    tables = {
+        "summary": [each.flat() for each in results.summaries],
+        "episodes": list(_episodes(results)),
+        "answers": list(_answers(results)),
+        "decisions": [
+            {"vlm": vlm, "task": task, "monitor": monitor, **asdict(each)}
+            for vlm in results.vlms
+            for task, monitor, each in results.decision_lines(vlm)
+        ],
+        "limits": list(_limits(results)),
+        "curve": [
+            {"task": task, "monitor": monitor, "accuracy": accuracy, "completion_rate": rate}
+            for task, by_monitor in results.curves.items()
+            for monitor, curve in by_monitor.items()
+            for accuracy, rate in curve.items()
+        ],
+    }
+    return [path for name, rows in tables.items() if rows for path in _write(folder, name, rows)]
+
+
+def _episodes(results: Results) -> Iterator[dict[str, Any]]:
+    for rows in results.rows.values():
+        for row in rows:
+            values = row.model_dump()
+            values["answers"] = json.dumps(row.answers)
+            values["decisions"] = json.dumps(row.decisions)
+            yield values
+
+
+def _answers(results: Results) -> Iterator[dict[str, Any]]:
+    for vlm in results.vlms:
+        for line in results.lines(vlm):
+            yield {
+                "vlm": vlm,
+                "task": line.task,
+                "asked": line.way,
+                "on": line.source,
+                "decision_accuracy": line.decision_accuracy,
+                "paper": line.paper,
+                **asdict(line.metrics),
+            }
+
+
+def _limits(results: Results) -> Iterator[dict[str, Any]]:
+    for cell, rows in results.rows.items():
+        for name, points in (sensitivity(rows) if rows else {}).items():
+            for limit, rate in points.items():
+                yield {**asdict(cell), "limit_of": name, "limit": limit, "completion_rate": rate}
 
 
 def _write(folder: Path, name: str, values: Sequence[Mapping[str, Any]]) -> list[Path]:

@@ -2,12 +2,16 @@
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
     from tpvqa.bench.report import Results
 
 bench_app = typer.Typer(
@@ -167,28 +171,14 @@ class _Progress:
 
 def _print(results: "Results") -> None:
     from rich.console import Console
-    from rich.table import Table
 
     console = Console()
     if not console.is_terminal:
-        console = Console(width=130)
+        console = Console(width=150)
     for vlm in results.vlms:
-        table = Table(title=vlm, title_justify="left", title_style="bold", box=None, pad_edge=False)
-        for name in ("task", "monitor"):
-            table.add_column(name, no_wrap=True)
-        for name in (
-            "completed",
-            "95% interval",
-            "vs tpvqa",
-            "p",
-            "questions",
-            "looks",
-            "actions",
-            "repeats",
-            "replans",
-            "errors",
-        ):
-            table.add_column(name, justify="right", no_wrap=True)
+        table = _table(vlm)
+        figures = ("completed", "95% interval", "vs tpvqa", "p", "questions", "looks", "actions")
+        _columns(table, ("task", "monitor"), (*figures, "repeats", "replans", "errors"))
         last = ""
         for each in results.summaries:
             if each.vlm != vlm:
@@ -213,3 +203,59 @@ def _print(results: "Results") -> None:
             last = each.task
         console.print(table)
         console.print()
+        _print_accuracy(console, results, vlm)
+    crossings = results.crossings()
+    if crossings:
+        table = _table("better than TP from an accuracy of")
+        _columns(table, ("task", "monitor"), ("accuracy",))
+        for task, monitor, at in crossings:
+            table.add_row(task, monitor, "nowhere" if at is None else f"{at:.2f}")
+        console.print(table)
+        console.print()
+
+
+def _print_accuracy(console: "Console", results: "Results", vlm: str) -> None:
+    answers = _table("accuracy of answers")
+    names = ("answers", "accuracy", "paper", "decision", "balanced", "AUROC", "ECE", "unanswered")
+    _columns(answers, ("task", "asked", "on"), names)
+    for line in results.lines(vlm):
+        found = line.metrics
+        figures = (
+            found.accuracy,
+            line.paper,
+            line.decision_accuracy,
+            found.balanced_accuracy,
+            found.auroc,
+            found.calibration_error,
+            found.abstained,
+        )
+        answers.add_row(
+            line.task, line.way, line.source, str(found.visible), *map(_figure, figures)
+        )
+    decisions = _table("decisions")
+    _columns(decisions, ("task", "monitor", "when"), ("decisions", "accuracy", "wrong goes"))
+    decisions.add_column("wrong stops", justify="right")
+    for task, monitor, each in results.decision_lines(vlm):
+        rates = (each.accuracy, each.false_go, each.false_stop)
+        decisions.add_row(task, monitor, each.when, str(each.count), *map(_figure, rates))
+    for table in (answers, decisions):
+        if table.row_count:
+            console.print(table)
+            console.print()
+
+
+def _table(title: str) -> "Table":
+    from rich.table import Table
+
+    return Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
+
+
+def _columns(table: "Table", words: Sequence[str], figures: Sequence[str]) -> None:
+    for name in words:
+        table.add_column(name, no_wrap=True)
+    for name in figures:
+        table.add_column(name, justify="right", no_wrap=True)
+
+
+def _figure(value: float | None) -> str:
+    return "" if value is None else f"{value:.3f}"

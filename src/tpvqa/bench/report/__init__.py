@@ -1,7 +1,7 @@
 """One self-contained HTML page about a bench: tables and figures."""
 
 import base64
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -47,13 +47,13 @@ class Results:
     Attributes:
         settings: What decided it.
         rows: The episodes of every cell.
-        balanced: Lines about the balanced set.
+        balanced: Lines about the balanced set, by VLM.
         curves: Completion by task, monitor and accuracy.
     """
 
     settings: Mapping[str, Any]
     rows: Mapping[Cell, Sequence[EpisodeRow]]
-    balanced: Sequence[AnswerLine] = ()
+    balanced: Mapping[str, Sequence[AnswerLine]] = field(default_factory=dict)
     curves: Mapping[str, Mapping[str, Curve]] = field(default_factory=dict)
 
     @property
@@ -85,6 +85,10 @@ class Results:
                     paper = PAPER_TABLE.get(way, {}).get(task)
                     lines.append(AnswerLine(task, WORDS[way], "episodes", metrics, None, paper))
         return lines
+
+    def lines(self, vlm: str) -> list[AnswerLine]:
+        """How right a VLM's answers were: on the balanced set, then in the episodes."""
+        return [*self.balanced.get(vlm, ()), *self.answer_lines(vlm)]
 
     def decision_lines(self, vlm: str) -> list[tuple[str, str, Decisions]]:
         """How right the decisions of every monitor were."""
@@ -166,6 +170,3 @@ def write_bench_report(folder: Path, results: Results) -> Path:
 
 def _rate(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else f"{value:.{digits}f}"
-
-
-Rate = Callable[[float | None], str]
