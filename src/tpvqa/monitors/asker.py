@@ -5,6 +5,7 @@ from typing import Any
 
 from tpvqa.errors import PluginError
 from tpvqa.monitors.majority import Majority
+from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Ask, Look, Request
 from tpvqa.monitors.verdict import Decision, Verdict
 from tpvqa.monitors.vote import vote
@@ -50,6 +51,18 @@ class Asker:
             if denied is not None:
                 return denied, answers
         return None, answers
+
+
+def check_effects(asker: Asker, step: Step) -> Check:
+    """Ask about all effects of an action: go on believing them, or repeat it."""
+    questions = step.book.effects(step.action, step.state)
+    denied, answers = yield from asker.ask(questions)
+    if denied is None:
+        return give_up(questions)
+    if denied:
+        return Verdict(Decision.REPEAT, tally("effects", answers))
+    state = step.task.apply(step.state, step.action)
+    return Verdict(Decision.GO_ON, tally("effects", answers), state)
 
 
 def tally(what: str, answers: Sequence[Answer]) -> str:

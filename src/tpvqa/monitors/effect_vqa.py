@@ -1,6 +1,6 @@
 """The paper's ablation: effects are checked, preconditions are believed."""
 
-from tpvqa.monitors.asker import Asker, give_up, tally
+from tpvqa.monitors.asker import Asker, check_effects
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.verdict import Decision, Verdict
@@ -26,11 +26,4 @@ class EffectVQA:
 
     def after(self, step: Step) -> Check:
         """Check the effects: go on, or repeat the action."""
-        questions = step.book.effects(step.action, step.state)
-        denied, answers = yield from self._asker.ask(questions)
-        if denied is None:
-            return give_up(questions)
-        if denied:
-            return Verdict(Decision.REPEAT, tally("effects", answers))
-        state = step.task.apply(step.state, step.action)
-        return Verdict(Decision.GO_ON, tally("effects", answers), state)
+        return (yield from check_effects(self._asker, step))

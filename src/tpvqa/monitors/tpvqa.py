@@ -4,7 +4,7 @@ from collections.abc import Generator, Sequence
 from typing import Any
 
 from tpvqa.errors import PluginError
-from tpvqa.monitors.asker import Asker, give_up, tally
+from tpvqa.monitors.asker import Asker, check_effects, give_up, tally
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.protocol import Check, Step
@@ -96,15 +96,10 @@ class TPVQA:
 
     def after(self, step: Step) -> Check:
         """Check the effects: go on, or repeat the action."""
-        questions = step.book.effects(step.action, step.state)
-        denied, answers = yield from self._asker.ask(questions)
-        if denied is None:
-            return give_up(questions)
-        if denied:
-            return Verdict(Decision.REPEAT, tally("effects", answers))
-        state = step.task.apply(step.state, step.action)
-        self._remember(step).record(step.state, state)
-        return Verdict(Decision.GO_ON, tally("effects", answers), state)
+        verdict = yield from check_effects(self._asker, step)
+        if verdict.state is not None:
+            self._remember(step).record(step.state, verdict.state)
+        return verdict
 
     def _correct(self, step: Step, answers: Sequence[Answer]) -> Generator[Request, Any, State]:
         """Take the denied facts out, believing an alternative where exactly one is affirmed."""
