@@ -15,6 +15,7 @@ TpvqaError
 │   └── PictureRefused     this one picture was refused, others may be made
 ├── EpisodeError           an episode cannot be read or resumed
 ├── BenchError             a bench cannot be run, read or written
+├── CalibrationError       a calibration cannot be learnt, read or written
 ├── UnknownNameError       no plug-in or task of that name
 ├── PluginError            a plug-in cannot be imported or does not take its arguments
 └── MissingExtraError      an optional package is needed
@@ -112,6 +113,10 @@ class EpisodeError(TpvqaError):
 
 class BenchError(TpvqaError):
     """A bench cannot be run, or its results cannot be read or written."""
+
+
+class CalibrationError(TpvqaError):
+    """A calibration cannot be learnt from the data given, or its file cannot be read or written."""
 
 
 class UnknownNameError(TpvqaError):

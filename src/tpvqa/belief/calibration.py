@@ -1,0 +1,274 @@
+"""How likely an answer is where yes is right and where it is wrong: what a VLM's word is worth."""
+
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from tpvqa.errors import CalibrationError
+from tpvqa.questions.question import Question, Way
+from tpvqa.vlm.answer import Answer, Reply
+
+BOUND = 6.0
+"""No single answer is worth more than this log likelihood ratio (odds of 403 to 1): a network that
+is sure of itself is still wrong now and then, in ways that no training set of its size shows."""
+_EDGE = 1e-4
+"""P(yes) is cut to [_EDGE, 1 - _EDGE]: what is beyond says how a number was rounded."""
+
+Probability = Annotated[float, Field(ge=0, le=1)]
+
+
+class Apart(StrEnum):
+    """What lies between an answer and the last one to the same question about the same fact."""
+
+    SAME_PICTURE = "same picture"
+    SAME_VIEW = "same view"  # a new picture of the same view
+    OTHER_VIEW = "other view"
+
+
+@dataclass(frozen=True, slots=True)
+class Rates:
+    """How often each reply comes.
+
+    Attributes:
+        yes_if_true: P(yes | yes or no) where yes is right.
+        yes_if_false: P(yes | yes or no) where no is right.
+        abstain_if_true: P(unknown or cannot see) where yes is right.
+        abstain_if_false: P(unknown or cannot see) where no is right.
+    """
+
+    yes_if_true: Probability
+    yes_if_false: Probability
+    abstain_if_true: Probability
+    abstain_if_false: Probability
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Curve(_Model):
+    """From P(yes) to a log likelihood ratio (Platt 1999, less the log odds of the base rate).
+
+    The ratio is `slope` · logit P(yes) + `intercept` ± `sign`, + where the reply is yes. A slope
+    of 1 takes P(yes) at its word; a negative one says that it is higher where no is right.
+    """
+
+    slope: float
+    intercept: float = 0.0
+    sign: float = 0.0
+
+
+class Group(_Model):
+    """What was learnt of the answers to questions of one kind.
+
+    Attributes:
+        way: The way of asking; None for all.
+        predicate: The predicate asked about, or the action where a whole action is; None for all.
+        rows: Answers that it was learnt from, abstentions included.
+        rates: How often each reply comes, shrunk towards those of the wider group.
+        curve: What P(yes) is worth; None where the VLM gave none.
+    """
+
+    way: Way | None = None
+    predicate: str | None = None
+    rows: int = 0
+    rates: Rates
+    curve: Curve | None = None
+
+
+NEAREST: Mapping[Way, tuple[Way, ...]] = {
+    Way.PRECONDITION: (Way.PRECONDITION, Way.ALTERNATIVE, Way.EFFECT),
+    Way.ALTERNATIVE: (Way.ALTERNATIVE, Way.PRECONDITION, Way.EFFECT),
+    Way.EFFECT: (Way.EFFECT, Way.PRECONDITION, Way.ALTERNATIVE),
+    Way.POSSIBLE: (Way.POSSIBLE,),
+    Way.SUCCESSFUL: (Way.SUCCESSFUL, Way.DID),
+    Way.DID: (Way.DID, Way.SUCCESSFUL),
+}
+"""Where to look for what is known of a way of asking: ways that use the same words stand in."""
+
+
+class Calibration(_Model):
+    """What the answers of one VLM are worth as evidence; kept as one JSON file.
+
+    An answer's worth is its log likelihood ratio log P(answer | yes is right) - log P(answer | no
+    is right), in nats: the base rate of the pictures that it was learnt from is not in it. What is
+    known of questions of the same way and predicate counts first, then of the same way, then of
+    all.
+
+    A further answer is worth less than the first. With probability ρ (`repeat_same_view`,
+    `repeat_other_view`) it only repeats the last one, else it is drawn afresh; on the same picture
+    it is worth nothing.
+
+    Attributes:
+        version: Of the file.
+        vlm: What it was learnt of.
+        rows: Labelled answers that it was learnt from.
+        groups: By way and predicate.
+        ways: By way.
+        whole: Of all answers.
+        repeat_same_view: ρ between two pictures of one view.
+        repeat_other_view: ρ between pictures of two views.
+    """
+
+    version: Literal[1] = 1
+    vlm: str
+    rows: int = 0
+    groups: tuple[Group, ...] = ()
+    ways: tuple[Group, ...] = ()
+    whole: Group
+    repeat_same_view: Probability
+    repeat_other_view: Probability
+
+    @cached_property
+    def _nearest(self) -> dict[Way, dict[str, Group]]:
+        """Way → predicate → group, "" for the way by itself. Answers come by the ten thousand."""
+        by_way = {group.way: group for group in self.ways}
+        found: dict[Way, dict[str, Group]] = {}
+        for way, near in NEAREST.items():
+            found[way] = {"": next((by_way[each] for each in near if each in by_way), self.whole)}
+            for each in reversed(near):
+                own = (group for group in self.groups if group.way is each)
+                found[way].update({group.predicate: group for group in own if group.predicate})
+        return found
+
+    @classmethod
+    def default(cls, vlm: str = "") -> "Calibration":
+        """What to assume of a VLM of which nothing is known.
+
+        It is right in 0.85 of its answers, about what large VLMs reach on household facts (ViPlan,
+        Merler et al. 2025); its P(yes) is trusted half (log odds halved), as VLMs are surer than
+        they are right; a further look repeats the last answer with probability 0.5 from the same
+        view and 0.25 from another.
+        """
+        return cls(
+            vlm=vlm,
+            whole=Group(rates=Rates(0.85, 0.15, 0.05, 0.05), curve=Curve(slope=0.5)),
+            repeat_same_view=0.5,
+            repeat_other_view=0.25,
+        )
+
+    def group(self, question: Question) -> Group:
+        """The narrowest group that tells something about a question."""
+        known = self._nearest[question.way]
+        if question.atom is not None:
+            subject = question.atom.predicate
+        else:
+            subject = "" if question.action is None else question.action.name
+        return known.get(subject) or known[""]
+
+    def rates(self, question: Question) -> Rates:
+        """What to expect of the answer before asking."""
+        return self.group(question).rates
+
+    def log_ratio(self, answer: Answer) -> float:
+        """What an answer is worth by itself: positive where it speaks for yes.
+
+        Returns:
+            log P(answer | yes is right) - log P(answer | no is right), within ±`BOUND`; 0 where
+            the VLM abstains.
+        """
+        if answer.reply is Reply.YES:
+            yes = True
+        elif answer.reply is Reply.NO:
+            yes = False
+        else:
+            return 0.0
+        group = self.group(answer.question)
+        curve, p = group.curve, answer.p_yes
+        if curve is None or p is None:
+            return _of_counts(group.rates, yes=yes)
+        p = min(max(p, _EDGE), 1 - _EDGE)
+        sign = curve.sign if yes else -curve.sign
+        return _bounded(curve.slope * math.log(p / (1 - p)) + curve.intercept + sign)
+
+    def repeat(self, apart: Apart) -> float:
+        """ρ: the probability that a further answer only repeats the last one."""
+        if apart is Apart.SAME_PICTURE:
+            return 1.0
+        return self.repeat_same_view if apart is Apart.SAME_VIEW else self.repeat_other_view
+
+    def further(self, answer: Answer, last: Reply, apart: Apart) -> float:
+        """What an answer adds where the same question was answered about the unchanged fact before.
+
+        An answer that differs from the last one was drawn afresh and is worth all of `log_ratio`.
+        One that agrees may only repeat it: log (ρ + (1 - ρ) P(answer | yes is right)) less the
+        same where no is right, with the two probabilities σ(±log ratio), whose ratio is the
+        answer's own. An answer after an abstention is worth all.
+
+        Args:
+            answer: The new answer.
+            last: The last reply to the question.
+            apart: What lies between the two.
+        """
+        ratio, rho = self.log_ratio(answer), self.repeat(apart)
+        if rho >= 1:
+            return 0.0
+        if answer.reply is not last:
+            return ratio
+        for_yes = 1 / (1 + math.exp(-ratio))
+        return math.log(rho + (1 - rho) * for_yes) - math.log(rho + (1 - rho) * (1 - for_yes))
+
+    @classmethod
+    def load(cls, path: Path) -> "Calibration":
+        """Read a file that `save` wrote.
+
+        Raises:
+            CalibrationError: It cannot be read, is of another version, or is broken.
+        """
+        try:
+            text = path.read_bytes()
+        except OSError as error:
+            raise CalibrationError(
+                f"{path}: cannot be read ({error.strerror}). `tpvqa calibrate --out {path}` makes "
+                "it, or name the file that holds the calibration"
+            ) from error
+        try:
+            return cls.model_validate_json(text)
+        except ValidationError as error:
+            first = error.errors()[0]
+            place = ".".join(map(str, first["loc"]))
+            if place == "version":
+                message = "it is of another version; this tpvqa reads version 1"
+            else:
+                message = f"{place or 'the file'}: {first['msg']}"
+            raise CalibrationError(
+                f"{path}: {message}. Make it again with `tpvqa calibrate --out {path}`"
+            ) from error
+
+    def save(self, path: Path) -> None:
+        """Write it, all or nothing.
+
+        Raises:
+            CalibrationError: The file cannot be written.
+        """
+        temporary = path.with_name(f".{path.name}.{os.getpid()}")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            temporary.write_text(self.model_dump_json(indent=1) + "\n")
+            temporary.replace(path)
+        except OSError as error:
+            temporary.unlink(missing_ok=True)
+            raise CalibrationError(
+                f"{path}: cannot be written ({error.strerror}). Name another file with --out"
+            ) from error
+
+
+def _of_counts(rates: Rates, *, yes: bool) -> float:
+    if yes:
+        return _log_ratio(rates.yes_if_true, rates.yes_if_false)
+    return _log_ratio(1 - rates.yes_if_true, 1 - rates.yes_if_false)
+
+
+def _log_ratio(if_true: float, if_false: float) -> float:
+    return _bounded(math.log(max(if_true, _EDGE) / max(if_false, _EDGE)))
+
+
+def _bounded(ratio: float) -> float:
+    return min(max(ratio, -BOUND), BOUND)
