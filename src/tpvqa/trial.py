@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import Any
 
 from tpvqa import __version__
+from tpvqa.belief.calibration import Calibration
 from tpvqa.episodes import Ended, Event, Limits, Parts, Started, read_episode
 from tpvqa.episodes.log import EpisodeWriter
 from tpvqa.episodes.recorder import Writer
@@ -69,6 +70,7 @@ class TrialConfig:
     limits: Limits = field(default_factory=Limits)
     planning_timeout: float = 30.0
     action_deadline: float | None = None
+    calibration: Calibration | None = None
     options: dict[str, Any] = field(default_factory=dict)
 
 
@@ -123,9 +125,10 @@ class Trial:
         if planner is None:
             planner = make(Kind.PLANNER, config.planner)
             self._closing.append(planner.close)
+        self.rules = rules or load_world_file(self.world_file, self.task)
         self.simulation = Simulation(
             self.task,
-            rules or load_world_file(self.world_file, self.task),
+            self.rules,
             failure=config.failure,
             disturbance=config.disturbance,
             spontaneous=config.spontaneous,
@@ -137,6 +140,7 @@ class Trial:
             "task": self.task,
             "book": self.book,
             "planner": planner,
+            "rules": self.rules,
             "simulation": self.simulation,
             "seed": config.seed,
             "episode": config.episode,
@@ -147,6 +151,8 @@ class Trial:
         truth = getattr(self.world, "truth", None)
         if truth is not None:
             context["truth"] = truth
+        context["views"] = tuple(self.world.views())
+        context["calibration"] = config.calibration
         self.monitor: Monitor
         self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor, context)
         pictures = getattr(self.world, "has_pictures", True)

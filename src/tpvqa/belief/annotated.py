@@ -1,0 +1,75 @@
+"""A plan with what each of its steps needs: where in it a state stands.
+
+As PLANEX did with triangle tables (Fikes, Hart and Nilsson 1972): the plan can be gone on with from
+its latest step whose needs hold, however the state came about. Needs are regressed through the
+rest of the plan (Fritz and McIlraith 2007).
+"""
+
+from collections.abc import Sequence
+
+from tpvqa.pddl import Action, Atom, Literal, State, Task
+
+Needs = frozenset[Literal]
+
+
+class AnnotatedPlan:
+    """A plan and, for each of its steps and for the goal, the literals that it needs.
+
+    Args:
+        task: The task.
+        actions: The actions of the plan.
+        needs: One set of literals per step and one for the goal, see
+            `planning.regression.needed`.
+    """
+
+    def __init__(self, task: Task, actions: Sequence[Action], needs: Sequence[Needs]):
+        self.task, self.actions, self.needs = task, tuple(actions), tuple(needs)
+        self._places: dict[State, int | None] = {}
+        self._wanted = [
+            (
+                frozenset(each.atom for each in need if each.positive),
+                frozenset(each.atom for each in need if not each.positive),
+            )
+            for need in needs
+        ]
+
+    def place(self, state: State) -> int | None:
+        """The latest step from which on the plan reaches the goal; its length for the goal.
+
+        None where the plan cannot be gone on with from the state.
+        """
+        if state in self._places:
+            return self._places[state]
+        full = self.task.extend(state)
+        found = next(
+            (
+                index
+                for index in range(len(self._wanted) - 1, -1, -1)
+                if self._wanted[index][0] <= full and full.isdisjoint(self._wanted[index][1])
+            ),
+            None,
+        )
+        self._places[state] = found
+        return found
+
+    def remaining(self, state: State) -> int | None:
+        """How many actions are left from a state; None where the plan does not help."""
+        place = self.place(state)
+        return None if place is None else len(self.actions) - place
+
+    def atoms(self, first: int = 0) -> frozenset[Atom]:
+        """The facts that the plan needs from a step on, goal included."""
+        return frozenset(each.atom for need in self.needs[first:] for each in need)
+
+    def needing(self, atom: Atom, first: int = 0) -> int | None:
+        """The first step from a given one that itself rests on a fact; None for none.
+
+        The plan's length stands for the goal.
+        """
+        last: int | None = None
+        for index in range(first, len(self.needs)):
+            if any(each.atom == atom for each in self.needs[index]):
+                last = index
+            elif last is not None:
+                break
+        return last

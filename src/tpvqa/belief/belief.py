@@ -1,0 +1,230 @@
+"""What is probably true: a Bayes filter over joint states of the ground facts.
+
+The filter is exact over the joint states that the action model with its faults can reach, as long
+as they are few; states whose probability falls under a threshold are dropped, and `lost` bounds
+what that can have changed. What the action model cannot explain is taken in when answers call
+for it (`open`).
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+from tpvqa.belief.faults import FaultModel, Hypothesis, Rates
+from tpvqa.belief.surprise import flips
+from tpvqa.pddl import Action, Atom, State
+
+SMALLEST = 1e-5
+"""Joint states under this probability are dropped."""
+MOST = 300
+"""Joint states that are kept; the most probable ones."""
+
+
+@dataclass(slots=True)
+class Came:
+    """How an action's outcome is shared between its ways, by joint state. Unnormalised."""
+
+    success: dict[int, float] = field(default_factory=dict)
+    failure: dict[int, float] = field(default_factory=dict)
+    disturbed: dict[int, float] = field(default_factory=dict)
+    could_disturb: dict[int, float] = field(default_factory=dict)
+
+
+class Belief:
+    """A probability for every joint state that is possible.
+
+    Args:
+        model: The action model with its faults.
+        state: The initial state, believed for certain (see `open`).
+        smallest: Joint states under this probability are dropped.
+        most: Joint states that are kept.
+    """
+
+    def __init__(
+        self,
+        model: FaultModel,
+        state: State | None = None,
+        *,
+        smallest: float = SMALLEST,
+        most: int = MOST,
+    ):
+        self.model, self._smallest, self._most = model, smallest, most
+        first = model.task.init if state is None else state
+        self.weights: dict[int, float] = {model.number(Hypothesis(first)): 1.0}
+        self.lost = 0.0
+        self.came: Came | None = None
+        self._marginals: dict[Atom, float] = {}
+
+    def states(self) -> list[tuple[State, float]]:
+        """The joint states with their probabilities, the most probable first."""
+        ranked = sorted(self.weights.items(), key=lambda entry: (-entry[1], entry[0]))
+        return [(self.model.state(number), weight) for number, weight in ranked]
+
+    def most_probable(self) -> tuple[State, float]:
+        """The most probable joint state. It is consistent: every joint state is."""
+        number = max(self.weights, key=lambda each: (self.weights[each], -each))
+        return self.model.state(number), self.weights[number]
+
+    def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
+        """The probability of a fact, or of it or any fact alike."""
+        if not alike:
+            known = self._marginals.get(atom)
+            if known is not None:
+                return known
+        atoms = (atom, *alike)
+        total = sum(
+            weight
+            for number, weight in self.weights.items()
+            if any(each in self.model.state(number) for each in atoms)
+        )
+        total = min(total, 1.0)
+        if not alike:
+            self._marginals[atom] = total
+        return total
+
+    def where(self, holds: Callable[[State], bool]) -> float:
+        """The probability that something holds."""
+        return min(
+            1.0,
+            sum(
+                weight
+                for number, weight in self.weights.items()
+                if holds(self.model.state(number))
+            ),
+        )
+
+    def act(self, action: Action, rates: Rates) -> None:
+        """Predict what an action leads to."""
+        after: dict[int, float] = {}
+        came = Came()
+
+        def add(number: int, weight: float, kind: dict[int, float] | None = None) -> None:
+            after[number] = after.get(number, 0.0) + weight
+            if kind is not None:
+                kind[number] = kind.get(number, 0.0) + weight
+
+        f, d, s = rates.failure, rates.disturbance, rates.spontaneous
+        for number, weight in self.weights.items():
+            outcomes = self.model.outcomes(number, action)
+            if outcomes.achieved:
+                add(number, weight)
+                continue
+            failing = weight
+            possible = outcomes.intended is not None
+            if outcomes.intended is not None:
+                failing = weight * f
+                lasting = 1 - s if outcomes.undone_after else 1.0
+                add(outcomes.intended, weight * (1 - f) * lasting, came.success)
+                if s:
+                    for share, other in outcomes.undone_after:
+                        add(other, weight * (1 - f) * s * share, came.success)
+            if not outcomes.undone:
+                add(number, failing, came.failure if possible else None)
+                continue
+            add(number, failing * (1 - d), came.failure if possible else None)
+            came.could_disturb[number] = came.could_disturb.get(number, 0) + failing * (1 - d)
+            for share, other in outcomes.undone:
+                mass = failing * d * share
+                add(other, mass, came.failure if possible else None)
+                came.disturbed[other] = came.disturbed.get(other, 0.0) + mass
+        self.came = came
+        self._predicted = dict(after)
+        self._become(after)
+
+    def weigh(self, likelihood: Callable[[int], float]) -> float:
+        """Weigh every joint state by how probable what was seen is in it (Bayes' rule).
+
+        Args:
+            likelihood: Of the number of a joint state.
+
+        Returns:
+            How probable it was, before it was seen. Where it is impossible in every joint
+            state, nothing changes.
+        """
+        weighed = {n: weight * likelihood(n) for n, weight in self.weights.items()}
+        total = sum(weighed.values())
+        if total <= 0.0:
+            return 0.0
+        self._become(weighed)
+        return total
+
+    def see(
+        self, atoms: tuple[Atom, ...], if_true: float, if_false: float
+    ) -> float:
+        """Weigh by an answer about a fact (or any of several alike).
+
+        Args:
+            atoms: Yes is right where any of them holds.
+            if_true: Probability of the answer where yes is right; only the ratio matters.
+            if_false: Where no is right.
+        """
+        states = self.model
+        return self.weigh(
+            lambda n: if_true if not states.state(n).isdisjoint(atoms) else if_false
+        )
+
+    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
+        """Take in that a fact may have changed without the action model knowing.
+
+        From every joint state with a share of at least a hundredth, the nearest consistent ones
+        in which the fact is the other way get `chance` of its probability.
+
+        Returns:
+            How many joint states that added.
+        """
+        grown = dict(self.weights)
+        new = 0
+        for number, weight in self.weights.items():
+            if weight < 0.01:
+                continue
+            state = self.model.state(number)
+            others = flips(self.model.task, state, atoms)
+            if not others:
+                continue
+            grown[number] -= chance * weight
+            for other in others:
+                there = self.model.become(number, other)
+                new += there not in grown
+                grown[there] = grown.get(there, 0.0) + chance * weight / len(others)
+        self._become(grown)
+        return new
+
+    def replace(self, state: State) -> None:
+        """Believe a state for certain, from now on."""
+        self.weights = {self.model.number(Hypothesis(state)): 1.0}
+        self.came = None
+        self._marginals.clear()
+
+    def outcome_shares(self) -> Mapping[str, float]:
+        """How the last action came out, after all that was seen since.
+
+        Returns:
+            Expected numbers, each between 0 and 1: "success", "failure", and of those in which
+            something could be disturbed, "disturbed" and "undisturbed". Empty before the first
+            action.
+        """
+        if self.came is None:
+            return {}
+        shares = {}
+        for name, masses in (
+            ("success", self.came.success),
+            ("failure", self.came.failure),
+            ("disturbed", self.came.disturbed),
+            ("undisturbed", self.came.could_disturb),
+        ):
+            shares[name] = sum(
+                self.weights.get(number, 0.0) * mass / self._predicted[number]
+                for number, mass in masses.items()
+                if self._predicted.get(number, 0.0) > 0
+            )
+        return shares
+
+    def _become(self, weights: dict[int, float]) -> None:
+        total = sum(weights.values())
+        kept = {n: w / total for n, w in weights.items() if w > self._smallest * total}
+        if len(kept) > self._most:
+            ranked = sorted(kept, key=lambda n: (-kept[n], n))[: self._most]
+            kept = {n: kept[n] for n in ranked}
+        share = sum(kept.values())
+        self.lost += 1 - share
+        self.weights = {n: w / share for n, w in kept.items()}
+        self._marginals.clear()

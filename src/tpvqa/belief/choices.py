@@ -1,0 +1,210 @@
+"""What can be done next, and what each is expected to cost."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tpvqa.belief.annotated import AnnotatedPlan
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.costs import Costs
+from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.information import Floats
+from tpvqa.pddl import Action, State
+
+LIKELY = 0.02
+"""Joint states of at least this probability get a plan of their own."""
+CHECKS = 2.0
+"""Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Something that can be done now.
+
+    Attributes:
+        action: The action to execute; None to end the trial here.
+        state: The most probable joint state in which this is the step to take.
+        plan: The plan that it is a step of.
+        place: Which step.
+    """
+
+    action: Action | None
+    state: State
+    plan: AnnotatedPlan | None = None
+    place: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """The choices with their costs.
+
+    Attributes:
+        choices: What can be done.
+        numbers: The joint states.
+        weights: Their probabilities, shape (states,).
+        costs: Expected cost of each choice in each joint state, shape (states, choices).
+    """
+
+    choices: tuple[Choice, ...]
+    numbers: tuple[int, ...]
+    weights: Floats
+    costs: Floats
+
+    @property
+    def expected(self) -> Floats:
+        """The expected cost of every choice, shape (choices,)."""
+        return self.weights @ self.costs
+
+    @property
+    def best(self) -> Choice:
+        """The choice that is expected to cost least; of equal ones the first."""
+        return self.choices[int(np.argmin(np.round(self.expected, 9)))]
+
+
+class Chooser:
+    """Compares what can be done next (Q-MDP: Littman, Cassandra and Kaelbling 1995).
+
+    The cost of an action is its own, plus that of the plan from where it leads, as if the state
+    were known from then on. What it would cost to find that out is not in it: what answers are
+    worth is added by `information`.
+
+    Args:
+        model: The action model.
+        costs: What things cost.
+    """
+
+    def __init__(self, model: FaultModel, costs: Costs):
+        self._model, self._costs = model, costs
+        self.plans: list[AnnotatedPlan] = []
+        self.hopeless: set[State] = set()
+        self._found: dict[int, tuple[int, AnnotatedPlan] | None] = {}
+        self._goals: dict[int, bool] = {}
+        self._cost_of: dict[str, dict[int, float]] = {}
+        self._rates = Rates()
+        self._step = costs.action + CHECKS * (costs.question + costs.look)
+
+    def add(self, plan: AnnotatedPlan) -> None:
+        """Take in a plan; the latest is preferred among equals."""
+        if plan in self.plans:
+            self.plans.remove(plan)
+        self.plans.insert(0, plan)
+        self._found.clear()
+        self._cost_of.clear()
+
+    def give_up_on(self, state: State) -> None:
+        """Note that no plan exists from a state."""
+        self.hopeless.add(state)
+        self._cost_of.clear()
+
+    def shortest(self, number: int) -> tuple[int, AnnotatedPlan] | None:
+        """The fewest actions to the goal by a known plan, and that plan."""
+        if number in self._found:
+            return self._found[number]
+        state, best = self._model.state(number), None
+        for plan in self.plans:
+            remaining = plan.remaining(state)
+            if remaining is not None and (best is None or remaining < best[0]):
+                best = remaining, plan
+        self._found[number] = best
+        return best
+
+    def unplanned(self, belief: Belief) -> State | None:
+        """The most probable joint state that no known plan helps; None if none is likely."""
+        for number, weight in sorted(belief.weights.items(), key=lambda e: (-e[1], e[0])):
+            if weight < LIKELY:
+                return None
+            state = self._model.state(number)
+            if state not in self.hopeless and self.shortest(number) is None:
+                return state
+        return None
+
+    def table(self, belief: Belief, rates: Rates, current: Sequence[Action]) -> Table:
+        """All choices and their costs in every joint state.
+
+        Args:
+            belief: What is believed.
+            rates: Of faults.
+            current: The plan that is being followed; other actions cost a change of plan.
+        """
+        if rates != self._rates:
+            self._rates = rates
+            self._cost_of.clear()
+        ranked = sorted(belief.weights.items(), key=lambda entry: (-entry[1], entry[0]))
+        choices = self._choices(ranked)
+        columns = []
+        for choice in choices:
+            key = "" if choice.action is None else choice.action.pddl()
+            change = 0.0
+            if choice.action is not None and not self._in(choice, current):
+                change = self._costs.replan
+            known = self._cost_of.setdefault(key, {})
+            column = []
+            for number, _ in ranked:
+                cost = known.get(number)
+                if cost is None:
+                    cost = known[number] = self._cost(choice.action, number)
+                column.append(cost + change)
+            columns.append(column)
+        return Table(
+            tuple(choices),
+            tuple(number for number, _ in ranked),
+            np.array([weight for _, weight in ranked]),
+            np.array(columns).T.reshape(len(ranked), len(choices)),
+        )
+
+    def _cost(self, action: Action | None, number: int) -> float:
+        """The expected cost of a choice in one joint state."""
+        if action is None:
+            return 0.0 if self._is_goal(number) else self._costs.failure
+        f, d, s = self._rates.failure, self._rates.disturbance, self._rates.spontaneous
+        outcomes = self._model.outcomes(number, action)
+        failed = self._to_go(number)
+        if outcomes.achieved:
+            return self._step + failed
+        if outcomes.undone:
+            falls = sum(share * self._to_go(other) for share, other in outcomes.undone)
+            failed = (1 - d) * failed + d * falls
+        if outcomes.intended is None:
+            return self._step + failed
+        done = self._to_go(outcomes.intended)
+        if outcomes.undone_after and s:
+            falls = sum(share * self._to_go(other) for share, other in outcomes.undone_after)
+            done = (1 - s) * done + s * falls
+        return self._step + (1 - f) * done + f * failed
+
+    def _to_go(self, number: int) -> float:
+        """What the rest of the shortest plan costs, failures counted in."""
+        found = self.shortest(number)
+        if found is not None:
+            steps: float = found[0]
+        elif self._model.state(number) in self.hopeless:
+            return self._costs.failure
+        else:
+            steps = max((len(plan.actions) for plan in self.plans), default=0) + 2
+        ahead = self._step / max(1 - self._rates.failure, 0.05)
+        return min(steps * ahead, self._costs.failure)
+
+    def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
+        found: dict[str | None, Choice] = {}
+        for number, weight in ranked:
+            known = self.shortest(number)
+            if known is None or (weight < LIKELY and found):
+                continue
+            remaining, plan = known
+            place = len(plan.actions) - remaining
+            action = plan.actions[place] if remaining else None
+            key = None if action is None else action.pddl()
+            found.setdefault(key, Choice(action, self._model.state(number), plan, place))
+        if None not in found:
+            found[None] = Choice(None, self._model.state(ranked[0][0]))
+        return list(found.values())
+
+    def _in(self, choice: Choice, plan: Sequence[Action]) -> bool:
+        same, action = self._model.same_skill, choice.action
+        return action is not None and any(same(action, each, choice.state) for each in plan)
+
+    def _is_goal(self, number: int) -> bool:
+        if number not in self._goals:
+            self._goals[number] = self._model.task.goal_holds(self._model.state(number))
+        return self._goals[number]

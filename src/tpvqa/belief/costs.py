@@ -1,0 +1,33 @@
+"""What things cost: from these the thresholds of all decisions follow."""
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Costs(BaseModel):
+    """Costs in units of one action.
+
+    Attributes:
+        action: One action of the robot.
+        question: One question to the VLM.
+        look: One more picture.
+        replan: One change of plan.
+        person: One question to a person; None where nobody is there.
+        failure: A trial that ends without its goal, or believing wrongly that it is reached.
+        questions_per_step: Most questions between two actions.
+        questions_per_trial: Most questions in a trial.
+        looks_per_step: Most looks between two actions.
+        looks_per_trial: Most looks in a trial.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    action: float = Field(default=1.0, gt=0)
+    question: float = Field(default=0.006, ge=0)
+    look: float = Field(default=0.001, ge=0)
+    replan: float = Field(default=1.0, ge=0)
+    person: float | None = Field(default=None, ge=0)
+    failure: float = Field(default=100.0, gt=0)
+    questions_per_step: int = Field(default=200, ge=0)
+    questions_per_trial: int = Field(default=2000, ge=0)
+    looks_per_step: int = Field(default=100, ge=0)
+    looks_per_trial: int = Field(default=1000, ge=0)

@@ -1,0 +1,185 @@
+"""Answers as evidence: each weighs the belief by what it adds to those before."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from math import exp
+
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.calibration import Apart, Calibration
+from tpvqa.belief.information import Reliability, answers_to_be_sure
+from tpvqa.belief.trust import Trust
+from tpvqa.pddl import Atom
+from tpvqa.questions.question import Question
+from tpvqa.vlm import Answer, Reply
+
+UNEXPLAINED = 0.002
+"""Chance that a fact that an answer speaks against has changed without the action model."""
+SURPRISING = 0.25
+"""An answer less probable than this makes that chance be taken in."""
+
+
+@dataclass(slots=True)
+class _Last:
+    """The last answer to a question.
+
+    Attributes:
+        look: At which look.
+        view: From which view.
+        true: Probability, after it, that yes was right.
+        settled: Whether nothing was done since, so that what is true is unchanged.
+    """
+
+    reply: Reply
+    look: int
+    view: str | None
+    true: float
+    settled: bool = True
+
+
+class Evidence:
+    """Takes answers into a belief.
+
+    With probability ρ a further look at an unchanged fact only repeats the last answer. Whether
+    it is unchanged is known as well as the fact was after that answer.
+
+    Args:
+        belief: What is believed.
+        calibration: What answers are worth.
+        trust: Whether they are worth that; None to take the calibration at its word.
+        unexplained: Chance that a fact changed without the action model knowing.
+    """
+
+    def __init__(
+        self,
+        belief: Belief,
+        calibration: Calibration,
+        trust: Trust | None,
+        *,
+        unexplained: float = UNEXPLAINED,
+    ):
+        self._belief, self._calibration, self._trust = belief, calibration, trust
+        self._unexplained = unexplained
+        self._last: dict[str, _Last] = {}
+        self._opened: set[tuple[Atom, ...]] = set()
+        self.silent: set[str] = set()
+        self.told: dict[str, list[Reply]] = {}
+
+    def acted(self) -> None:
+        """Note that an action was executed: facts may have changed, other things are in view."""
+        for last in self._last.values():
+            last.settled = False
+        self._opened.clear()
+        self.silent.clear()
+        self.told.clear()
+
+    def asked_at(self, text: str, look: int) -> bool:
+        """Whether a question was answered at a look: on the same picture an answer is worth
+        nothing."""
+        last = self._last.get(text)
+        return last is not None and last.look == look
+
+    def answers_to_be_sure(self) -> float:
+        """How many answers of this VLM it takes to notice a mistake."""
+        rates = self._calibration.whole.rates
+        right = (rates.yes_if_true + 1 - rates.yes_if_false) / 2
+        if self._trust is not None:
+            right = 0.5 + _share(self._trust, rates.yes_if_true, rates.yes_if_false) * (right - 0.5)
+        return answers_to_be_sure(right, self._calibration.repeat_same_view)
+
+    def expect(self, question: Question, view: str | None) -> Reliability:
+        """What the next answer to a question, at a new look from a view, is worth."""
+        rates = self._calibration.rates(question)
+        abstains = (rates.abstain_if_true + rates.abstain_if_false) / 2
+        true, false = rates.yes_if_true, rates.yes_if_false
+        if self._trust is not None:
+            # The same answer, worth what it can be trusted: drawn towards one half.
+            share = _share(self._trust, true, false)
+            true, false = 0.5 + share * (true - 0.5), 0.5 + share * (false - 0.5)
+        last = self._last.get(question.text)
+        if last is not None:
+            rho = self._calibration.repeat(_apart(last, view))
+            before = 1.0 if last.reply is Reply.YES else 0.0
+            if_true, if_false = _unchanged(last)
+            true = rho * if_true * before + (1 - rho * if_true) * true
+            false = rho * if_false * before + (1 - rho * if_false) * false
+        return Reliability(true, false, min(abstains, 0.95))
+
+    def take(self, answer: Answer, look: int, view: str | None) -> float:
+        """Weigh the belief by an answer.
+
+        Returns:
+            How probable the answer was before it came; 1 for an abstention, which says nothing.
+        """
+        question = answer.question
+        assert question.atom is not None
+        if answer.reply not in (Reply.YES, Reply.NO):
+            self.silent.add(question.text)
+            return 1.0
+        self.told.setdefault(question.text, []).append(answer.reply)
+        atoms = (question.atom, *question.alike)
+        last = self._last.get(question.text)
+        if last is not None and last.look == look:
+            return 1.0
+        raw = self._calibration.log_ratio(answer)
+        true = self._belief.probability(question.atom, question.alike)
+        ratio = raw if self._trust is None else self._trust.ratio(raw)
+        if_true = _sigmoid(ratio)
+        if_false = 1 - if_true
+        repeated = False
+        if last is not None:
+            rho = self._calibration.repeat(_apart(last, view))
+            same = 1.0 if last.reply is answer.reply else 0.0
+            repeated = bool(same) and rho > 0.05
+            unchanged_true, unchanged_false = _unchanged(last)
+            if_true = rho * unchanged_true * same + (1 - rho * unchanged_true) * if_true
+            if_false = rho * unchanged_false * same + (1 - rho * unchanged_false) * if_false
+        probable = true * if_true + (1 - true) * if_false
+        if probable < SURPRISING and atoms not in self._opened and self._unexplained:
+            self._opened.add(atoms)
+            self._belief.open(atoms, self._unexplained)
+        self._belief.see(atoms, if_true, if_false)
+        if self._trust is not None and not repeated:
+            self._trust.learn(true, raw)
+        after = self._belief.probability(question.atom, question.alike)
+        self._last[question.text] = _Last(answer.reply, look, view, after)
+        return probable
+
+
+def _unchanged(last: _Last) -> tuple[float, float]:
+    """Probability that yes (no) was right at the last answer already, where it is right now."""
+    return (1.0, 1.0) if last.settled else (last.true, 1 - last.true)
+
+
+def _apart(last: _Last, view: str | None) -> Apart:
+    return Apart.SAME_VIEW if last.view == view else Apart.OTHER_VIEW
+
+
+def _share(trust: Trust, true: float, false: float) -> float:
+    """By how much trust draws the rates of yes towards one half."""
+    right = min(max((true + 1 - false) / 2, 0.501), 0.999)
+    trusted = _sigmoid(trust.ratio(_logit(right)))
+    return (trusted - 0.5) / (right - 0.5)
+
+
+def _sigmoid(x: float) -> float:
+    return 1 / (1 + exp(-x))
+
+
+def _logit(p: float) -> float:
+    from math import log
+
+    return log(p / (1 - p))
+
+
+def words(replies: Collection[Reply]) -> str:
+    """Some replies in words: "two noes and a yes"."""
+    parts = []
+    for reply, one, many in ((Reply.NO, "a no", "noes"), (Reply.YES, "a yes", "yeses")):
+        count = sum(1 for each in replies if each is reply)
+        if count:
+            number = _NUMBERS[count] if count < len(_NUMBERS) else str(count)
+            parts.append(one if count == 1 else f"{number} {many}")
+    return " and ".join(parts)
+
+
+_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")

@@ -1,0 +1,233 @@
+"""What an action can lead to: the action model with failures and disturbances."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Protocol
+
+from tpvqa.belief.undoing import BackToBefore
+from tpvqa.pddl import Action, Atom, State, Task
+
+
+class Undoing(Protocol):
+    """A form of fact that disturbances undo."""
+
+    def results(
+        self, atom: Atom, state: State, history: Sequence[Atom], task: Task
+    ) -> list[tuple[str, State]]:
+        """What undoing a true atom can lead to: how it is said, and the state."""
+
+
+class Rebinding(Protocol):
+    """An argument that the robot's skill does not take: it is what holds in truth."""
+
+    def apply(self, action: Action, state: State, task: Task) -> Action:
+        """The action that the skill truly is."""
+
+
+class FaultRules(Protocol):
+    """How a domain misbehaves, as its world file says."""
+
+    @property
+    def undo(self) -> Sequence[Undoing]:
+        """What disturbances can undo."""
+
+    @property
+    def rebind(self) -> Sequence[Rebinding]:
+        """Arguments that skills do not take."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rates:
+    """Probabilities of faults.
+
+    Attributes:
+        failure: That a possible action fails.
+        disturbance: That a failure also undoes something achieved.
+        spontaneous: That something achieved is undone after a success.
+    """
+
+    failure: float = 0.25
+    disturbance: float = 0.25
+    spontaneous: float = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Hypothesis:
+    """A joint state, with what it takes to say how faults would undo its facts.
+
+    Attributes:
+        state: The atoms that hold.
+        ended: Facts that held before and to which a disturbance could lead back, latest last.
+    """
+
+    state: State
+    ended: tuple[Atom, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Outcomes:
+    """What an action can lead to from one hypothesis, by number.
+
+    Attributes:
+        intended: What its effects say; None where a precondition does not hold.
+        achieved: Whether nothing is left to do, so that nothing can fail.
+        undone: What a disturbance of the failed action leads to, each with its share.
+        undone_after: The same after a success.
+    """
+
+    intended: int | None
+    achieved: bool
+    undone: tuple[tuple[float, int], ...]
+    undone_after: tuple[tuple[float, int], ...]
+
+
+class FaultModel:
+    """The transitions of a task, worked out once for every joint state that is met.
+
+    It is a pure function of the task and its rules, so trials can share it.
+
+    Args:
+        task: Gives the actions and the initial state.
+        rules: What the world file says about faults; without one a disturbance puts a fact back
+            to what held before it.
+    """
+
+    def __init__(self, task: Task, rules: FaultRules | None = None):
+        self.task = task
+        self._undo: Sequence[Undoing] = (
+            rules.undo if rules is not None and rules.undo else (BackToBefore(task),)
+        )
+        self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
+        self._keep = _Keep(self._undo, task)
+        self.hypotheses: list[Hypothesis] = []
+        self._numbers: dict[Hypothesis, int] = {}
+        self._outcomes: dict[tuple[int, str], Outcomes] = {}
+        self._undone: dict[int, tuple[tuple[float, int], ...]] = {}
+
+    def number(self, hypothesis: Hypothesis) -> int:
+        """The number of a hypothesis, the same for equal ones."""
+        number = self._numbers.get(hypothesis)
+        if number is None:
+            number = self._numbers[hypothesis] = len(self.hypotheses)
+            self.hypotheses.append(hypothesis)
+        return number
+
+    def state(self, number: int) -> State:
+        """The joint state of a hypothesis."""
+        return self.hypotheses[number].state
+
+    def outcomes(self, number: int, action: Action) -> Outcomes:
+        """What an action can lead to."""
+        key = (number, action.pddl())
+        found = self._outcomes.get(key)
+        if found is None:
+            found = self._outcomes[key] = self._work_out(number, action)
+        return found
+
+    def _work_out(self, number: int, action: Action) -> Outcomes:
+        state = self.state(number)
+        if self.task.apply(state, action) == state:
+            return Outcomes(number, True, (), ())
+        truly = action
+        for rebinding in self._rebind:
+            truly = rebinding.apply(truly, state, self.task)
+        undone = self.undone(number)
+        if not self.task.applicable(state, truly):
+            return Outcomes(None, False, undone, ())
+        intended = self.become(number, self.task.apply(state, truly))
+        return Outcomes(intended, False, undone, self.undone(intended))
+
+    def same_skill(self, action: Action, other: Action, state: State) -> bool:
+        """Whether two actions make the robot do the same: they differ only in what holds anyway."""
+        if action == other:
+            return True
+        if action.name != other.name:
+            return False
+        for rebinding in self._rebind:
+            action = rebinding.apply(action, state, self.task)
+            other = rebinding.apply(other, state, self.task)
+        return action == other
+
+    def become(self, number: int, after: State) -> int:
+        """The hypothesis after a change of its state."""
+        before = self.hypotheses[number]
+        ended = self._keep(before.ended, before.state - after)
+        return self.number(Hypothesis(after, ended))
+
+    def undone(self, number: int) -> tuple[tuple[float, int], ...]:
+        """What a disturbance leads to: an achieved fact is undone, each as probable."""
+        found = self._undone.get(number)
+        if found is None:
+            hypothesis, results = self.hypotheses[number], []
+            for atom in sorted(hypothesis.state - self.task.init):
+                states = [
+                    after
+                    for rule in self._undo
+                    for _, after in rule.results(
+                        atom, hypothesis.state, hypothesis.ended, self.task
+                    )
+                ]
+                if states:
+                    results.append([self.become(number, after) for after in states])
+            shares: dict[int, float] = {}
+            for outcomes in results:
+                for outcome in outcomes:
+                    share = 1 / len(results) / len(outcomes)
+                    shares[outcome] = shares.get(outcome, 0.0) + share
+            found = tuple((share, outcome) for outcome, share in shares.items())
+            self._undone[number] = found
+        return found
+
+
+class _Keep:
+    """Forgets ended facts that no rule can lead back to, so that equal futures are equal."""
+
+    def __init__(self, undo: Sequence[Undoing], task: Task):
+        self._task = task
+        self._patterns: list[tuple[Any, frozenset[str]]] | None = []
+        for rule in undo:
+            outcomes = getattr(rule, "outcomes", None)
+            if outcomes is None:  # a rule of another kind: keep all
+                self._patterns = None
+                break
+            self._patterns += [
+                (outcome.last, rule.fact.variables)  # type: ignore[attr-defined]
+                for outcome in outcomes
+                if outcome.last is not None
+            ]
+
+    def __call__(self, ended: tuple[Atom, ...], more: State) -> tuple[Atom, ...]:
+        kept: dict[Any, Atom] = {}
+        for atom in (*ended, *sorted(more)):
+            for key in self._keys(atom):
+                kept.pop(key, None)
+                kept[key] = atom
+        latest: dict[Atom, None] = {}
+        for atom in kept.values():
+            latest.pop(atom, None)
+            latest[atom] = None
+        return tuple(latest)
+
+    def _keys(self, atom: Atom) -> list[Any]:
+        if self._patterns is None:
+            return [atom]
+        keys = []
+        for place, (pattern, bound) in enumerate(self._patterns):
+            match: Mapping[str, str] | None = pattern.match(atom, {}, self._task)
+            if match is not None:
+                keys.append((place, *sorted((k, v) for k, v in match.items() if k in bound)))
+        return keys
+
+
+@lru_cache(maxsize=16)
+def _shared(task: Task, rules: Any) -> FaultModel:
+    return FaultModel(task, rules)
+
+
+def fault_model(task: Task, rules: FaultRules | None = None) -> FaultModel:
+    """The model of a task, worked out once in a process where the rules can be compared."""
+    try:
+        return _shared(task, rules)
+    except TypeError:
+        return FaultModel(task, rules)

@@ -1,0 +1,68 @@
+"""Whether the VLM is as good as its calibration says, learned from its own answers."""
+
+from collections.abc import Mapping
+from math import exp, log
+
+GRID = (0.05, 0.15, 0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.7, 2.2)
+"""Factors by which log likelihood ratios may have to be multiplied."""
+
+
+class Trust:
+    """A posterior over how much an answer is worth, compared with what the calibration says.
+
+    An answer with log likelihood ratio r is right with probability σ(γ r); γ is 1 where the
+    calibration is right, near 0 where the answers are worth nothing. γ has a log-normal prior on a
+    grid. No truth is needed: answers that contradict the belief, and each other, are improbable
+    under a large γ.
+
+    Args:
+        spread: Standard deviation of log γ beforehand.
+    """
+
+    def __init__(self, spread: float = 0.5):
+        self.spread = spread
+        self._weights = [exp(-0.5 * (log(factor) / spread) ** 2) for factor in GRID]
+        self._normalise()
+
+    def ratio(self, ratio: float) -> float:
+        """The log likelihood ratio of an answer, as far as it can be trusted."""
+        if ratio == 0.0:
+            return 0.0
+        size = abs(ratio)
+        right = sum(w * _sigmoid(g * size) for g, w in zip(GRID, self._weights, strict=True))
+        trusted = log(right / (1 - right))
+        return trusted if ratio > 0 else -trusted
+
+    def learn(self, true: float, ratio: float) -> None:
+        """Learn from an answer.
+
+        Args:
+            true: Probability, before the answer, that yes is right.
+            ratio: Log likelihood ratio of the answer by the calibration.
+        """
+        for place, factor in enumerate(GRID):
+            right = _sigmoid(factor * ratio)
+            self._weights[place] *= true * right + (1 - true) * (1 - right)
+        self._normalise()
+
+    @property
+    def mean(self) -> float:
+        """The expected γ."""
+        return sum(g * w for g, w in zip(GRID, self._weights, strict=True))
+
+    def snapshot(self) -> Mapping[str, float]:
+        """The posterior, as plain values."""
+        return {f"{g:g}": w for g, w in zip(GRID, self._weights, strict=True)}
+
+    def restore(self, snapshot: Mapping[str, float]) -> None:
+        """Put back what `snapshot` gave."""
+        self._weights = [float(snapshot[f"{g:g}"]) for g in GRID]
+        self._normalise()
+
+    def _normalise(self) -> None:
+        total = sum(self._weights)
+        self._weights = [max(w / total, 1e-9) for w in self._weights]
+
+
+def _sigmoid(x: float) -> float:
+    return 1 / (1 + exp(-x))
