@@ -14,6 +14,8 @@ from tpvqa.pddl import Action, State
 
 LIKELY = 0.02
 """Joint states of at least this probability get a plan of their own."""
+CHOICES = 6
+"""Choices that are compared, at most."""
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
 
@@ -187,10 +189,13 @@ class Chooser:
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[str | None, Choice] = {}
+        least = 0.1 * self._costs.action / self._costs.failure
         for number, weight in ranked:
             known = self.shortest(number)
-            if known is None or (weight < LIKELY and found):
+            if known is None:
                 continue
+            if found and (weight < least or len(found) >= CHOICES):
+                break
             remaining, plan = known
             place = len(plan.actions) - remaining
             action = plan.actions[place] if remaining else None

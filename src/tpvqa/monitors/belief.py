@@ -199,9 +199,6 @@ class BeliefMonitor:
                 value = gain(if_true, if_false, reliability, times) - price
                 if value > saving:
                     best, often, saving = question, times, value
-        import os
-        if os.environ.get("DBG"):
-            print("   TBL", [(c.action.pddl() if c.action else None, round(float(x),3)) for c,x in zip(table.choices, table.expected)], [(q.text,round(m,3)) for q,m in zip(questions,most)], asking, best and best.text, often, saving)
         if len(questions) > 1 and more_looks:
             doubts = [abs(float(true @ table.weights) - 0.5) for true in truths]
             order = sorted(
