@@ -95,7 +95,7 @@ def _fit(
         for part in ((row.way, None), (row.way, row.predicate)):
             column = 3 + 2 * place[part]
             design[n, column], design[n, column + 1] = INTERCEPT, SLOPE * x[n]
-    found = _regression().fit(design, truth, sample_weight=weight).coef_[0]
+    found = regression().fit(design, truth, sample_weight=weight).coef_[0]
     p = 1 / (1 + np.exp(-design @ found))
     curvature = design.T @ (design * (weight * p * (1 - p))[:, None]) + np.eye(design.shape[1])
     covariance = np.linalg.inv(curvature)
@@ -157,7 +157,12 @@ def _default_answers() -> tuple[list[bool], list[float], list[float]]:
     return truths, logits, weights
 
 
-def _regression() -> Any:
+def regression() -> Any:
+    """The regression that `fit_curves` uses, not fitted.
+
+    Raises:
+        MissingExtraError: scikit-learn is not installed.
+    """
     try:
         from sklearn.linear_model import LogisticRegression
     except ImportError as error:

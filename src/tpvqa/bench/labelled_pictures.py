@@ -17,10 +17,12 @@ from tpvqa.worlds.images.world import VIEW
 def ask_pictures(
     vlm: VLM, pictures: PictureSet, *, done: Callable[[], None] = lambda: None
 ) -> list[LabelledAnswer]:
-    """Ask everything that can be asked about every picture, as precondition and as effect.
+    """Ask everything that can be asked about every picture.
 
-    Also what a picture does not show is asked: a robot cannot know that it does not. Pictures of
-    the same visible state are the looks of one trial, as the images world draws them.
+    A question is asked once, and its answer counts as one to a precondition and as one to an
+    effect: both are asked in the same words. Also what a picture does not show is asked: a robot
+    cannot know that it does not. Pictures of the same visible state are the looks of one trial, as
+    the images world draws them.
 
     Args:
         vlm: Who answers.
@@ -37,7 +39,7 @@ def ask_pictures(
             f"{pictures.folder}: no fact of this set is asked about in {', '.join(TASKS)}. "
             "Name a set of the household, or calibrate from episodes"
         )
-    rows = []
+    rows: list[LabelledAnswer] = []
     for look, picture in enumerate(pictures.manifest.pictures):
         rows += _ask(vlm, pictures, picture, look, questions)
         done()
@@ -45,7 +47,7 @@ def ask_pictures(
 
 
 def _questions(pictures: PictureSet) -> Iterator[Question]:
-    """Every question about the set's facts once, under both ways."""
+    """Every question about the set's facts, once."""
     facts = [Atom.parse(text) for text in pictures.manifest.facts]
     texts: set[str] = set()
     for name in TASKS:
@@ -59,7 +61,7 @@ def _questions(pictures: PictureSet) -> Iterator[Question]:
             text = book.fact(Literal(atom)).text
             if text not in texts:
                 texts.add(text)
-                yield from (book.fact(Literal(atom), way=w) for w in (Way.PRECONDITION, Way.EFFECT))
+                yield book.fact(Literal(atom))
 
 
 def _ask(
@@ -76,14 +78,15 @@ def _ask(
         questions, vlm.ask(Observation(look, 0.0, {VIEW: frame}), questions), strict=True
     ):
         assert question.atom is not None
-        yield LabelledAnswer(
-            way=question.way,
-            predicate=question.atom.predicate,
-            text=question.text,
-            truth=bool(question.true_in(true.__contains__)),
-            reply=answer.reply,
-            p_yes=answer.p_yes,
-            trial=picture.visible,
-            look=look,
-            view=VIEW,
-        )
+        for way in (Way.PRECONDITION, Way.EFFECT):
+            yield LabelledAnswer(
+                way=way,
+                predicate=question.atom.predicate,
+                text=question.text,
+                truth=bool(question.true_in(true.__contains__)),
+                reply=answer.reply,
+                p_yes=answer.p_yes,
+                trial=picture.visible,
+                look=look,
+                view=VIEW,
+            )
