@@ -1,6 +1,7 @@
 """From labelled answers to a calibration."""
 
 from collections.abc import Iterable, Sequence
+from itertools import zip_longest
 
 from tpvqa.belief.calibration import Calibration, Group, Rates
 from tpvqa.belief.counts import shrunk
@@ -40,28 +41,31 @@ def fit(rows: Iterable[LabelledAnswer], vlm: str, *, chosen_looks: bool = True) 
     with_p = [row for row in answers if row.p_yes is not None]
     curves = fit_curves(with_p) if with_p else None
 
-    def group(key: Key, wider: Rates) -> Group:
-        own = [row for row in every if _belongs(row, key)]
+    def rates(key: Key) -> Rates:
+        """Shrunk towards the rest of the way, and that towards the rest of all: in the rates of a
+        group no answer counts twice."""
+        found = default.whole.rates
+        nested = list(dict.fromkeys((WHOLE, (key[0], None), key)))
+        for outer, inner in zip_longest(nested, nested[1:]):
+            ring = [row for row in every if _between(row, outer, inner)]
+            found = shrunk(ring, [row for row in answers if _between(row, outer, inner)], found)
+        return found
+
+    def group(key: Key) -> Group:
         return Group(
             way=key[0],
             predicate=key[1],
-            rows=len(own),
-            rates=shrunk(own, [row for row in answers if _belongs(row, key)], wider),
+            rows=sum(_belongs(row, key) for row in every),
+            rates=rates(key),
             curve=None if curves is None else curves.of(key),
         )
 
-    whole = group(WHOLE, default.whole.rates)
-    ways = {way: group((way, None), whole.rates) for way in sorted({row.way for row in every})}
-    groups = tuple(
-        group((way, predicate), ways[way].rates)
-        for way, predicate in sorted({(row.way, row.predicate) for row in every})
-    )
     found = Calibration(
         vlm=vlm,
         rows=len(placed),
-        groups=groups,
-        ways=tuple(ways.values()),
-        whole=whole,
+        groups=tuple(map(group, sorted({(row.way, row.predicate) for row in every}))),
+        ways=tuple(group((way, None)) for way in sorted({row.way for row in every})),
+        whole=group(WHOLE),
         repeat_same_view=default.repeat_same_view,
         repeat_other_view=default.repeat_other_view,
         notices=() if curves is None else curves.notices,
@@ -89,6 +93,10 @@ def telling(
         ]
     every = [each.row for each in placed]
     return every, [row for row in every if row.reply in ANSWERS]
+
+
+def _between(row: LabelledAnswer, outer: Key, inner: Key | None) -> bool:
+    return _belongs(row, outer) and (inner is None or not _belongs(row, inner))
 
 
 def _belongs(row: LabelledAnswer, key: Key) -> bool:
