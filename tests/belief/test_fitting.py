@@ -11,6 +11,7 @@ from tests.belief.talking import trials
 from tpvqa.belief import Calibration, LabelledAnswer
 from tpvqa.belief.fitting import fit
 from tpvqa.belief.held_out import held_out
+from tpvqa.belief.runs import runs
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.errors import CalibrationError, MissingExtraError
@@ -154,3 +155,14 @@ def test_an_overconfident_vlm_is_reliable_after_on_trials_that_were_not_learnt_f
 
 def test_a_single_trial_has_no_after() -> None:
     assert {each.after for each in held_out(trials(1), "v")} == {None}
+
+
+def test_a_fact_that_changed_is_answered_afresh_and_a_repeat_on_one_picture_tells_nothing() -> None:
+    def at(look: int, truth: bool, reply: Reply) -> LabelledAnswer:
+        return LabelledAnswer(Way.EFFECT, "on", "?", truth, reply, None, "t", look, "front")
+
+    yes, no = Reply.YES, Reply.NO
+    placed = list(runs([at(0, True, yes), at(0, True, yes), at(1, True, no), at(2, False, no)]))
+    assert [each.first for each in placed] == [True, False, False, True]
+    assert [each.first_answer for each in placed] == [True, False, False, True]
+    assert [each.last and each.last.look for each in placed] == [None, None, 0, None]

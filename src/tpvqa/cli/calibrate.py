@@ -72,17 +72,14 @@ def calibrate(
     """
     from tpvqa.belief.fitting import fit
     from tpvqa.belief.held_out import held_out
-    from tpvqa.belief.platt import regression
-    from tpvqa.bench.figures import styled_pyplot
     from tpvqa.bench.reliability import lines
     from tpvqa.errors import TpvqaError
 
     given = [bool(episodes), pictures is not None, trials is not None]
     if sum(given) != 1:
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
-    styled_pyplot()
-    regression()  # what is missing is told before the long work, not after it
     image = curves or out.with_suffix(".png")
+    _check(out, image)
     chosen_looks = pictures is None
     if episodes:
         name, rows = _from_episodes(episodes, vlm)
@@ -102,6 +99,19 @@ def calibrate(
     else:
         _print(calibration, table)
         typer.echo(f"wrote {out} and {image}")
+
+
+def _check(out: Path, image: Path) -> None:
+    """What would end the work at its end is told before it."""
+    from tpvqa.belief.platt import regression
+    from tpvqa.bench.figures import styled_pyplot
+    from tpvqa.errors import CalibrationError
+
+    regression()
+    styled_pyplot()
+    for path, option in ((out, "--out"), (image, "--curves")):
+        if path.is_dir():
+            raise CalibrationError(f"{path} is a folder; name a file with {option}")
 
 
 def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list[LabelledAnswer]"]:
@@ -177,6 +187,7 @@ def _draw(path: Path, judged: "Sequence[HeldOut]", vlm: str) -> None:
 
     figure = reliability_figure(judged, vlm)
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(saved(figure, "svg" if path.suffix == ".svg" else "png"))
     except OSError as error:
         raise CalibrationError(
