@@ -111,11 +111,17 @@ def test_every_fact_of_a_picture_is_asked_once_and_counts_both_ways() -> None:
     few = Manifest.model_validate(
         everything.manifest.model_dump() | {"pictures": (picture.model_dump(),)}
     )
+    one = PictureSet(everything.folder, few)
     vlm = Reader(picture.true_state)
-    rows = ask_pictures(vlm, PictureSet(everything.folder, few))
+    rows = ask_pictures(vlm, one, hidden=True)
     assert len(vlm.asked) == len(set(vlm.asked)) > 30
     assert sorted(row.text for row in rows) == sorted(2 * vlm.asked)
     assert {row.way for row in rows} == {Way.PRECONDITION, Way.EFFECT}
     assert "free" not in {row.predicate for row in rows}
     assert all((row.reply is Reply.YES) == row.truth for row in rows)
     assert {row.truth for row in rows} == {True, False}
+    of_what_is_shown = ask_pictures(Reader(picture.true_state), one)
+    texts = {row.text for row in of_what_is_shown}
+    assert "(near table)" not in picture.seen
+    assert "Is there a table in the image?" in {row.text for row in rows} - texts
+    assert "Is there a plate in the image?" in texts

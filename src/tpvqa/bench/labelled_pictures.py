@@ -15,18 +15,24 @@ from tpvqa.worlds.images.world import VIEW
 
 
 def ask_pictures(
-    vlm: VLM, pictures: PictureSet, *, done: Callable[[], None] = lambda: None
+    vlm: VLM,
+    pictures: PictureSet,
+    *,
+    hidden: bool = False,
+    done: Callable[[], None] = lambda: None,
 ) -> list[LabelledAnswer]:
-    """Ask everything that can be asked about every picture.
+    """Ask everything about every picture that it shows.
 
     A question is asked once, and its answer counts as one to a precondition and as one to an
-    effect: both are asked in the same words. Also what a picture does not show is asked: a robot
-    cannot know that it does not. Pictures of the same visible state are the looks of one trial, as
-    the images world draws them.
+    effect: both are asked in the same words. Pictures of the same visible state are the looks of
+    one trial, as the images world draws them.
 
     Args:
         vlm: Who answers.
         pictures: The set.
+        hidden: Whether to ask about what a picture does not show, too. A robot mostly looks at
+            what it asks about, so answers about the rest are seldom what it will hear: on a
+            picture of a plate on the table there is a table, though the robot is near the plate.
         done: Called after each picture.
 
     Raises:
@@ -41,7 +47,8 @@ def ask_pictures(
         )
     rows: list[LabelledAnswer] = []
     for look, picture in enumerate(pictures.manifest.pictures):
-        rows += _ask(vlm, pictures, picture, look, questions)
+        asked = [each for each in questions if hidden or _shows(picture, each)]
+        rows += _ask(vlm, pictures, picture, look, asked)
         done()
     return rows
 
@@ -62,6 +69,11 @@ def _questions(pictures: PictureSet) -> Iterator[Question]:
             if text not in texts:
                 texts.add(text)
                 yield book.fact(Literal(atom))
+
+
+def _shows(picture: Picture, question: Question) -> bool:
+    assert question.atom is not None
+    return any(atom.pddl() in picture.seen for atom in (question.atom, *question.alike))
 
 
 def _ask(

@@ -107,8 +107,10 @@ def reliability_figure(judged: Sequence[HeldOut], vlm: str) -> Figure:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    before, after = probabilities(judged)
-    truth = np.array([each.row.truth for each in judged], bool)
+    # One answer that counts for two ways of asking is one answer here.
+    once = list({(each.row.trial, each.row.look, each.row.text): each for each in judged}.values())
+    before, after = probabilities(once)
+    truth = np.array([each.row.truth for each in once], bool)
     panels = [("before: as the VLM says", before, COLOURS[1])]
     if after is not None:
         panels.append(("after: calibrated, on held-out trials", after, COLOURS[0]))
@@ -139,7 +141,7 @@ def reliability_figure(judged: Sequence[HeldOut], vlm: str) -> Figure:
         lower.set_xlabel("P(yes)")
     axes[0][0].set_ylabel("share where yes is right")
     axes[1][0].set_ylabel("answers")
-    figure.suptitle(f"{vlm}: {len(judged):,} answers", fontsize=13)
+    figure.suptitle(f"{vlm}: {len(once):,} answers", fontsize=13)
     return figure
 
 

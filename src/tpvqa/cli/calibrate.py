@@ -43,6 +43,10 @@ def calibrate(
         str | None,
         typer.Option(help="Ask about labelled pictures: 'shipped', or the folder of a set."),
     ] = None,
+    hidden: Annotated[
+        bool,
+        typer.Option("--hidden", help="With --pictures: ask about what is hidden in them, too."),
+    ] = False,
     trials: Annotated[
         int | None, typer.Option(help="Run so many trials of every task.", min=1)
     ] = None,
@@ -84,7 +88,7 @@ def calibrate(
     if episodes:
         name, rows = _from_episodes(episodes, vlm)
     elif pictures is not None:
-        name, rows = _from_pictures(vlm or "embedded", pictures)
+        name, rows = _from_pictures(vlm or "embedded", pictures, hidden=hidden)
     else:
         assert trials is not None
         name = vlm or "embedded"
@@ -122,7 +126,7 @@ def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list
     return found.vlm, found.rows
 
 
-def _from_pictures(vlm: str, where: str) -> tuple[str, "list[LabelledAnswer]"]:
+def _from_pictures(vlm: str, where: str, *, hidden: bool) -> tuple[str, "list[LabelledAnswer]"]:
     from tpvqa.bench.labelled_pictures import ask_pictures
     from tpvqa.plugins import Kind, make
     from tpvqa.worlds.images.manifest import load_pictures
@@ -130,7 +134,7 @@ def _from_pictures(vlm: str, where: str) -> tuple[str, "list[LabelledAnswer]"]:
     opened = load_pictures(None if where == "shipped" else Path(where))
     asked = make(Kind.VLM, vlm)
     with _progress("pictures", len(opened.manifest.pictures)) as done:
-        return asked.name, ask_pictures(asked, opened, done=done)
+        return asked.name, ask_pictures(asked, opened, hidden=hidden, done=done)
 
 
 def _from_trials(
