@@ -70,7 +70,7 @@ def fit(rows: Iterable[LabelledAnswer], vlm: str, *, chosen_looks: bool = True) 
         repeat_other_view=default.repeat_other_view,
         notices=() if curves is None else curves.notices,
     )
-    same, other, _, _ = fit_repeats(
+    same, other = fit_repeats(
         placed,
         lambda row: found.group_of(row.way, row.predicate).rates,
         same_view=default.repeat_same_view,

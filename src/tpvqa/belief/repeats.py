@@ -19,7 +19,7 @@ def fit_repeats(
     *,
     same_view: float,
     other_view: float,
-) -> tuple[float, float, int, int]:
+) -> tuple[float, float]:
     """ρ of the same and of another view, by maximum likelihood under a Beta prior.
 
     P(the last answer again) = ρ + (1 - ρ) P(answer | truth), P(the other one) = (1 - ρ) P(answer |
@@ -32,19 +32,14 @@ def fit_repeats(
         other_view: The same for another view.
 
     Returns:
-        ρ of the same view, ρ of another, and how many pairs each was learnt from.
+        ρ of the same view, and ρ of another.
     """
     pairs: dict[bool, list[tuple[bool, float]]] = {True: [], False: []}
     for each in placed:
         row, last = each.row, each.last
         if last is not None:
             pairs[last.view == row.view].append((last.reply is row.reply, _fresh(row, rates(row))))
-    return (
-        _mode(pairs[True], same_view),
-        _mode(pairs[False], other_view),
-        len(pairs[True]),
-        len(pairs[False]),
-    )
+    return _mode(pairs[True], same_view), _mode(pairs[False], other_view)
 
 
 def _fresh(row: LabelledAnswer, rates: Rates) -> float:
