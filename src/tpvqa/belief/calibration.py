@@ -18,8 +18,8 @@ from tpvqa.vlm.answer import Answer, Reply
 BOUND = 6.0
 """No single answer is worth more than this log likelihood ratio (odds of 403 to 1): a network that
 is sure of itself is still wrong now and then, in ways that no training set of its size shows."""
-_EDGE = 1e-4
-"""P(yes) is cut to [_EDGE, 1 - _EDGE]: what is beyond says how a number was rounded."""
+EDGE = 1e-4
+"""P(yes) is cut to [EDGE, 1 - EDGE]: what is beyond says how a number was rounded."""
 
 Probability = Annotated[float, Field(ge=0, le=1)]
 
@@ -82,6 +82,25 @@ class Group(_Model):
     rates: Rates
     curve: Curve | None = None
 
+    def log_ratio(self, reply: Reply, p_yes: float | None) -> float:
+        """What an answer of this kind is worth, see `Calibration.log_ratio`."""
+        if reply is Reply.YES:
+            yes = True
+        elif reply is Reply.NO:
+            yes = False
+        else:
+            return 0.0
+        curve, rates = self.curve, self.rates
+        if curve is not None and p_yes is not None:
+            p = min(max(p_yes, EDGE), 1 - EDGE)
+            sign = curve.sign if yes else -curve.sign
+            ratio = curve.slope * math.log(p / (1 - p)) + curve.intercept + sign
+        elif yes:
+            ratio = _log_odds(rates.yes_if_true, rates.yes_if_false)
+        else:
+            ratio = _log_odds(1 - rates.yes_if_true, 1 - rates.yes_if_false)
+        return min(max(ratio, -BOUND), BOUND)
+
 
 NEAREST: Mapping[Way, tuple[Way, ...]] = {
     Way.PRECONDITION: (Way.PRECONDITION, Way.ALTERNATIVE, Way.EFFECT),
@@ -115,6 +134,7 @@ class Calibration(_Model):
         whole: Of all answers.
         repeat_same_view: ρ between two pictures of one view.
         repeat_other_view: ρ between pictures of two views.
+        notices: What a user should know of it: P(yes) that points the wrong way.
     """
 
     version: Literal[1] = 1
@@ -125,6 +145,7 @@ class Calibration(_Model):
     whole: Group
     repeat_same_view: Probability
     repeat_other_view: Probability
+    notices: tuple[str, ...] = ()
 
     @cached_property
     def _nearest(self) -> dict[Way, dict[str, Group]]:
@@ -156,11 +177,13 @@ class Calibration(_Model):
 
     def group(self, question: Question) -> Group:
         """The narrowest group that tells something about a question."""
-        known = self._nearest[question.way]
         if question.atom is not None:
-            subject = question.atom.predicate
-        else:
-            subject = "" if question.action is None else question.action.name
+            return self.group_of(question.way, question.atom.predicate)
+        return self.group_of(question.way, question.action.name if question.action else "")
+
+    def group_of(self, way: Way, subject: str) -> Group:
+        """The same, by the way of asking and the predicate (or action) asked about."""
+        known = self._nearest[way]
         return known.get(subject) or known[""]
 
     def rates(self, question: Question) -> Rates:
@@ -174,19 +197,7 @@ class Calibration(_Model):
             log P(answer | yes is right) - log P(answer | no is right), within ±`BOUND`; 0 where
             the VLM abstains.
         """
-        if answer.reply is Reply.YES:
-            yes = True
-        elif answer.reply is Reply.NO:
-            yes = False
-        else:
-            return 0.0
-        group = self.group(answer.question)
-        curve, p = group.curve, answer.p_yes
-        if curve is None or p is None:
-            return _of_counts(group.rates, yes=yes)
-        p = min(max(p, _EDGE), 1 - _EDGE)
-        sign = curve.sign if yes else -curve.sign
-        return _bounded(curve.slope * math.log(p / (1 - p)) + curve.intercept + sign)
+        return self.group(answer.question).log_ratio(answer.reply, answer.p_yes)
 
     def repeat(self, apart: Apart) -> float:
         """ρ: the probability that a further answer only repeats the last one."""
@@ -200,11 +211,11 @@ class Calibration(_Model):
         An answer that differs from the last one was drawn afresh and is worth all of `log_ratio`.
         One that agrees may only repeat it: log (ρ + (1 - ρ) P(answer | yes is right)) less the
         same where no is right, with the two probabilities σ(±log ratio), whose ratio is the
-        answer's own. An answer after an abstention is worth all.
+        answer's own. Abstentions in between count as nothing said.
 
         Args:
             answer: The new answer.
-            last: The last reply to the question.
+            last: The last yes or no to the question since the fact last changed.
             apart: What lies between the two.
         """
         ratio, rho = self.log_ratio(answer), self.repeat(apart)
@@ -260,15 +271,5 @@ class Calibration(_Model):
             ) from error
 
 
-def _of_counts(rates: Rates, *, yes: bool) -> float:
-    if yes:
-        return _log_ratio(rates.yes_if_true, rates.yes_if_false)
-    return _log_ratio(1 - rates.yes_if_true, 1 - rates.yes_if_false)
-
-
-def _log_ratio(if_true: float, if_false: float) -> float:
-    return _bounded(math.log(max(if_true, _EDGE) / max(if_false, _EDGE)))
-
-
-def _bounded(ratio: float) -> float:
-    return min(max(ratio, -BOUND), BOUND)
+def _log_odds(if_true: float, if_false: float) -> float:
+    return math.log(max(if_true, EDGE) / max(if_false, EDGE))

@@ -25,7 +25,12 @@ ENDINGS = {
 Figure = Any
 
 
-def _pyplot() -> Any:
+def styled_pyplot() -> Any:
+    """pyplot in the style of all figures of a bench.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
     try:
         import matplotlib
     except ImportError as error:
@@ -53,7 +58,7 @@ def colours(monitors: Sequence[str]) -> dict[str, str]:
 
 def completion(found: Sequence[Summary]) -> Figure:
     """Completion rates with 95% intervals: a group of bars for every task."""
-    pyplot = _pyplot()
+    pyplot = styled_pyplot()
     tasks = list(dict.fromkeys(each.task for each in found))
     monitors = list(dict.fromkeys(each.monitor for each in found))
     shade = colours(monitors)
@@ -101,7 +106,7 @@ def completion(found: Sequence[Summary]) -> Figure:
 
 def endings(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
     """How trials ended: a stacked bar for every task and monitor."""
-    pyplot = _pyplot()
+    pyplot = styled_pyplot()
     bars = [(task, monitor) for task, own in rows.items() for monitor in own]
     figure, axes = pyplot.subplots(figsize=(8.5, 0.6 + 0.27 * len(bars)))
     left = [0.0] * len(bars)
@@ -124,7 +129,7 @@ def endings(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
 
 def limits(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
     """Completion under tighter limits: a row of panels for every task."""
-    pyplot = _pyplot()
+    pyplot = styled_pyplot()
     names = ("actions", "repeats", "replans")
     figure, panels = pyplot.subplots(
         len(rows), 3, figsize=(9, 0.4 + 2.2 * len(rows)), sharey=True, squeeze=False
@@ -157,7 +162,7 @@ def limits(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
 
 def accuracy_curves(found: Mapping[str, Mapping[str, Curve]]) -> Figure:
     """Completion against the accuracy of answers, and where each curve crosses TP's."""
-    pyplot = _pyplot()
+    pyplot = styled_pyplot()
     figure, panels = pyplot.subplots(
         1, len(found), figsize=(0.8 + 3.2 * len(found), 3.3), sharey=True, squeeze=False
     )
@@ -210,4 +215,4 @@ def saved(figure: Figure, kind: str) -> bytes:
 
 def close(figure: Figure) -> None:
     """Free a figure."""
-    _pyplot().close(figure)
+    styled_pyplot().close(figure)

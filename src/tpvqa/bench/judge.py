@@ -2,11 +2,11 @@
 
 from collections import Counter
 
+from tpvqa.bench.truth import subject_of, yes_is_right
 from tpvqa.episodes.events import Acted, Acting, Answered, Asked, Decided, Event, PlanMade
 from tpvqa.episodes.events import QuestionRecord as Asking
 from tpvqa.monitors import Decision
-from tpvqa.pddl import Action, Atom
-from tpvqa.questions import Way
+from tpvqa.pddl import Action
 from tpvqa.worlds.simulation import Simulation
 
 
@@ -39,16 +39,19 @@ class Judge:
                 self.first_plan = len(event.plan)
             case Asked():
                 self._asked = event.questions
-                self._truths = [self._truth(question) for question in event.questions]
+                self._truths = [
+                    yes_is_right(question, self._simulation, self._actions)
+                    for question in event.questions
+                ]
             case Answered():
                 for question, truth, answer in zip(
                     self._asked, self._truths, event.answers, strict=True
                 ):
                     p = "" if answer.p_yes is None else f"{answer.p_yes:.2f}"
-                    key = f"{question.way}|{_subject(question)}|{truth:d}|{answer.reply}|{p}"
+                    key = f"{question.way}|{subject_of(question)}|{truth:d}|{answer.reply}|{p}"
                     self.answers[key] += 1
             case Decided():
-                action = self._action(event.action)
+                action = self._actions[event.action]
                 if event.when == "before":
                     truth = self._simulation.possible(action)
                 else:
@@ -63,26 +66,3 @@ class Judge:
                 self.failures += not came["succeeded"] or came["undone"] is not None
                 impossible = came["reason"] == "a precondition did not hold"
                 self.wasted += impossible or (came["succeeded"] and not changed)
-
-    def _truth(self, question: Asking) -> bool:
-        if question.atom is not None and question.way in _OF_FACTS:
-            state = self._simulation.task.extend(self._simulation.state)
-            atoms = (question.atom, *(question.alike or ()))
-            return any(Atom.parse(atom) in state for atom in atoms)
-        assert question.action is not None
-        action = self._action(question.action)
-        if question.way is Way.POSSIBLE:
-            return self._simulation.possible(action)
-        return self._simulation.achieved(action)
-
-    def _action(self, text: str) -> Action:
-        return self._actions[text]
-
-
-_OF_FACTS = (Way.PRECONDITION, Way.EFFECT, Way.ALTERNATIVE)
-
-
-def _subject(question: Asking) -> str:
-    """The predicate or the action that a question is about."""
-    text = question.atom if question.way in _OF_FACTS else question.action
-    return (text or "").strip("()").split(" ")[0]

@@ -9,7 +9,7 @@ from typing import Any
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.episodes import MemoryWriter
+from tpvqa.episodes import Ended, Event, MemoryWriter
 from tpvqa.errors import TpvqaError
 from tpvqa.pddl import Action, Task, load_task
 from tpvqa.planning import Planner
@@ -20,6 +20,7 @@ from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
 from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import VLM
+from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 PICTURES = 512
@@ -61,21 +62,33 @@ class Stage:
             figures = {"error": traceback.format_exc(limit=-3)}
         return EpisodeRow(**row, **figures, seconds=round(time.perf_counter() - began, 4))
 
-    def _figures(self, config: TrialConfig) -> dict[str, Any]:
+    def trial(self, config: TrialConfig) -> Trial:
+        """A trial of the task, ready to run; made of what all its trials share."""
         assert config.vlm is not None
-        with Trial(
+        return Trial(
             config,
             task=self.task,
             planner=_planner(),
             vlm=_shared_vlm(config.vlm),
             book=self.book,
             rules=self.rules,
-        ) as trial:
-            simulation = getattr(trial.world, "simulation", trial.simulation)
-            judge = Judge(simulation, self.actions)
-            ended = trial.run(MemoryWriter(resumable=False, keep=False), listeners=[judge])
+        )
+
+    def play(self, trial: Trial, listener: Callable[[Event], None]) -> Ended:
+        """Run a trial that is kept nowhere; only a listener is told of it.
+
+        Raises:
+            KeyboardInterrupt: It was cancelled.
+        """
+        ended = trial.run(MemoryWriter(resumable=False, keep=False), listeners=[listener])
         if ended.because == "cancelled":  # Ctrl-C ends the bench, and this episode is none of it
             raise KeyboardInterrupt
+        return ended
+
+    def _figures(self, config: TrialConfig) -> dict[str, Any]:
+        with self.trial(config) as trial:
+            judge = Judge(true_simulation(trial), self.actions)
+            ended = self.play(trial, judge)
         return {
             "completed": bool(ended.completed),
             "because": ended.because,
@@ -92,6 +105,12 @@ class Stage:
             "answers": dict(judge.answers),
             "decisions": dict(judge.decisions),
         }
+
+
+def true_simulation(trial: Trial) -> Simulation:
+    """Where the true state of a trial lies."""
+    found: Simulation = getattr(trial.world, "simulation", trial.simulation)
+    return found
 
 
 @lru_cache

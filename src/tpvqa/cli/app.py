@@ -6,7 +6,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from tpvqa.cli import bench, dataset, plan, questions, run
+from tpvqa.cli import bench, calibrate, dataset, plan, questions, run
 from tpvqa.errors import TpvqaError
 
 
@@ -35,6 +35,7 @@ questions.register(app)
 run.register(app)
 dataset.register(app)
 bench.register(app)
+calibrate.register(app)
 
 
 def main() -> None:

@@ -1,0 +1,103 @@
+"""From labelled answers to a calibration."""
+
+from collections.abc import Iterable, Sequence
+from itertools import zip_longest
+
+from tpvqa.belief.calibration import Calibration, Group, Rates
+from tpvqa.belief.counts import shrunk
+from tpvqa.belief.labelled_answer import LabelledAnswer
+from tpvqa.belief.platt import WHOLE, Key, fit_curves
+from tpvqa.belief.repeats import fit_repeats
+from tpvqa.belief.runs import ANSWERS, Placed, runs
+from tpvqa.errors import CalibrationError
+
+
+def fit(rows: Iterable[LabelledAnswer], vlm: str, *, chosen_looks: bool = True) -> Calibration:
+    """Learn what the answers of a VLM are worth.
+
+    A monitor looks again where an answer did not please it, so its repeated errors would count
+    again and again. Of looks that were chosen so, rates and curves are learnt from the first
+    answers alone: the first to the same words since the fact last changed. How much the further
+    ones repeat them gives ρ.
+
+    Args:
+        rows: Answers beside the truth; those of a trial in the order of asking.
+        vlm: Whose answers they are.
+        chosen_looks: Whether looks were repeated because of earlier answers, as monitors do; False
+            for pictures that were all asked about.
+
+    Raises:
+        CalibrationError: There is no answer among them.
+        MissingExtraError: scikit-learn is needed and not installed.
+    """
+    placed = list(runs(rows))
+    every, answers = telling(placed, chosen_looks=chosen_looks)
+    if not answers:
+        raise CalibrationError(
+            f"There is no yes or no of {vlm} among {len(placed)} answers to learn from: "
+            "give more episodes, pictures or trials"
+        )
+    default = Calibration.default(vlm)
+    with_p = [row for row in answers if row.p_yes is not None]
+    curves = fit_curves(with_p) if with_p else None
+
+    def rates(key: Key) -> Rates:
+        """Shrunk towards the rest of the way, and that towards the rest of all: in the rates of a
+        group no answer counts twice."""
+        found = default.whole.rates
+        nested = list(dict.fromkeys((WHOLE, (key[0], None), key)))
+        for outer, inner in zip_longest(nested, nested[1:]):
+            ring = [row for row in every if _between(row, outer, inner)]
+            found = shrunk(ring, [row for row in answers if _between(row, outer, inner)], found)
+        return found
+
+    def group(key: Key) -> Group:
+        return Group(
+            way=key[0],
+            predicate=key[1],
+            rows=sum(_belongs(row, key) for row in every),
+            rates=rates(key),
+            curve=None if curves is None else curves.of(key),
+        )
+
+    found = Calibration(
+        vlm=vlm,
+        rows=len(placed),
+        groups=tuple(map(group, sorted({(row.way, row.predicate) for row in every}))),
+        ways=tuple(group((way, None)) for way in sorted({row.way for row in every})),
+        whole=group(WHOLE),
+        repeat_same_view=default.repeat_same_view,
+        repeat_other_view=default.repeat_other_view,
+        notices=() if curves is None else curves.notices,
+    )
+    same, other = fit_repeats(
+        placed,
+        lambda row: found.group_of(row.way, row.predicate).rates,
+        same_view=default.repeat_same_view,
+        other_view=default.repeat_other_view,
+    )
+    return found.model_copy(update={"repeat_same_view": same, "repeat_other_view": other})
+
+
+def telling(
+    placed: Sequence[Placed], *, chosen_looks: bool
+) -> tuple[list[LabelledAnswer], list[LabelledAnswer]]:
+    """The answers that rates and curves are learnt from.
+
+    Returns:
+        Answers and abstentions, and answers alone.
+    """
+    if chosen_looks:
+        return [each.row for each in placed if each.first], [
+            each.row for each in placed if each.first_answer
+        ]
+    every = [each.row for each in placed]
+    return every, [row for row in every if row.reply in ANSWERS]
+
+
+def _between(row: LabelledAnswer, outer: Key, inner: Key | None) -> bool:
+    return _belongs(row, outer) and (inner is None or not _belongs(row, inner))
+
+
+def _belongs(row: LabelledAnswer, key: Key) -> bool:
+    return key[0] in (None, row.way) and key[1] in (None, row.predicate)

@@ -1,0 +1,99 @@
+"""Answers beside the truth, from trials in a simulated world as they run."""
+
+from collections.abc import Callable, Iterable, Mapping
+
+from tpvqa.belief import LabelledAnswer
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.stage import stage, true_simulation
+from tpvqa.bench.truth import subject_of, yes_is_right
+from tpvqa.episodes.events import Answered, Asked, Event, Observed, QuestionRecord
+from tpvqa.pddl import Action
+from tpvqa.trial import TrialConfig
+from tpvqa.worlds.simulation import Simulation
+
+
+class Labeller:
+    """A listener that keeps every answer of a VLM with what was true when it was asked.
+
+    Args:
+        simulation: The true state.
+        actions: The task's ground actions, by their PDDL.
+        trial: The trial's name among others.
+
+    Attributes:
+        rows: The answers so far.
+    """
+
+    def __init__(self, simulation: Simulation, actions: Mapping[str, Action], trial: str):
+        self._simulation, self._actions, self._trial = simulation, actions, trial
+        self._views: dict[int, str | None] = {}
+        self._asked: Asked | None = None
+        self._truths: list[bool] = []
+        self.rows: list[LabelledAnswer] = []
+
+    def __call__(self, event: Event) -> None:
+        """Take note of an event."""
+        match event:
+            case Observed():
+                self._views[event.look] = _view(event)
+            case Asked():
+                self._asked = None if event.person else event
+                self._truths = [self._truth(question) for question in event.questions]
+            case Answered() if self._asked is not None:
+                look = self._asked.look
+                for question, truth, answer in zip(
+                    self._asked.questions, self._truths, event.answers, strict=True
+                ):
+                    row = LabelledAnswer(
+                        way=question.way,
+                        predicate=subject_of(question),
+                        text=question.text,
+                        truth=truth,
+                        reply=answer.reply,
+                        p_yes=answer.p_yes,
+                        trial=self._trial,
+                        look=look,
+                        view=self._views.get(look),
+                    )
+                    self.rows.append(row)
+
+    def _truth(self, question: QuestionRecord) -> bool:
+        return yes_is_right(question, self._simulation, self._actions)
+
+
+def _view(observed: Observed) -> str | None:
+    """The view of a look; None where there is no picture, or several."""
+    if observed.view is not None:
+        return observed.view
+    views = [frame.view for frame in observed.frames]
+    return views[0] if len(views) == 1 else None
+
+
+def gather(
+    cell: Cell,
+    common: TrialConfig,
+    episodes: Iterable[int],
+    *,
+    done: Callable[[], None] = lambda: None,
+) -> list[LabelledAnswer]:
+    """Run trials in a simulated world and label all their answers.
+
+    Args:
+        cell: The task, monitor, VLM and world.
+        common: Seed, rates of faults, limits.
+        episodes: Their numbers.
+        done: Called after each.
+
+    Raises:
+        TpvqaError: A trial cannot be run.
+    """
+    here, rows = stage(cell.task), []
+    for episode in episodes:
+        with here.trial(cell.config(common, episode)) as trial:
+            labeller = Labeller(
+                true_simulation(trial), here.actions, f"{cell}/{common.seed}/{episode}"
+            )
+            here.play(trial, labeller)
+        rows += labeller.rows
+        done()
+    return rows

@@ -1,0 +1,39 @@
+"""What the right answer to a question is, in a simulated world."""
+
+from collections.abc import Mapping
+
+from tpvqa.episodes.events import QuestionRecord
+from tpvqa.pddl import Action, Atom
+from tpvqa.questions import Way
+from tpvqa.worlds.simulation import Simulation
+
+OF_FACTS = (Way.PRECONDITION, Way.EFFECT, Way.ALTERNATIVE)
+
+
+def yes_is_right(
+    question: QuestionRecord, simulation: Simulation, actions: Mapping[str, Action]
+) -> bool:
+    """Whether yes is the right answer now.
+
+    A fact is judged by the true state, "possible" means that all preconditions hold, "successful"
+    that all effects do.
+
+    Args:
+        question: What is asked.
+        simulation: The true state.
+        actions: The task's ground actions, by their PDDL.
+    """
+    if question.atom is not None and question.way in OF_FACTS:
+        state = simulation.task.extend(simulation.state)
+        return any(Atom.parse(atom) in state for atom in (question.atom, *(question.alike or ())))
+    assert question.action is not None
+    action = actions[question.action]
+    if question.way is Way.POSSIBLE:
+        return simulation.possible(action)
+    return simulation.achieved(action)
+
+
+def subject_of(question: QuestionRecord) -> str:
+    """The predicate or the action that a question is about."""
+    text = question.atom if question.way in OF_FACTS else question.action
+    return (text or "").strip("()").split(" ")[0]

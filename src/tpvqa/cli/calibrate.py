@@ -1,0 +1,250 @@
+"""`tpvqa calibrate`: learn what a VLM's answers are worth."""
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from tpvqa.belief import Calibration, LabelledAnswer
+    from tpvqa.belief.held_out import HeldOut
+    from tpvqa.bench.reliability import Line
+
+_EXIT = "Exit codes: 0 written, 2 bad input, 130 interrupted."
+_SOURCES = (
+    "Give one source of labelled answers: folders of recorded episodes, --pictures shipped (or a "
+    "folder of such a set), or --trials N"
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command(epilog=_EXIT)(calibrate)
+
+
+def calibrate(
+    episodes: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Folders of recorded episodes in a simulated world."),
+    ] = None,
+    *,
+    vlm: Annotated[
+        str | None,
+        typer.Option(
+            help="Whose answers. Default: embedded; with episodes, whoever answered in them."
+        ),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="The file to write.")] = Path("calibration.json"),
+    pictures: Annotated[
+        str | None,
+        typer.Option(help="Ask about labelled pictures: 'shipped', or the folder of a set."),
+    ] = None,
+    hidden: Annotated[
+        bool,
+        typer.Option("--hidden", help="With --pictures: ask about what is hidden in them, too."),
+    ] = False,
+    trials: Annotated[
+        int | None, typer.Option(help="Run so many trials of every task.", min=1)
+    ] = None,
+    tasks: Annotated[
+        str, typer.Option(help="With --trials: shipped tasks, with commas.")
+    ] = "clean_dishes,serve_breakfast,eat_apple",
+    world: Annotated[
+        str | None,
+        typer.Option(
+            help="With --trials. Default: images for VLMs that look, symbolic for noise models."
+        ),
+    ] = None,
+    monitor: Annotated[
+        str, typer.Option(help="With --trials: who asks; tpvqa:K looks K times.")
+    ] = "tpvqa",
+    seed: Annotated[int, typer.Option(help="With --trials: decides every random number.")] = 0,
+    curves: Annotated[
+        Path | None,
+        typer.Option(help="Picture of reliability before and after. Default: beside the file."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the figures as JSON.")] = False,
+) -> None:
+    """Learn from labelled answers what a VLM's answers are worth, and show how reliable they are.
+
+    "After" is always of answers that the calibration in question was not learnt from: each half
+    of the trials is judged by what the other half taught.
+    """
+    from tpvqa.belief.fitting import fit
+    from tpvqa.belief.held_out import held_out
+    from tpvqa.bench.reliability import lines
+    from tpvqa.errors import TpvqaError
+
+    given = [bool(episodes), pictures is not None, trials is not None]
+    if sum(given) != 1:
+        raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
+    image = curves or out.with_suffix(".png")
+    _check(out, image)
+    chosen_looks = pictures is None
+    if episodes:
+        name, rows = _from_episodes(episodes, vlm)
+    elif pictures is not None:
+        name, rows = _from_pictures(vlm or "embedded", pictures, hidden=hidden)
+    else:
+        assert trials is not None
+        name = vlm or "embedded"
+        rows = _from_trials(name, tasks, world, monitor, seed, trials)
+    calibration = fit(rows, name, chosen_looks=chosen_looks)
+    judged = held_out(rows, name, chosen_looks=chosen_looks)
+    calibration.save(out)
+    _draw(image, judged, name)
+    table = lines(rows, judged, chosen_looks=chosen_looks)
+    if as_json:
+        typer.echo(json.dumps(_as_json(calibration, table, out, image), indent=1))
+    else:
+        _print(calibration, table)
+        typer.echo(f"wrote {out} and {image}")
+
+
+def _check(out: Path, image: Path) -> None:
+    """What would end the work at its end is told before it."""
+    from tpvqa.belief.platt import regression
+    from tpvqa.bench.figures import styled_pyplot
+    from tpvqa.errors import CalibrationError
+
+    regression()
+    styled_pyplot()
+    for path, option in ((out, "--out"), (image, "--curves")):
+        if path.is_dir():
+            raise CalibrationError(f"{path} is a folder; name a file with {option}")
+
+
+def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list[LabelledAnswer]"]:
+    from tpvqa.bench.labelled_episodes import label_episodes
+
+    with _progress("episodes", len(folders)) as done:
+        found = label_episodes(folders, vlm=vlm, done=done)
+    return found.vlm, found.rows
+
+
+def _from_pictures(vlm: str, where: str, *, hidden: bool) -> tuple[str, "list[LabelledAnswer]"]:
+    from tpvqa.bench.labelled_pictures import ask_pictures
+    from tpvqa.plugins import Kind, make
+    from tpvqa.worlds.images.manifest import load_pictures
+
+    opened = load_pictures(None if where == "shipped" else Path(where))
+    asked = make(Kind.VLM, vlm)
+    with _progress("pictures", len(opened.manifest.pictures)) as done:
+        return asked.name, ask_pictures(asked, opened, hidden=hidden, done=done)
+
+
+def _from_trials(
+    vlm: str, tasks: str, world: str | None, monitor: str, seed: int, trials: int
+) -> "list[LabelledAnswer]":
+    from tpvqa.bench.cell import Cell
+    from tpvqa.bench.labelled import gather
+    from tpvqa.bench.paper import looks
+    from tpvqa.errors import TpvqaError
+    from tpvqa.trial import TrialConfig
+
+    names = [name.strip() for name in tasks.split(",") if name.strip()]
+    if not names:
+        raise TpvqaError("--tasks names no task; write for example --tasks eat_apple")
+    world = world or ("images" if looks(vlm) else "symbolic")
+    rows: list[LabelledAnswer] = []
+    with _progress("trials", trials * len(names)) as done:
+        for task in names:
+            cell = Cell(task, monitor, vlm, world)
+            rows += gather(cell, TrialConfig(seed=seed), range(trials), done=done)
+    return rows
+
+
+@contextmanager
+def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
+    """A bar on standard error."""
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (
+        TextColumn(what),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        row = bar.add_task("", total=total)
+        yield lambda: bar.advance(row)
+
+
+def _draw(path: Path, judged: "Sequence[HeldOut]", vlm: str) -> None:
+    from tpvqa.bench.figures import close, saved
+    from tpvqa.bench.reliability import reliability_figure
+    from tpvqa.errors import CalibrationError
+
+    figure = reliability_figure(judged, vlm)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(saved(figure, "svg" if path.suffix == ".svg" else "png"))
+    except OSError as error:
+        raise CalibrationError(
+            f"{path}: cannot be written ({error.strerror}). Name another file with --curves"
+        ) from error
+    finally:
+        close(figure)
+
+
+def _as_json(
+    calibration: "Calibration", table: "Sequence[Line]", out: Path, image: Path
+) -> dict[str, object]:
+    return {
+        "vlm": calibration.vlm,
+        "rows": calibration.rows,
+        "file": str(out),
+        "curves": str(image),
+        "repeat_same_view": calibration.repeat_same_view,
+        "repeat_other_view": calibration.repeat_other_view,
+        "notices": calibration.notices,
+        "lines": [asdict(line) for line in table],
+    }
+
+
+def _print(calibration: "Calibration", table: "Sequence[Line]") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    printed = Table(title=calibration.vlm, title_justify="left", title_style="bold", box=None)
+    for name in ("asked as", "about"):
+        printed.add_column(name, no_wrap=True)
+    for name in ("answers", "abstained", "accuracy", "yes if true", "yes if false"):
+        printed.add_column(name, justify="right", no_wrap=True)
+    printed.add_column("ECE before → after", justify="right", no_wrap=True)
+    for line in table:
+        figures = (line.abstained, line.accuracy, line.yes_if_true, line.yes_if_false)
+        printed.add_row(
+            line.way or "all",
+            line.predicate or "",
+            str(line.answers),
+            *map(_figure, figures),
+            f"{_figure(line.error_before)} → {_figure(line.error_after)}",
+            end_section=line is table[-2],
+        )
+    console = Console()
+    (console if console.is_terminal else Console(width=120)).print(printed)
+    typer.echo(
+        f"\nA further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
+        f"the same view, {calibration.repeat_other_view:.2f} from another."
+    )
+    for notice in calibration.notices:
+        typer.echo(f"note: {notice}")
+
+
+def _figure(value: float | None) -> str:
+    return "–" if value is None else f"{value:.3f}"

@@ -1,0 +1,186 @@
+"""What an answer is worth: bounds, symmetry, groups, further looks, the file."""
+
+from itertools import pairwise
+from math import isclose, log
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tpvqa.belief import Apart, Calibration, Curve, Group, Rates
+from tpvqa.belief.calibration import BOUND
+from tpvqa.errors import CalibrationError
+from tpvqa.pddl import Atom
+from tpvqa.questions import Question, Way
+from tpvqa.vlm import Answer, Reply
+
+ON = Question("Is it on it?", Way.EFFECT, atom=Atom("on", ("apple", "table")))
+P = st.floats(0, 1)
+SLOPE = st.floats(0.01, 3)
+
+
+RATES = Rates(0.8, 0.2, 0.1, 0.1)
+
+
+def calibration(curve: Curve | None, rates: Rates = RATES) -> Calibration:
+    return Calibration(
+        vlm="v",
+        whole=Group(rates=rates, curve=curve),
+        repeat_same_view=0.5,
+        repeat_other_view=0.2,
+    )
+
+
+def group(way: Way, predicate: str | None, yes_if_true: float) -> Group:
+    return Group(way=way, predicate=predicate, rates=Rates(yes_if_true, 0.1, 0.0, 0.0))
+
+
+@given(P, SLOPE, st.floats(0, 2), st.floats(0.01, 0.99))
+def test_a_symmetric_calibration_is_antisymmetric(
+    p: float, slope: float, sign: float, rate: float
+) -> None:
+    one = calibration(Curve(slope=slope, sign=sign), Rates(rate, 1 - rate, 0.1, 0.1))
+    for p_yes, p_no in ((p, 1 - p), (None, None)):
+        yes = one.log_ratio(Answer(ON, Reply.YES, p_yes))
+        no = one.log_ratio(Answer(ON, Reply.NO, p_no))
+        assert isclose(yes, -no, abs_tol=1e-6)
+
+
+@given(st.none() | P, SLOPE, st.floats(-2, 2), st.sampled_from([Reply.UNKNOWN, Reply.CANNOT_SEE]))
+def test_an_abstention_is_worth_nothing(
+    p: float | None, slope: float, intercept: float, reply: Reply
+) -> None:
+    one = calibration(Curve(slope=slope, intercept=intercept))
+    assert one.log_ratio(Answer(ON, reply, p)) == 0.0
+    assert one.further(Answer(ON, reply, p), Reply.YES, Apart.OTHER_VIEW) == 0.0
+
+
+@given(P, P, SLOPE, st.floats(-2, 2), st.floats(0, 2))
+def test_it_grows_with_p_yes_and_is_bounded(
+    a: float, b: float, slope: float, intercept: float, sign: float
+) -> None:
+    one = calibration(Curve(slope=slope, intercept=intercept, sign=sign))
+    low, high = (
+        one.log_ratio(Answer(ON, Reply.YES if p > 0.5 else Reply.NO, p)) for p in sorted((a, b))
+    )
+    assert -BOUND <= low <= high <= BOUND
+
+
+def test_it_grows_strictly_within_its_bounds() -> None:
+    one = calibration(Curve(slope=0.7))
+    worths = [one.log_ratio(Answer(ON, Reply.YES, p / 100)) for p in range(1, 100)]
+    assert all(a < b for a, b in pairwise(worths))
+
+
+def test_without_p_yes_the_counts_decide() -> None:
+    one = calibration(Curve(slope=0.7), Rates(0.9, 0.3, 0.0, 0.0))
+    assert one.log_ratio(Answer(ON, Reply.YES)) == pytest.approx(log(0.9 / 0.3))
+    assert one.log_ratio(Answer(ON, Reply.NO)) == pytest.approx(log(0.1 / 0.7))
+
+
+def test_without_data_it_trusts_p_yes_half() -> None:
+    one = Calibration.default("v")
+    assert one.log_ratio(Answer(ON, Reply.YES, 0.9)) == pytest.approx(log(9) / 2)
+    assert one.log_ratio(Answer(ON, Reply.YES)) == pytest.approx(log(0.85 / 0.15))
+    assert one.rates(ON) == Rates(0.85, 0.15, 0.05, 0.05)
+    assert (one.repeat(Apart.SAME_VIEW), one.repeat(Apart.OTHER_VIEW)) == (0.5, 0.25)
+
+
+def test_words_that_are_the_same_stand_in_for_each_other() -> None:
+    one = Calibration(
+        vlm="v",
+        groups=(group(Way.PRECONDITION, "on", 0.91), group(Way.ALTERNATIVE, "near", 0.92)),
+        ways=(group(Way.PRECONDITION, None, 0.93), group(Way.DID, None, 0.94)),
+        whole=Group(rates=Rates(0.95, 0.1, 0.0, 0.0)),
+        repeat_same_view=0.5,
+        repeat_other_view=0.2,
+    )
+
+    def rate(way: Way, predicate: str) -> float:
+        return one.rates(Question("?", way, atom=Atom(predicate))).yes_if_true
+
+    assert rate(Way.PRECONDITION, "on") == rate(Way.ALTERNATIVE, "on") == 0.91
+    assert rate(Way.EFFECT, "on") == 0.91
+    assert rate(Way.PRECONDITION, "near") == 0.92
+    assert rate(Way.EFFECT, "clean") == rate(Way.ALTERNATIVE, "clean") == 0.93
+    assert one.rates(Question("?", Way.SUCCESSFUL)).yes_if_true == 0.94
+    assert one.rates(Question("?", Way.POSSIBLE)).yes_if_true == 0.95
+
+
+@given(st.floats(0.01, 0.99), st.sampled_from([Reply.YES, Reply.NO]))
+def test_a_further_answer_is_worth_less_the_nearer_its_picture(p: float, reply: Reply) -> None:
+    one = calibration(Curve(slope=1.0))
+    answer = Answer(ON, reply, p)
+    alone = one.log_ratio(answer)
+    same, view, other = (one.further(answer, reply, apart) for apart in Apart)
+    assert same == 0.0
+    assert abs(view) <= abs(other) <= abs(alone) + 1e-9
+    assert view * alone >= 0
+    differing = Reply.NO if reply is Reply.YES else Reply.YES
+    assert one.further(answer, differing, Apart.SAME_VIEW) == alone
+    assert one.further(answer, differing, Apart.SAME_PICTURE) == 0.0
+
+
+def test_what_a_repeated_answer_is_worth() -> None:
+    one = calibration(Curve(slope=1.0))
+    found = one.further(Answer(ON, Reply.YES, 0.8), Reply.YES, Apart.SAME_VIEW)
+    assert found == pytest.approx(log((0.5 + 0.5 * 0.8) / (0.5 + 0.5 * 0.2)))
+
+
+@given(
+    st.lists(st.sampled_from(list(Way)), unique=True),
+    st.floats(0, 1),
+    st.floats(-5, 5, allow_nan=False),
+)
+def test_the_file_gives_back_what_was_written(
+    tmp_path_factory: pytest.TempPathFactory, ways: list[Way], rate: float, slope: float
+) -> None:
+    rates = Rates(rate, 1 - rate, 0.5, 0.25)
+    kinds = tuple(Group(way=way, predicate="on", rates=rates) for way in ways)
+    one = Calibration(
+        vlm="openai:ü",
+        rows=7,
+        groups=kinds,
+        whole=Group(rates=rates, curve=Curve(slope=slope)),
+        repeat_same_view=rate,
+        repeat_other_view=0.1,
+        notices=("look out",),
+    )
+    path = tmp_path_factory.mktemp("file") / "new" / "c.json"
+    one.rates(ON)  # what is indexed for speed must not be part of it
+    one.save(path)
+    assert Calibration.load(path) == one
+    assert [each.name for each in path.parent.iterdir()] == ["c.json"]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (('"version": 1', '"version": 2'), ["another version", "tpvqa calibrate"]),
+        (('"yes_if_true": 0.85', '"yes_if_true": 1.85'), ["yes_if_true", "less than or equal"]),
+        (('"whole"', '"hole"'), ["whole", "Field required"]),
+        (("{", "["), ["Invalid JSON"]),
+    ],
+)
+def test_a_broken_file_is_named_with_its_fault_and_a_remedy(
+    tmp_path: Path, change: tuple[str, str], words: list[str]
+) -> None:
+    path = tmp_path / "c.json"
+    Calibration.default("v").save(path)
+    text = path.read_text()
+    assert change[0] in text
+    path.write_text(text.replace(*change))
+    with pytest.raises(CalibrationError) as error:
+        Calibration.load(path)
+    for word in (str(path), *words):
+        assert word in str(error.value)
+
+
+def test_a_missing_file_and_one_that_cannot_be_written(tmp_path: Path) -> None:
+    with pytest.raises(CalibrationError, match=r"c\.json.*tpvqa calibrate --out"):
+        Calibration.load(tmp_path / "c.json")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(CalibrationError, match="--out"):
+        Calibration.default("v").save(tmp_path / "folder")
+    assert [each.name for each in tmp_path.iterdir()] == ["folder"]

@@ -1,0 +1,127 @@
+"""Answers beside the truth: live, played back from the log, and from pictures."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tpvqa.belief import LabelledAnswer
+from tpvqa.bench.labelled import Labeller
+from tpvqa.bench.labelled_episodes import label_episodes
+from tpvqa.bench.labelled_pictures import ask_pictures
+from tpvqa.bench.stage import Stage, stage, true_simulation
+from tpvqa.episodes import EpisodeWriter
+from tpvqa.episodes.log import LOG
+from tpvqa.errors import CalibrationError
+from tpvqa.observation import Observation
+from tpvqa.pddl import Atom
+from tpvqa.questions import Question, Way
+from tpvqa.trial import TrialConfig
+from tpvqa.vlm import Answer, Reply
+from tpvqa.worlds.images.manifest import Manifest, PictureSet, load_pictures
+
+CONFIG = TrialConfig(
+    task="serve_breakfast", world="symbolic", vlm="oracle:0.8", spontaneous=0.2, seed=2
+)
+
+
+def recorded(config: TrialConfig, folder: Path) -> list[LabelledAnswer]:
+    """Run a trial into a folder: its answers, labelled as it ran."""
+    assert config.task is not None
+    here: Stage = stage(config.task)
+    with here.trial(config) as trial:
+        labeller = Labeller(true_simulation(trial), here.actions, str(folder))
+        writer = EpisodeWriter(folder, durable=False)
+        trial.run(writer, listeners=[labeller])
+        writer.close()
+    return labeller.rows
+
+
+@pytest.mark.parametrize("monitor", ["tpvqa:2", "palmevqa", "successvqa"])
+@pytest.mark.parametrize("episode", [0, 3])
+def test_a_log_gives_the_labels_that_the_running_trial_gave(
+    monitor: str, episode: int, tmp_path: Path
+) -> None:
+    live = recorded(replace(CONFIG, monitor=monitor, episode=episode), tmp_path / "e")
+    again = label_episodes([tmp_path / "e"])
+    assert again.vlm == "oracle:0.8"
+    assert again.rows == live
+    assert {row.truth for row in live} == {True, False}
+
+
+def test_labels_are_the_truth_at_the_time_of_asking(tmp_path: Path) -> None:
+    """An oracle that never errs agrees with every label, through failures and disturbances."""
+    config = replace(CONFIG, vlm="oracle", monitor="palmevqa")
+    for episode in range(4):
+        rows = recorded(replace(config, episode=episode), tmp_path / str(episode))
+        assert rows
+        assert all((row.reply is Reply.YES) == row.truth for row in rows)
+
+
+def test_an_episode_without_truth_is_refused(tmp_path: Path) -> None:
+    recorded(CONFIG, tmp_path / "e")
+    log = tmp_path / "e" / LOG
+    events = [json.loads(line) for line in log.read_text().splitlines()]
+    for event in events:
+        for name in ("truth", "goal_holds", "completed"):
+            event.pop(name, None)
+    log.write_text("".join(json.dumps(event) + "\n" for event in events))
+    with pytest.raises(CalibrationError, match=r"does not say what was true.*--trials"):
+        label_episodes([tmp_path / "e"])
+
+
+def test_one_action_without_truth_is_enough_to_refuse_it(tmp_path: Path) -> None:
+    recorded(CONFIG, tmp_path / "e")
+    log = tmp_path / "e" / LOG
+    events = [json.loads(line) for line in log.read_text().splitlines()]
+    next(event for event in events if event["kind"] == "acted").pop("truth")
+    log.write_text("".join(json.dumps(event) + "\n" for event in events))
+    with pytest.raises(CalibrationError, match="does not say what was true"):
+        label_episodes([tmp_path / "e"])
+
+
+def test_two_vlms_do_not_mix(tmp_path: Path) -> None:
+    recorded(CONFIG, tmp_path / "a")
+    recorded(replace(CONFIG, vlm="oracle:0.9"), tmp_path / "b")
+    with pytest.raises(CalibrationError, match=r"oracle:0\.9 answered in it, not oracle:0\.8"):
+        label_episodes([tmp_path / "a", tmp_path / "b"])
+
+
+class Reader:
+    """Says yes to what it was told is true."""
+
+    name = "reader"
+
+    def __init__(self, true: frozenset[Atom]):
+        self._true, self.asked = true, list[str]()
+
+    def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
+        self.asked += [question.text for question in questions]
+        return [
+            Answer(each, Reply.YES if each.true_in(self._true.__contains__) else Reply.NO)
+            for each in questions
+        ]
+
+
+def test_every_fact_of_a_picture_is_asked_once_and_counts_both_ways() -> None:
+    everything = load_pictures()
+    picture = everything.manifest.pictures[0]
+    few = Manifest.model_validate(
+        everything.manifest.model_dump() | {"pictures": (picture.model_dump(),)}
+    )
+    one = PictureSet(everything.folder, few)
+    vlm = Reader(picture.true_state)
+    rows = ask_pictures(vlm, one, hidden=True)
+    assert len(vlm.asked) == len(set(vlm.asked)) > 30
+    assert sorted(row.text for row in rows) == sorted(2 * vlm.asked)
+    assert {row.way for row in rows} == {Way.PRECONDITION, Way.EFFECT}
+    assert "free" not in {row.predicate for row in rows}
+    assert all((row.reply is Reply.YES) == row.truth for row in rows)
+    assert {row.truth for row in rows} == {True, False}
+    of_what_is_shown = ask_pictures(Reader(picture.true_state), one)
+    texts = {row.text for row in of_what_is_shown}
+    assert "(near table)" not in picture.seen
+    assert "Is there a table in the image?" in {row.text for row in rows} - texts
+    assert "Is there a plate in the image?" in texts

@@ -1,0 +1,128 @@
+"""`tpvqa calibrate`, as a user types it."""
+
+import json
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tpvqa.belief import Calibration
+from tpvqa.cli import main
+from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def tpvqa(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Run:
+    """Run the command in an empty folder: its exit code, stdout and stderr."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["tpvqa", *map(str, words)])
+        try:
+            main()
+            code = 0
+        except SystemExit as end:
+            code = int(end.code or 0)
+        return code, *capsys.readouterr()
+
+    return run
+
+
+TRIALS = ["--trials", "10", "--tasks", "clean_dishes", "--vlm", "oracle:0.9:0.4"]
+
+
+def test_from_trials(tpvqa: Run) -> None:
+    code, out, err = tpvqa("calibrate", *TRIALS, "--monitor", "tpvqa:3", "--out", "made/c.json")
+    assert code == 0, err
+    assert Calibration.load(Path("made/c.json")).vlm == "oracle:0.9:0.4"
+    assert "ECE before → after" in out
+    assert "effect        clean" in out
+    assert "from the same view" in out
+    assert "wrote made/c.json and made/c.png" in out
+    assert "trials" in err
+    with Image.open("made/c.png") as picture:
+        assert picture.width > 1000
+        assert len(picture.convert("RGB").getcolors(1 << 20) or ()) > 100
+
+
+def test_json_has_the_promised_fields(tpvqa: Run) -> None:
+    code, out, _ = tpvqa("calibrate", *TRIALS, "--json", "--curves", "seen.svg")
+    found = json.loads(out)
+    assert code == 0
+    assert (found["vlm"], found["file"], found["curves"]) == (
+        "oracle:0.9:0.4",
+        "calibration.json",
+        "seen.svg",
+    )
+    assert Path("seen.svg").read_text().lstrip().startswith("<?xml")
+    assert found["repeat_same_view"] == Calibration.load(Path(found["file"])).repeat_same_view
+    last = found["lines"][-1]
+    assert (last["way"], last["predicate"]) == (None, None)
+    assert last["answers"] == sum(line["answers"] for line in found["lines"][:-1])
+    assert 0 <= last["error_after"] < 0.15
+
+
+def test_from_recorded_episodes(tpvqa: Run) -> None:
+    words = ["--world", "symbolic", "--vlm", "oracle:0.8", "--monitor", "effectvqa"]
+    for seed in (1, 2):
+        tpvqa("run", "eat_apple", *words, "--seed", seed, "--out", f"e{seed}")
+    code, out, err = tpvqa("calibrate", "e1", "e2/episode.jsonl")
+    assert code == 0, err
+    assert "oracle:0.8" in out
+    assert Calibration.load(Path("calibration.json")).rows > 10
+    code, _, err = tpvqa("calibrate", "e1", "--vlm", "embedded")
+    assert code == 2
+    assert "oracle:0.8 answered in it, not embedded" in err
+
+
+def test_from_a_folder_of_pictures(tpvqa: Run, tmp_path: Path) -> None:
+    shipped = load_pictures()
+    few = shipped.manifest.pictures[::60]
+    (tmp_path / "set").mkdir()
+    for picture in few:
+        shutil.copy(shipped.folder / picture.file, tmp_path / "set")
+    manifest = shipped.manifest.model_copy(update={"pictures": few})
+    (tmp_path / "set" / MANIFEST).write_text(manifest.model_dump_json())
+    code, out, err = tpvqa("calibrate", "--pictures", "set", "--out", "c.json")
+    assert code == 0, err
+    assert "precondition  near" in out
+    assert Calibration.load(Path("c.json")).vlm == "embedded"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], ["one source", "--pictures", "--trials", "none was given"]),
+        (["--trials", "2", "--pictures", "shipped"], ["one source", "several"]),
+        (["e", "--trials", "2"], ["several"]),
+        (["--pictures", "nowhere"], ["nowhere", "tpvqa dataset"]),
+        (["nowhere"], ["nowhere holds no episode"]),
+        (["--pictures", "shipped", "--vlm", "oracle"], ["noise model"]),
+        (["--trials", "1", "--tasks", "eat_aple"], ["eat_aple", "Did you mean"]),
+        (["--trials", "1", "--tasks", ","], ["--tasks names no task"]),
+        (["--trials", "1", "--monitor", "tp"], ["no yes or no"]),
+        (["--trials", "0"], ["--trials"]),
+    ],
+)
+def test_bad_input_says_what_to_do(tpvqa: Run, words: list[str], said: list[str]) -> None:
+    code, _, err = tpvqa("calibrate", *words)
+    assert code == 2
+    for word in said:
+        assert word in err
+    assert not Path("calibration.json").exists()
+
+
+def test_a_file_that_cannot_be_written_is_told_before_the_work(tpvqa: Run, tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    code, _, err = tpvqa("calibrate", *TRIALS, "--out", "folder")
+    assert code == 2
+    assert "folder" in err
+    assert "--out" in err
+    assert "trials" not in err
