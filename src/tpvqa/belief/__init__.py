@@ -1,0 +1,1 @@
+"""Answers → what is probably true, and what cannot be true together."""
