@@ -21,8 +21,11 @@ Used = Literal["direct", "flow", "cp_sat"]
 SMALL = 40
 """Entangled members that are left to branch and bound."""
 
-FEW, MANY = 300, 100_000
-"""Branches before a heavier solver is asked, and before giving up where there is none."""
+FEW = 300
+"""Branches before a heavier solver is asked."""
+
+WORK = 4_000_000
+"""Branches times members before giving up where there is none; a few seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +106,8 @@ def _entangled(incidence: Incidence, weights: Weights, seconds: float) -> Choice
             raise missing from None
 
 
-def _branched(incidence: Incidence, weights: Weights, limit: int = MANY) -> Choice | None:
+def _branched(incidence: Incidence, weights: Weights, limit: int | None = None) -> Choice | None:
+    limit = WORK // incidence.size if limit is None else limit
     try:
         members = best_choice(weights.tolist(), incidence.listed(), limit=limit)
     except TooManyBranches:

@@ -67,7 +67,6 @@ class Constraints:
             pairs: Pairs that are known never to hold together, e.g. those of `h2_mutexes`. Those
                 that a group covers are left out.
             never: Atoms that are known never to hold, e.g. those of `h2_mutexes`.
-            never: Atoms that are known never to hold.
             further: What can happen besides actions (see `disturbances`). A group that this may
                 break is weakened or left out.
 
@@ -136,12 +135,16 @@ class Constraints:
     @cached_property
     def incidence(self) -> Incidence:
         """The constraints over the places of their atoms; those of `exactly_one` come first."""
-        groups = dict.fromkeys((*self.exactly_one, *self.at_most_one, *self.pairs))
         needing = set(self.exactly_one)
+        groups = needing.union(self.at_most_one, self.pairs)
+        # Sorted, as equally good states are told apart by the numbers of groups.
+        listed = sorted(
+            (group not in needing, sorted(self.numbers[atom] for atom in group)) for group in groups
+        )
         return Incidence.of(
             len(self.atoms),
-            ([self.numbers[atom] for atom in group] for group in groups),
-            (group in needing for group in groups),
+            [members for _, members in listed],
+            [not optional for optional, _ in listed],
         )
 
     @cached_property

@@ -1,8 +1,7 @@
 """Constraints as arrays of numbers, as the solvers want them."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,15 +26,14 @@ class Incidence:
     member: Numbers
     exactly: Flags
 
-    @classmethod
-    def of(cls, size: int, groups: Iterable[Iterable[int]], exactly: Iterable[bool]) -> Self:
+    @staticmethod
+    def of(size: int, groups: Sequence[Sequence[int]], exactly: Sequence[bool]) -> "Incidence":
         """From the members of each group."""
-        listed = [sorted(members) for members in groups]
-        return cls(
+        return Incidence(
             size,
-            np.repeat(np.arange(len(listed)), [len(members) for members in listed]),
-            np.array([member for members in listed for member in members], dtype=np.intp),
-            np.fromiter(exactly, dtype=np.bool_, count=len(listed)),
+            np.repeat(np.arange(len(groups)), [len(members) for members in groups]),
+            np.array([member for members in groups for member in members], dtype=np.intp),
+            np.array(exactly, dtype=np.bool_),
         )
 
     def parts(self) -> list[tuple[Numbers, "Incidence"]]:
