@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Mapping
-from itertools import product
+from itertools import pairwise, product
 from math import inf
 from random import Random
 
@@ -310,6 +310,20 @@ def test_without_or_tools_what_is_small_is_found_all_the_same(
     found = most_probable(log_odds, constraints)
     assert found.solver == "direct"
     assert constraints.violated(found.state) == []
+
+
+@pytest.mark.parametrize("length", [1, 2, 77, 3_000])
+def test_a_chain_is_taken_apart_from_its_ends(length: int) -> None:
+    random = Random(length)
+    atoms = [Atom("link", (f"n{number}",)) for number in range(length)]
+    log_odds = {atom: random.uniform(-0.2, 1.0) for atom in atoms}
+    pairs = frozenset(frozenset(both) for both in pairwise(atoms))
+    without, having = 0.0, 0.0  # the best so far without its last link, and at all
+    for atom in atoms:
+        without, having = having, max(having, without + log_odds[atom])
+    found = most_probable(log_odds, Constraints(pairs=pairs))
+    assert found.score == pytest.approx(having)
+    assert found.solver == "direct"
 
 
 def test_out_of_time_is_said() -> None:

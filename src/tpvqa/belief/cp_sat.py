@@ -53,6 +53,7 @@ def cp_sat_choice(
     # The linear relaxation of such groups is nearly whole: without it, equal weights take for ever.
     solver.parameters.linearization_level = 2
     solver.parameters.symmetry_level = 0
+    solver.parameters.cp_model_probing_level = 0
     solver.parameters.max_time_in_seconds = seconds
     status = solver.solve(model)
     if status == cp_model.INFEASIBLE:

@@ -16,7 +16,7 @@ from tpvqa.belief.incidence import Flags, Incidence, Numbers
 
 Weights = NDArray[np.float64]
 
-ROUNDS = 60
+ROUNDS = 500
 """A chain of groups loses a link at each end in every round; what is left then is the kernel."""
 
 
