@@ -14,6 +14,8 @@ TpvqaError
 ├── GeneratorError         pictures cannot be varied or generated (no key, say)
 │   └── PictureRefused     this one picture was refused, others may be made
 ├── EpisodeError           an episode cannot be read or resumed
+├── BeliefError            what is believed could not be made consistent in the time allowed
+│   └── ContradictionError facts that are taken as given cannot hold together
 ├── BenchError             a bench cannot be run, read or written
 ├── CalibrationError       a calibration cannot be learnt, read or written
 ├── UnknownNameError       no plug-in or task of that name
@@ -109,6 +111,14 @@ class PictureRefused(GeneratorError):  # noqa: N818
 
 class EpisodeError(TpvqaError):
     """An episode cannot be read or resumed."""
+
+
+class BeliefError(TpvqaError):
+    """What is believed could not be made consistent in the time allowed."""
+
+
+class ContradictionError(BeliefError):
+    """Facts that are taken as given cannot hold together."""
 
 
 class BenchError(TpvqaError):
