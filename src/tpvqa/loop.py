@@ -106,7 +106,12 @@ def _run(
         action, decision = step.action.pddl(), verdict.decision
         recorder.emit(
             Decided(
-                when=when, step=trial.index, action=action, decision=decision, reason=verdict.reason
+                when=when,
+                step=trial.index,
+                action=action,
+                decision=decision,
+                reason=verdict.reason,
+                belief={atom.pddl(): round(p, 4) for atom, p in verdict.belief.items()},
             )
         )
         _believe(recorder, trial, verdict.state)

@@ -75,7 +75,10 @@ class ActionRecord(BaseModel):
 
 
 class PlanMade(_Event):
-    """A planner's result: a plan, or why there is none."""
+    """A planner's result: a plan, or why there is none.
+
+    A plan that is only `considered` is not followed: a monitor wanted to know what it would be.
+    """
 
     kind: Literal["plan made"] = "plan made"
     state: tuple[str, ...]
@@ -85,6 +88,7 @@ class PlanMade(_Event):
     planner: str = ""
     seconds: float = 0.0
     reason: str = ""
+    considered: bool = False
 
 
 class FrameRecord(BaseModel):
@@ -163,7 +167,7 @@ class Believed(_Event):
 
 
 class Decided(_Event):
-    """A monitor's verdict."""
+    """A monitor's verdict. `belief` holds the probabilities of facts, as far as it keeps them."""
 
     kind: Literal["decided"] = "decided"
     when: Literal["before", "after"]
@@ -171,6 +175,7 @@ class Decided(_Event):
     action: str
     decision: Decision
     reason: str
+    belief: dict[str, float] = Field(default_factory=dict)
 
 
 class Acting(_Event):

@@ -28,6 +28,6 @@ def perform(recorder: Recorder, check: Check, *, timeout: float | None) -> Verdi
             case Ask(questions):
                 answer = recorder.ask(questions)
             case PlanFrom(state):
-                answer = recorder.plan(state, timeout=timeout)
+                answer = recorder.plan(state, timeout=timeout, considered=True)
             case AskPerson(question):
                 answer = recorder.ask([question], person=True)[0]

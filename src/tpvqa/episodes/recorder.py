@@ -111,8 +111,10 @@ class Recorder:
         """Log the last event, whatever was still to be played back."""
         return self._tell(self._writer.append(event))  # type: ignore[return-value]
 
-    def plan(self, state: State, *, timeout: float | None) -> PlanningResult:
-        """A plan from a state.
+    def plan(
+        self, state: State, *, timeout: float | None, considered: bool = False
+    ) -> PlanningResult:
+        """A plan from a state, to be followed or only considered.
 
         Raises:
             Lost: See there.
@@ -123,7 +125,8 @@ class Recorder:
             self._tell(record)
             return records.plan_from(record, self.parts.task)
         result = self.parts.planner.plan(self.parts.task, state, timeout=timeout)
-        self._tell(self._writer.append(records.plan_record(result, state, self.parts.book)))
+        made = records.plan_record(result, state, self.parts.book)
+        self._tell(self._writer.append(made.model_copy(update={"considered": considered})))
         return result
 
     def look(self, view: str | None) -> Observation:

@@ -1,9 +1,10 @@
 """What a monitor decides, and why."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 
-from tpvqa.pddl import State
+from tpvqa.pddl import Atom, State
 
 
 class Decision(StrEnum):
@@ -27,9 +28,11 @@ class Verdict:
             from it.
         step: At which step of the plan to go on; None for the natural one (the action itself
             before it, the next one after it).
+        belief: Probabilities of the facts that the plan needs, where a monitor keeps them.
     """
 
     decision: Decision
     reason: str
     state: State | None = None
     step: int | None = None
+    belief: Mapping[Atom, float] = field(default_factory=dict)
