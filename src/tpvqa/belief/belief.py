@@ -52,6 +52,7 @@ class Belief:
         self.weights: dict[int, float] = {model.number(Hypothesis(first)): 1.0}
         self.lost = 0.0
         self.came: Came | None = None
+        self._predicted: dict[int, float] = {}
         self._marginals: dict[Atom, float] = {}
 
     def states(self) -> list[tuple[State, float]]:
@@ -71,10 +72,9 @@ class Belief:
             if known is not None:
                 return known
         atoms = (atom, *alike)
+        state = self.model.state
         total = sum(
-            weight
-            for number, weight in self.weights.items()
-            if any(each in self.model.state(number) for each in atoms)
+            weight for number, weight in self.weights.items() if not state(number).isdisjoint(atoms)
         )
         total = min(total, 1.0)
         if not alike:
@@ -86,9 +86,7 @@ class Belief:
         return min(
             1.0,
             sum(
-                weight
-                for number, weight in self.weights.items()
-                if holds(self.model.state(number))
+                weight for number, weight in self.weights.items() if holds(self.model.state(number))
             ),
         )
 
@@ -147,9 +145,7 @@ class Belief:
         self._become(weighed)
         return total
 
-    def see(
-        self, atoms: tuple[Atom, ...], if_true: float, if_false: float
-    ) -> float:
+    def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
         """Weigh by an answer about a fact (or any of several alike).
 
         Args:
@@ -158,9 +154,17 @@ class Belief:
             if_false: Where no is right.
         """
         states = self.model
-        return self.weigh(
-            lambda n: if_true if not states.state(n).isdisjoint(atoms) else if_false
-        )
+        return self.weigh(lambda n: if_true if not states.state(n).isdisjoint(atoms) else if_false)
+
+    def weigh_outcome(self, *, succeeded: float, failed: float) -> None:
+        """Weigh by how probable something is where the last action succeeded, and where not."""
+        if self.came is None:
+            return
+        shares = {
+            number: self.came.success.get(number, 0.0) / self._predicted[number]
+            for number in self.weights
+        }
+        self.weigh(lambda n: shares[n] * succeeded + (1 - shares[n]) * failed)
 
     def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
         """Take in that a fact may have changed without the action model knowing.

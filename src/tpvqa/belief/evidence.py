@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from math import exp
+from math import exp, log
 
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.calibration import Apart, Calibration
@@ -16,6 +16,10 @@ UNEXPLAINED = 0.002
 """Chance that a fact that an answer speaks against has changed without the action model."""
 SURPRISING = 0.25
 """An answer less probable than this makes that chance be taken in."""
+PERSON = 0.99
+"""How often a person's answer is right."""
+SKILL = 0.9
+"""How far a skill is believed that says that it failed."""
 
 
 @dataclass(slots=True)
@@ -62,15 +66,19 @@ class Evidence:
         self._last: dict[str, _Last] = {}
         self._opened: set[tuple[Atom, ...]] = set()
         self.silent: set[str] = set()
-        self.told: dict[str, list[Reply]] = {}
 
-    def acted(self) -> None:
-        """Note that an action was executed: facts may have changed, other things are in view."""
+    def acted(self, *, troubled: bool = False) -> None:
+        """Note that an action was executed: facts may have changed, other things are in view.
+
+        Args:
+            troubled: Whether the robot's own skill says that it went wrong.
+        """
+        if troubled:
+            self._belief.weigh_outcome(succeeded=1 - SKILL, failed=SKILL)
         for last in self._last.values():
             last.settled = False
         self._opened.clear()
         self.silent.clear()
-        self.told.clear()
 
     def asked_at(self, text: str, look: int) -> bool:
         """Whether a question was answered at a look: on the same picture an answer is worth
@@ -115,7 +123,6 @@ class Evidence:
         if answer.reply not in (Reply.YES, Reply.NO):
             self.silent.add(question.text)
             return 1.0
-        self.told.setdefault(question.text, []).append(answer.reply)
         atoms = (question.atom, *question.alike)
         last = self._last.get(question.text)
         if last is not None and last.look == look:
@@ -144,6 +151,14 @@ class Evidence:
         self._last[question.text] = _Last(answer.reply, look, view, after)
         return probable
 
+    def take_from_person(self, answer: Answer) -> None:
+        """Weigh the belief by a person's answer."""
+        atom = answer.question.atom
+        if atom is not None and answer.reply in (Reply.YES, Reply.NO):
+            right = PERSON if answer.reply is Reply.YES else 1 - PERSON
+            self._belief.open((atom, *answer.question.alike), self._unexplained)
+            self._belief.see((atom, *answer.question.alike), right, 1 - right)
+
 
 def _unchanged(last: _Last) -> tuple[float, float]:
     """Probability that yes (no) was right at the last answer already, where it is right now."""
@@ -166,8 +181,6 @@ def _sigmoid(x: float) -> float:
 
 
 def _logit(p: float) -> float:
-    from math import log
-
     return log(p / (1 - p))
 
 

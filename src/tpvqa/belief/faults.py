@@ -228,6 +228,6 @@ def _shared(task: Task, rules: Any) -> FaultModel:
 def fault_model(task: Task, rules: FaultRules | None = None) -> FaultModel:
     """The model of a task, worked out once in a process where the rules can be compared."""
     try:
-        return _shared(task, rules)
+        return _shared(task, rules)  # type: ignore[arg-type]
     except TypeError:
         return FaultModel(task, rules)

@@ -59,9 +59,7 @@ def _counts(probability: float, times: int) -> Floats:
     )
 
 
-def gain(
-    if_true: Floats, if_false: Floats, reliability: Reliability, times: int
-) -> float:
+def gain(if_true: Floats, if_false: Floats, reliability: Reliability, times: int) -> float:
     """How much less the best decision costs when a question is answered some times.
 
     Args:

@@ -20,8 +20,7 @@ def flips(task: Task, state: State, atoms: tuple[Atom, ...]) -> list[State]:
         return [
             after
             for atom in sorted(atoms)
-            if atom in task.atoms()
-            and (after := _with(task, state, frozenset(), atom)) is not None
+            if atom in task.atoms() and (after := _with(task, state, frozenset(), atom)) is not None
         ]
     atom = true[0]
     homes = [group.atoms for group in task.groups_of(atom) if group.exactly_one]

@@ -3,36 +3,38 @@
 from collections.abc import Generator, Sequence
 from typing import Any
 
-import numpy as np
+from pydantic import ValidationError
 
+from tpvqa.belief.ablations import PARTS, belief_without
 from tpvqa.belief.annotated import AnnotatedPlan
-from tpvqa.belief.belief import Belief
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Choice, Chooser, Table
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.faults import FaultRules, Rates, fault_model
-from tpvqa.belief.information import TIMES, Floats, gain, joint_gain
+from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
 from tpvqa.belief.trust import Trust
-from tpvqa.errors import PlannerError
+from tpvqa.errors import PlannerError, PluginError
 from tpvqa.monitors.protocol import Check, Step
-from tpvqa.monitors.requests import Ask, Look, PlanFrom, Request
+from tpvqa.monitors.reasons import because, deciding
+from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
 from tpvqa.monitors.verdict import Decision, Verdict
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan
 from tpvqa.planning.regression import needed
-from tpvqa.questions import Question, Way
-from tpvqa.vlm import Answer
+from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.vlm import Answer, Reply
 
-TOGETHER = 4
-"""Questions that are thought to be asked together, at most."""
-DOUBT = 1e-3
-"""Facts that are surer than this are not asked about."""
+_RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate")
 
 
 class BeliefMonitor:
     """Keeps a Bayes filter over the facts and does what is expected to cost least.
+
+    After every action it predicts what that may have led to, asks as long as an answer is worth
+    its price, and goes on from the step of a known plan that then costs least: the next one, an
+    earlier or a later one, another plan's, or none, where the goal holds.
 
     Args:
         task: The task.
@@ -41,9 +43,12 @@ class BeliefMonitor:
         costs: What things cost.
         views: The views that the world can be looked at from, the default one first.
         rates: What is believed about faults beforehand.
-    """
+        without: One of `belief.ablations.PARTS`, to be left out.
 
-    name = "belief"
+    Example:
+        >>> BeliefMonitor.from_spec("question=0.05", task=task).costs.question  # doctest: +SKIP
+        0.05
+    """
 
     def __init__(
         self,
@@ -54,25 +59,30 @@ class BeliefMonitor:
         costs: Costs | None = None,
         views: Sequence[str] = (),
         rates: Rates | None = None,
-        learn: bool = True,
+        without: str | None = None,
+        name: str = "belief",
     ):
-        self.task, self.costs = task, costs or Costs()
-        self.belief = Belief(fault_model(task, rules))
+        self.task, self.costs, self.name = task, costs or Costs(), name
+        self.belief = belief_without(without, fault_model(task, rules))
         self.chances = Chances(rates)
-        self.trust = Trust() if learn else None
-        self._learn = learn
-        self.evidence = Evidence(
-            self.belief, calibration or Calibration.default(), self.trust
-        )
+        if calibration is None or without == "calibration":
+            calibration = Calibration.default()
+        self._learn = without != "learning"
+        self._all_facts = without == "relevance"
+        self.trust = Trust() if self._learn and without != "calibration" else None
+        self.evidence = Evidence(self.belief, calibration, self.trust)
         self._chooser = Chooser(self.belief.model, self.costs)
+        self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views = tuple(views)
-        self._truths: dict[str, dict[int, float]] = {}
+        self._view = self._views[0] if self._views else None
         self._look: int | None = None
-        self._view: str | None = None
         self._looks = self._questions = self._looks_here = self._questions_here = 0
-        self._settled = False
+        self._told: dict[Atom, list[Reply]] = {}
+        self._person = self.costs.person is not None
         self._action: Action | None = None
         self._effects: frozenset[Atom] = frozenset()
+        self._settled: str | None = None
+        self._asked_about: dict[frozenset[Atom], list[Question]] = {}
 
     @classmethod
     def from_spec(
@@ -86,41 +96,72 @@ class BeliefMonitor:
     ) -> "BeliefMonitor":
         """Make it from `belief`, or `belief:question=0.05:failure=200` with other costs.
 
+        Also understood: `failure_rate`, `disturbance_rate` and `spontaneous_rate`, believed
+        beforehand; `without=PART`.
+
         Raises:
-            PluginError: A cost is unknown or no number.
+            PluginError: Something is unknown, or no fitting number.
         """
         given: dict[str, Any] = {}
         for part in arguments.split(":") if arguments else []:
             key, _, value = part.partition("=")
             given[key.strip()] = value.strip()
-        learn = given.pop("learn", "1") != "0"
+        without = given.pop("without", None)
+        if without is not None and without not in PARTS:
+            raise PluginError(
+                f"'belief:{arguments}': what can be left out is {', '.join(PARTS)}, not {without!r}"
+            )
+        try:
+            believed = {
+                key.removesuffix("_rate"): float(given.pop(key)) for key in _RATES if key in given
+            }
+            if not all(0 <= rate <= 1 for rate in believed.values()):
+                raise ValueError("a rate lies between 0 and 1")
+            costs = Costs.model_validate(given)
+        except ValidationError as error:
+            first = error.errors()[0]
+            where = ".".join(map(str, first["loc"]))
+            raise PluginError(
+                f"'belief:{arguments}' is not understood: {where}: {first['msg']}. Costs are "
+                f"{', '.join(Costs.model_fields)}; write belief:question=0.05, say."
+            ) from None
+        except ValueError as error:
+            raise PluginError(f"'belief:{arguments}' is not understood: {error}") from None
         return cls(
-            task, rules=rules, calibration=calibration, views=views, costs=Costs(**given),
-            learn=learn,
+            task,
+            rules=rules,
+            calibration=calibration,
+            views=views,
+            costs=costs,
+            rates=Rates(**believed),
+            without=without,
+            name=f"belief:{arguments}" if arguments else "belief",
         )
 
     def before(self, step: Step) -> Check:
-        """Act where this is the step to take; otherwise what is."""
-        yield from self._know(step)
-        if self._settled:  # decided already, by this belief
-            self._settled = False
-            return Verdict(Decision.GO_ON, self._reason(step, None))
+        """Act where this is the step to take; otherwise go to what is."""
+        self._know(step)
+        if self._settled is not None:  # decided by this very belief, after the last action
+            reason, self._settled = self._settled, None
+            return Verdict(Decision.GO_ON, reason)
         choice = yield from self._choose(step)
         return self._verdict(step, choice, acted=False)
 
     def after(self, step: Step) -> Check:
         """Predict what the action led to, look where that is worth it, and decide what is next."""
-        yield from self._know(step)
+        self._know(step)
         self._acted(step)
         choice = yield from self._choose(step)
         return self._verdict(step, choice, acted=True)
 
-    def _know(self, step: Step) -> Generator[Request, Any, None]:
+    def _know(self, step: Step) -> None:
         """Annotate the plan that is being followed."""
-        if step.index == 0 and all(p.actions != step.plan.actions for p in self._chooser.plans):
+        if step.index == 0 and self._annotated(step) is None:
             self._annotate(step.plan, step.state)
-        return
-        yield
+
+    def _annotated(self, step: Step) -> AnnotatedPlan | None:
+        actions = step.plan.actions
+        return next((plan for plan in self._chooser.plans if plan.actions == actions), None)
 
     def _annotate(self, plan: Plan, state: State) -> None:
         try:
@@ -134,11 +175,13 @@ class BeliefMonitor:
         if self._learn:
             self.chances.learn(self.belief.outcome_shares())
         self.belief.act(step.action, self.chances.rates)
-        self.evidence.acted()
+        self.evidence.acted(troubled=bool(step.trouble))
         self._action = step.action
         self._effects = frozenset(effect.literal.atom for effect in step.action.effects)
-        self._look = None
+        self._look, self._view = None, self._views[0] if self._views else None
         self._looks_here = self._questions_here = 0
+        self._told.clear()
+        self._asked_about.clear()
 
     def _choose(self, step: Step) -> Generator[Request, Any, Choice]:
         while True:
@@ -148,138 +191,104 @@ class BeliefMonitor:
                     self._annotate(result, state)
                 else:
                     self._chooser.give_up_on(state)
-            table = self._chooser.table(
-                self.belief, self.chances.rates, step.plan.actions
-            )
-            worth = self._worth_asking(step, table)
-            if worth is None:
+            table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions)
+            inquiry = self._inquire(step, table)
+            if inquiry is None:
                 return table.best
-            question, times = worth
-            for _ in range(times):
-                yield from self._ask(question)
+            for _ in range(inquiry.times):
+                yield from self._ask(inquiry.question, person=inquiry.person)
 
-    def _worth_asking(self, step: Step, table: Table) -> tuple[Question, int] | None:
-        """The question whose answers save most, less what they cost; None if none does.
-
-        Returns:
-            The question, and how often to ask it before thinking again.
-        """
+    def _inquire(self, step: Step, table: Table) -> Inquiry | None:
         costs = self.costs
-        if (
-            self._questions_here >= costs.questions_per_step
-            or self._questions >= costs.questions_per_trial
-        ):
-            return None
-        more_looks = (
-            self._looks_here < costs.looks_per_step and self._looks < costs.looks_per_trial
+        budget = Budget(
+            min(
+                costs.questions_per_step - self._questions_here,
+                costs.questions_per_trial - self._questions,
+            ),
+            min(costs.looks_per_step - self._looks_here, costs.looks_per_trial - self._looks),
         )
-        weighted = table.weights[:, None] * table.costs
-        total = weighted.sum(axis=0)
-        now = float(total.min())
-        # Q-MDP takes a mistake to be noticed at once; it is, so many answers later.
-        late = self.evidence.answers_to_be_sure()
-        asking, looking = costs.question / late, costs.look / late
-        best, often, saving = None, 1, 1e-9
-        questions = self._questions_in_doubt(step)
-        truths = [self._right_of_yes(question, table) for question in questions]
-        expected = [self.evidence.expect(question, self._view) for question in questions]
-        most = []
-        for question, true, reliability in zip(questions, truths, expected, strict=True):
-            if_true = true @ weighted
-            if_false = total - if_true
-            most.append(now - float(if_true.min()) - float(if_false.min()))
-            if most[-1] <= asking:
-                continue  # even the truth would not be worth a question
-            seen = self._look is not None and not self.evidence.asked_at(question.text, self._look)
-            for times in TIMES:
-                looks = times - 1 if seen else times
-                if looks and not more_looks:
-                    break
-                price = times * asking + looks * looking
-                value = gain(if_true, if_false, reliability, times) - price
-                if value > saving:
-                    best, often, saving = question, times, value
-        if len(questions) > 1 and more_looks:
-            doubts = [abs(float(true @ table.weights) - 0.5) for true in truths]
-            order = sorted(
-                range(len(questions)), key=lambda place: (-round(most[place], 6), doubts[place])
-            )
-            first = order[:TOGETHER]
-            for times in TIMES:
-                price = times * (len(first) * asking + looking)
-                value = -price + joint_gain(
-                    weighted,
-                    np.array([truths[place] for place in first]),
-                    [expected[place] for place in first],
-                    times,
-                )
-                if value > saving:
-                    best, often, saving = questions[first[0]], 1, value
-        return None if best is None else (best, max(1, often // 4))
+        questions = self._about_needs(step.book)
+        if self._all_facts and budget.questions > 0:
+            fresh = [each for each in questions if each.atom not in self._told and each.atom]
+            doubted = [each for each in fresh if 1e-3 < self._likely(each) < 1 - 1e-3]
+            if doubted:
+                return Inquiry(doubted[0], 1, 0.0)
+        return self._inquirer.best(
+            questions, table, budget, look=self._look, view=self._next_view(), person=self._person
+        )
 
-    def _right_of_yes(self, question: Question, table: Table) -> Floats:
-        """In which joint states yes is right: ones and zeros."""
-        known = self._truths.setdefault(question.text, {})
+    def _likely(self, question: Question) -> float:
         assert question.atom is not None
-        for number in table.numbers:
-            if number not in known:
-                atoms = (question.atom, *question.alike)
-                known[number] = float(not self.belief.model.state(number).isdisjoint(atoms))
-        return np.array([known[number] for number in table.numbers])
+        return self.belief.probability(question.atom, question.alike)
 
-    def _questions_in_doubt(self, step: Step) -> list[Question]:
-        """Questions about facts that the plans need, and that are in doubt."""
-        atoms: set[Atom] = set()
-        for plan in self._chooser.plans:
-            atoms |= plan.atoms()
-        questions: dict[str, Question] = {}
-        for atom in sorted(atoms):
-            if DOUBT < self.belief.probability(atom) < 1 - DOUBT:
-                action = self._action if self._way(atom) is Way.EFFECT else None
-                if not step.book.asked(Literal(atom), action):
-                    continue
-                question = step.book.fact(Literal(atom), way=self._way(atom), action=action)
-                if question.text not in self.evidence.silent:
+    def _about_needs(self, book: QuestionBook) -> list[Question]:
+        """Questions about what the plans need: nothing else can change a decision."""
+        atoms: frozenset[Atom] = frozenset().union(*(p.atoms() for p in self._chooser.plans))
+        if self._all_facts:
+            atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
+        if atoms not in self._asked_about:
+            questions: dict[str, Question] = {}
+            for atom in sorted(atoms):
+                effect = atom in self._effects
+                action = self._action if effect else None
+                if book.asked(Literal(atom), action):
+                    way = Way.EFFECT if effect else Way.PRECONDITION
+                    question = book.fact(Literal(atom), way=way, action=action)
                     questions.setdefault(question.text, question)
-        return list(questions.values())
+            self._asked_about[atoms] = list(questions.values())
+        return self._asked_about[atoms]
 
-    def _way(self, atom: Atom) -> Way:
-        return Way.EFFECT if atom in self._effects else Way.PRECONDITION
+    def _next_view(self) -> str | None:
+        return self._views[self._looks_here % len(self._views)] if self._views else None
 
-    def _ask(self, question: Question) -> Generator[Request, Any, None]:
-        if self._look is None or self.evidence.asked_at(question.text, self._look):
-            self._view = self._views[self._looks_here % len(self._views)] if self._views else None
-            observation = yield Look(self._view)
-            self._look = observation.look
-            self._looks += 1
-            self._looks_here += 1
-        answers: list[Answer] = yield Ask((question,))
-        self._questions += 1
-        self._questions_here += 1
-        self.evidence.take(answers[0], self._look, self._view)
+    def _ask(self, question: Question, *, person: bool) -> Generator[Request, Any, None]:
+        assert question.atom is not None
+        if person:
+            answer: Answer = yield AskPerson(question)
+            self._person = answer.reply in (Reply.YES, Reply.NO)
+            self.evidence.take_from_person(answer)
+        else:
+            if self._look is None or self.evidence.asked_at(question.text, self._look):
+                self._view = self._next_view()
+                observation = yield Look(self._view)
+                self._look = observation.look
+                self._looks += 1
+                self._looks_here += 1
+            answers: list[Answer] = yield Ask((question,))
+            answer = answers[0]
+            self._questions += 1
+            self._questions_here += 1
+            self.evidence.take(answer, self._look, self._view)
+        if answer.reply in (Reply.YES, Reply.NO):
+            self._told.setdefault(question.atom, []).append(answer.reply)
 
     def _verdict(self, step: Step, choice: Choice, *, acted: bool) -> Verdict:
-        state = choice.state
-        reason = self._reason(step, choice)
-        if choice.action is None:
-            if self.belief.where(self.task.goal_holds) < 0.5:
-                return Verdict(Decision.GIVE_UP, reason, state)
-            return Verdict(Decision.DONE, reason, state)
-        self._settled = True
+        state, action, place = choice.state, choice.action, None
         same = self.belief.model.same_skill
-        if acted and same(choice.action, step.action, state):
-            return Verdict(Decision.REPEAT, reason, state)
-        places = [
-            place
-            for place, action in enumerate(step.plan.actions)
-            if same(action, choice.action, state)
-        ]
-        if not places:
-            return Verdict(Decision.REPLAN, reason, state)
-        place = min(places, key=lambda each: abs(each - step.index))
-        if not acted and place == step.index:
-            self._settled = False
-        return Verdict(Decision.GO_ON, reason, state, step=place)
+        if action is None:
+            likely = self.belief.where(self.task.goal_holds) >= 0.5
+            decision = Decision.DONE if likely else Decision.GIVE_UP
+        elif acted and same(action, step.action, state):
+            decision = Decision.REPEAT
+        else:
+            places = [
+                number for number, each in enumerate(step.plan.actions) if same(each, action, state)
+            ]
+            decision = Decision.GO_ON if places else Decision.REPLAN
+            place = min(places, key=lambda each: abs(each - step.index), default=None)
+        plan = self._annotated(step)
+        reason = "; ".join(
+            (
+                because(step, self.belief, self._told, plan),
+                deciding(step, self.belief, decision, action, state, place),
+            )
+        )
+        if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
+            acted or place != step.index
+        ):
+            self._settled = "as decided"
+        return Verdict(decision, reason, state, step=place, belief=self._marginals())
 
-    def _reason(self, step: Step, choice: Choice | None) -> str:
-        return "by the belief"
+    def _marginals(self) -> dict[Atom, float]:
+        atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
+        return {atom: self.belief.probability(atom) for atom in sorted(atoms)}
