@@ -5,10 +5,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Event as Flag
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
+
+from pydantic import BaseModel
 
 from tpvqa import __version__
 from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.experience import Experience
+from tpvqa.belief.shipped import shipped_calibration
 from tpvqa.episodes import Ended, Event, Limits, Parts, Started, read_episode
 from tpvqa.episodes.log import EpisodeWriter
 from tpvqa.episodes.recorder import Writer
@@ -50,6 +54,9 @@ class TrialConfig:
         limits: When to end without success.
         planning_timeout: Seconds for one call of the planner.
         action_deadline: Seconds for one action.
+        calibration: What the VLM's answers are worth, for monitors that weigh them; None for the
+            shipped one of this VLM, or a cautious default.
+        experience: What such a monitor learned in earlier trials.
         options: Further keyword arguments for the plug-ins (`base_url`, `majority`, …).
     """
 
@@ -71,6 +78,7 @@ class TrialConfig:
     planning_timeout: float = 30.0
     action_deadline: float | None = None
     calibration: Calibration | None = None
+    experience: Experience | None = None
     options: dict[str, Any] = field(default_factory=dict)
 
 
@@ -152,11 +160,14 @@ class Trial:
         if truth is not None:
             context["truth"] = truth
         context["views"] = tuple(self.world.views())
-        context["calibration"] = config.calibration
-        self.monitor: Monitor
-        self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor, context)
         pictures = getattr(self.world, "has_pictures", True)
         self.vlm_spec = config.vlm or ("embedded" if pictures else "oracle")
+        context["calibration"] = config.calibration or shipped_calibration(self.vlm_spec)
+        context["experience"] = config.experience
+        self.monitor: Monitor
+        self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor, context)
+        weighs = "calibration" in by_monitor
+        self.calibration: Calibration | None = context["calibration"] if weighs else None
         made, by_vlm = make_from(Kind.VLM, self.vlm_spec, context) if vlm is None else (vlm, set())
         self.vlm: VLM = made
         if not pictures and getattr(self.vlm, "needs_pictures", False):
@@ -203,6 +214,8 @@ class Trial:
                 "spontaneous": config.spontaneous,
                 "planning_timeout": config.planning_timeout,
                 "action_deadline": config.action_deadline,
+                "calibration": _plain(self.calibration),
+                "experience": _plain(config.experience),
                 "options": config.options,
             },
         )
@@ -269,6 +282,17 @@ def _all_taken(
             raise UnknownNameError("option for this world, monitor and VLM", option, known)
 
 
+M = TypeVar("M", bound=BaseModel)
+
+
+def _plain(model: BaseModel | None) -> dict[str, Any] | None:
+    return None if model is None else model.model_dump(mode="json")
+
+
+def _read(kind: type[M], values: dict[str, Any] | None) -> M | None:
+    return None if values is None else kind.model_validate(values)
+
+
 def _text(path: Path | str | None) -> str | None:
     """What a file says, to be compared with what it says later."""
     return None if path is None else Path(path).read_bytes().decode(errors="replace")
@@ -296,6 +320,8 @@ def config_of(started: Started) -> TrialConfig:
         limits=started.limits,
         planning_timeout=settings["planning_timeout"],
         action_deadline=settings["action_deadline"],
+        calibration=_read(Calibration, settings.get("calibration")),
+        experience=_read(Experience, settings.get("experience")),
         options=settings["options"],
     )
 

@@ -1,6 +1,6 @@
 """Answers as evidence: each weighs the belief by what it adds to those before."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Hashable
 from dataclasses import dataclass
 from math import exp, log
 
@@ -22,19 +22,23 @@ SKILL = 0.9
 """How far a skill is believed that says that it failed."""
 
 
+Picture = Hashable
+"""What tells one picture from another: where it comes from, or else the number of the look."""
+
+
 @dataclass(slots=True)
 class _Last:
     """The last answer to a question.
 
     Attributes:
-        look: At which look.
-        view: From which view.
+        pictures: Of which pictures it was asked since something was done last.
+        view: From which view the last one was.
         true: Probability, after it, that yes was right.
         settled: Whether nothing was done since, so that what is true is unchanged.
     """
 
     reply: Reply
-    look: int
+    pictures: set[Picture]
     view: str | None
     true: float
     settled: bool = True
@@ -77,14 +81,15 @@ class Evidence:
             self._belief.weigh_outcome(succeeded=1 - SKILL, failed=SKILL)
         for last in self._last.values():
             last.settled = False
+            last.pictures.clear()
         self._opened.clear()
         self.silent.clear()
 
-    def asked_at(self, text: str, look: int) -> bool:
-        """Whether a question was answered at a look: on the same picture an answer is worth
+    def asked_of(self, text: str, picture: Picture) -> bool:
+        """Whether a question was answered on a picture since the last action: once more is worth
         nothing."""
         last = self._last.get(text)
-        return last is not None and last.look == look
+        return last is not None and picture in last.pictures
 
     def answers_to_be_sure(self) -> float:
         """How many answers of this VLM it takes to notice a mistake."""
@@ -112,7 +117,7 @@ class Evidence:
             false = rho * if_false * before + (1 - rho * if_false) * false
         return Reliability(true, false, min(abstains, 0.95))
 
-    def take(self, answer: Answer, look: int, view: str | None) -> float:
+    def take(self, answer: Answer, picture: Picture, view: str | None) -> float:
         """Weigh the belief by an answer.
 
         Returns:
@@ -125,7 +130,7 @@ class Evidence:
             return 1.0
         atoms = (question.atom, *question.alike)
         last = self._last.get(question.text)
-        if last is not None and last.look == look:
+        if last is not None and picture in last.pictures:
             return 1.0
         raw = self._calibration.log_ratio(answer)
         true = self._belief.probability(question.atom, question.alike)
@@ -148,7 +153,8 @@ class Evidence:
         if self._trust is not None and not repeated:
             self._trust.learn(true, raw)
         after = self._belief.probability(question.atom, question.alike)
-        self._last[question.text] = _Last(answer.reply, look, view, after)
+        pictures = {picture} if last is None else last.pictures | {picture}
+        self._last[question.text] = _Last(answer.reply, pictures, view, after)
         return probable
 
     def take_from_person(self, answer: Answer) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from tpvqa.belief.choices import Table
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import Evidence
+from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import TIMES, Floats, Reliability, gain, joint_gain
 from tpvqa.questions.question import Question
@@ -64,7 +64,7 @@ class Inquirer:
         table: Table,
         budget: Budget,
         *,
-        look: int | None,
+        picture: Picture | None,
         view: str | None,
         person: bool = False,
     ) -> Inquiry | None:
@@ -74,7 +74,7 @@ class Inquirer:
             questions: About facts that matter.
             table: What can be done, and what it costs.
             budget: What may still be asked.
-            look: The latest look since the last action; None where there was none.
+            picture: The latest one since the last action; None where there was none.
             view: From which view the next one is.
             person: Whether a person can be asked.
         """
@@ -105,7 +105,7 @@ class Inquirer:
             doubted.append((-round(most, 6), abs(true - 0.5), question, truth, reliability))
             if most <= asking:
                 continue  # even the truth would not be worth a question
-            seen = look is not None and not self._evidence.asked_at(question.text, look)
+            seen = picture is not None and not self._evidence.asked_of(question.text, picture)
             for times in TIMES:
                 looks = times - 1 if seen else times
                 if times > budget.questions or looks > budget.looks:

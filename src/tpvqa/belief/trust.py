@@ -1,6 +1,5 @@
 """Whether the VLM is as good as its calibration says, learned from its own answers."""
 
-from collections.abc import Mapping
 from math import exp, log
 
 GRID = (0.05, 0.15, 0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.7, 2.2)
@@ -50,13 +49,14 @@ class Trust:
         """The expected γ."""
         return sum(g * w for g, w in zip(GRID, self._weights, strict=True))
 
-    def snapshot(self) -> Mapping[str, float]:
-        """The posterior, as plain values."""
-        return {f"{g:g}": w for g, w in zip(GRID, self._weights, strict=True)}
+    @property
+    def weights(self) -> tuple[float, ...]:
+        """The probability of every factor of `GRID`."""
+        return tuple(self._weights)
 
-    def restore(self, snapshot: Mapping[str, float]) -> None:
-        """Put back what `snapshot` gave."""
-        self._weights = [float(snapshot[f"{g:g}"]) for g in GRID]
+    @weights.setter
+    def weights(self, weights: tuple[float, ...]) -> None:
+        self._weights = list(weights)
         self._normalise()
 
     def _normalise(self) -> None:

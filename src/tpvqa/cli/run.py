@@ -30,8 +30,13 @@ def run(
         typer.Option(help="images, kitchen or symbolic (the default for your own domain)."),
     ] = None,
     monitor: Annotated[
-        str, typer.Option(help="tpvqa, tpvqa:LOOKS, effectvqa, palmevqa, successvqa, tp or none.")
-    ] = "tpvqa",
+        str | None,
+        typer.Option(
+            help="belief (the default), belief:COST=VALUE (question, look, action, person, "
+            "failure), tpvqa (the paper's; the default with --majority), tpvqa:LOOKS, effectvqa, "
+            "palmevqa, successvqa, tp or none."
+        ),
+    ] = None,
     vlm: Annotated[
         str | None,
         typer.Option(
@@ -52,6 +57,14 @@ def run(
     majority: Annotated[
         str | None,
         typer.Option(help="tie (at least half deny, the default) or strict (more than half)."),
+    ] = None,
+    calibration: Annotated[
+        Path | None,
+        typer.Option(help="belief: what the VLM's answers are worth, see `tpvqa calibrate`."),
+    ] = None,
+    experience: Annotated[
+        Path | None,
+        typer.Option(help="belief: file with what was learned in earlier trials; kept up to date."),
     ] = None,
     simulator: Annotated[
         str | None,
@@ -83,12 +96,16 @@ def run(
     ] = False,
 ) -> None:
     """Run one trial: plan, look, ask, act, and repeat or replan where the pictures say so."""
+    from tpvqa.belief import Calibration
+    from tpvqa.belief.experience import Experience
     from tpvqa.episodes import EpisodeWriter, Limits
     from tpvqa.errors import TpvqaError
     from tpvqa.trial import Trial, TrialConfig
 
     if task is not None and (domain or problem):
         raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
+    if monitor is None:
+        monitor = "belief" if majority is None else "tpvqa"
     if not monitor.strip() or (vlm is not None and not vlm.strip()):
         raise TpvqaError("--monitor and --vlm must not be empty.")
     own = task is None
@@ -115,6 +132,8 @@ def run(
         limits=Limits(repeats=max_repeats, replans=max_replans, actions=max_actions),
         planning_timeout=planning_timeout,
         action_deadline=action_deadline,
+        calibration=None if calibration is None else Calibration.load(calibration),
+        experience=None if experience is None else Experience.load(experience),
         options={name: value for name, value in options.items() if value is not None},
     )
     with Trial(config) as trial:
@@ -127,6 +146,9 @@ def run(
                 ended = trial.run(writer, folder=folder, listeners=[view])
         finally:
             writer.close()
+        learned = getattr(trial.monitor, "experience", None)
+    if experience is not None and learned is not None:
+        learned.save(experience)
     _finish(ended, folder, as_json=as_json)
 
 

@@ -11,7 +11,8 @@ from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Choice, Chooser, Table
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import Evidence
+from tpvqa.belief.evidence import Evidence, Picture
+from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultRules, Rates, fault_model
 from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
 from tpvqa.belief.trust import Trust
@@ -20,6 +21,7 @@ from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import because, deciding
 from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
 from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan
 from tpvqa.planning.regression import needed
@@ -43,6 +45,7 @@ class BeliefMonitor:
         costs: What things cost.
         views: The views that the world can be looked at from, the default one first.
         rates: What is believed about faults beforehand.
+        experience: What was learned in earlier trials; goes before `rates`.
         without: One of `belief.ablations.PARTS`, to be left out.
 
     Example:
@@ -59,23 +62,27 @@ class BeliefMonitor:
         costs: Costs | None = None,
         views: Sequence[str] = (),
         rates: Rates | None = None,
+        experience: Experience | None = None,
         without: str | None = None,
         name: str = "belief",
     ):
         self.task, self.costs, self.name = task, costs or Costs(), name
         self.belief = belief_without(without, fault_model(task, rules))
-        self.chances = Chances(rates)
+        self.chances = Chances(rates) if experience is None else experience.chances(rates)
         if calibration is None or without == "calibration":
             calibration = Calibration.default()
         self._learn = without != "learning"
         self._all_facts = without == "relevance"
-        self.trust = Trust() if self._learn and without != "calibration" else None
+        self.trust: Trust | None = None
+        if self._learn and without != "calibration":
+            self.trust = Trust() if experience is None else experience.trusting()
+        self._trials = 0 if experience is None else experience.trials
         self.evidence = Evidence(self.belief, calibration, self.trust)
         self._chooser = Chooser(self.belief.model, self.costs)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views = tuple(views)
         self._view = self._views[0] if self._views else None
-        self._look: int | None = None
+        self._picture: Picture | None = None
         self._looks = self._questions = self._looks_here = self._questions_here = 0
         self._told: dict[Atom, list[Reply]] = {}
         self._person = self.costs.person is not None
@@ -93,6 +100,7 @@ class BeliefMonitor:
         rules: FaultRules | None = None,
         calibration: Calibration | None = None,
         views: Sequence[str] = (),
+        experience: Experience | None = None,
     ) -> "BeliefMonitor":
         """Make it from `belief`, or `belief:question=0.05:failure=200` with other costs.
 
@@ -134,9 +142,17 @@ class BeliefMonitor:
             views=views,
             costs=costs,
             rates=Rates(**believed),
+            experience=experience,
             without=without,
             name=f"belief:{arguments}" if arguments else "belief",
         )
+
+    @property
+    def experience(self) -> Experience | None:
+        """What is known now, for the next trial; None where nothing is learned."""
+        if self.trust is None:
+            return None
+        return Experience.of(self.chances, self.trust, self._trials + 1)
 
     def before(self, step: Step) -> Check:
         """Act where this is the step to take; otherwise go to what is."""
@@ -178,7 +194,7 @@ class BeliefMonitor:
         self.evidence.acted(troubled=bool(step.trouble))
         self._action = step.action
         self._effects = frozenset(effect.literal.atom for effect in step.action.effects)
-        self._look, self._view = None, self._views[0] if self._views else None
+        self._picture, self._view = None, self._views[0] if self._views else None
         self._looks_here = self._questions_here = 0
         self._told.clear()
         self._asked_about.clear()
@@ -197,6 +213,8 @@ class BeliefMonitor:
                 return table.best
             for _ in range(inquiry.times):
                 yield from self._ask(inquiry.question, person=inquiry.person)
+                if inquiry.question.text in self.evidence.silent:
+                    break
 
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
         costs = self.costs
@@ -214,7 +232,12 @@ class BeliefMonitor:
             if doubted:
                 return Inquiry(doubted[0], 1, 0.0)
         return self._inquirer.best(
-            questions, table, budget, look=self._look, view=self._next_view(), person=self._person
+            questions,
+            table,
+            budget,
+            picture=self._picture,
+            view=self._next_view(),
+            person=self._person,
         )
 
     def _likely(self, question: Question) -> float:
@@ -248,17 +271,17 @@ class BeliefMonitor:
             self._person = answer.reply in (Reply.YES, Reply.NO)
             self.evidence.take_from_person(answer)
         else:
-            if self._look is None or self.evidence.asked_at(question.text, self._look):
+            if self._picture is None or self.evidence.asked_of(question.text, self._picture):
                 self._view = self._next_view()
-                observation = yield Look(self._view)
-                self._look = observation.look
+                observation: Observation = yield Look(self._view)
+                self._picture = _picture(observation)
                 self._looks += 1
                 self._looks_here += 1
             answers: list[Answer] = yield Ask((question,))
             answer = answers[0]
             self._questions += 1
             self._questions_here += 1
-            self.evidence.take(answer, self._look, self._view)
+            self.evidence.take(answer, self._picture, self._view)
         if answer.reply in (Reply.YES, Reply.NO):
             self._told.setdefault(question.atom, []).append(answer.reply)
 
@@ -292,3 +315,8 @@ class BeliefMonitor:
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
         return {atom: self.belief.probability(atom) for atom in sorted(atoms)}
+
+
+def _picture(observation: Observation) -> Picture:
+    """What tells what was seen from other pictures: the pictures, or else the number of the look."""
+    return tuple(frame.data for frame in observation.frames.values()) or observation.look

@@ -1,0 +1,98 @@
+"""What a robot has learned from its trials: how often actions fail, how far the VLM can be trusted.
+
+Kept from one trial to the next, as one small JSON file.
+"""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from tpvqa.belief.chances import Beta, Chances
+from tpvqa.belief.faults import Rates
+from tpvqa.belief.trust import GRID, Trust
+from tpvqa.errors import CalibrationError
+
+Cases = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
+
+
+class Experience(BaseModel):
+    """What was learned so far.
+
+    Attributes:
+        failure: Cases for and against an action failing, prior ones included.
+        disturbance: Cases for and against a failure disturbing something.
+        trust: Probabilities of the factors by which the VLM's answers are worth more or less than
+            its calibration says (`trust.GRID`).
+        trials: How many trials that is from.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    failure: Cases
+    disturbance: Cases
+    trust: tuple[float, ...] = Field(min_length=len(GRID), max_length=len(GRID))
+    trials: int = Field(default=0, ge=0)
+
+    @staticmethod
+    def of(chances: Chances, trust: Trust, trials: int) -> "Experience":
+        """What a monitor has learned by the end of a trial."""
+        return Experience(
+            failure=(chances.failure.yes, chances.failure.no),
+            disturbance=(chances.disturbance.yes, chances.disturbance.no),
+            trust=trust.weights,
+            trials=trials,
+        )
+
+    def chances(self, rates: Rates | None = None) -> Chances:
+        """The rates of faults to begin the next trial with.
+
+        Args:
+            rates: Gives the rate of spontaneous changes, which is not learned.
+        """
+        chances = Chances(rates)
+        chances.failure = Beta(*self.failure)
+        chances.disturbance = Beta(*self.disturbance)
+        return chances
+
+    def trusting(self) -> Trust:
+        """How far to trust the VLM in the next trial."""
+        trust = Trust()
+        trust.weights = self.trust
+        return trust
+
+    @classmethod
+    def load(cls, path: Path) -> "Experience | None":
+        """Read a file that `save` wrote; None where there is none yet.
+
+        Raises:
+            CalibrationError: It cannot be read, or is broken.
+        """
+        try:
+            return cls.model_validate_json(path.read_bytes())
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise CalibrationError(f"{path}: cannot be read ({error.strerror})") from error
+        except ValidationError as error:
+            first = error.errors()[0]
+            place = ".".join(map(str, first["loc"])) or "the file"
+            raise CalibrationError(
+                f"{path}: {place}: {first['msg']}. Remove the file to learn anew"
+            ) from error
+
+    def save(self, path: Path) -> None:
+        """Write it, all or nothing.
+
+        Raises:
+            CalibrationError: It cannot be written.
+        """
+        temporary = path.with_name(f".{path.name}.{os.getpid()}")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            temporary.write_text(self.model_dump_json(indent=1) + "\n")
+            temporary.replace(path)
+        except OSError as error:
+            temporary.unlink(missing_ok=True)
+            raise CalibrationError(f"{path}: cannot be written ({error.strerror})") from error
