@@ -8,9 +8,9 @@ for it (`open`).
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from math import inf, log
 
 from tpvqa.belief.faults import FaultModel, Hypothesis, Rates
-from tpvqa.belief.surprise import flips
 from tpvqa.pddl import Action, Atom, State
 
 SMALLEST = 1e-5
@@ -48,6 +48,7 @@ class Belief:
         most: int = MOST,
     ):
         self.model, self._smallest, self._most = model, smallest, most
+        self._surprise = model.surprise
         first = model.task.init if state is None else state
         self.weights: dict[int, float] = {model.number(Hypothesis(first)): 1.0}
         self.lost = 0.0
@@ -181,7 +182,7 @@ class Belief:
             if weight < 0.01:
                 continue
             state = self.model.state(number)
-            others = flips(self.model.task, state, atoms)
+            others = self._surprise.flips(state, atoms)
             if not others:
                 continue
             grown[number] -= chance * weight
@@ -197,6 +198,20 @@ class Belief:
         self.weights = {self.model.number(Hypothesis(state)): 1.0}
         self.came = None
         self._marginals.clear()
+
+    def margin(self, atom: Atom) -> float:
+        """How close the call is: log odds of the best joint state with the fact to that without.
+
+        Positive where the fact holds in the most probable joint state; infinite where it is the
+        same in all of them.
+        """
+        best = {True: 0.0, False: 0.0}
+        for number, weight in self.weights.items():
+            holds = atom in self.model.state(number)
+            best[holds] = max(best[holds], weight)
+        if not best[True] or not best[False]:
+            return inf if best[True] else -inf
+        return log(best[True] / best[False])
 
     def outcome_shares(self) -> Mapping[str, float]:
         """How the last action came out, after all that was seen since.

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Protocol
 
+from tpvqa.belief.surprise import Surprise
 from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Action, Atom, State, Task
 
@@ -95,6 +96,7 @@ class FaultModel:
 
     def __init__(self, task: Task, rules: FaultRules | None = None):
         self.task = task
+        self.surprise = Surprise(task, rules.undo if rules is not None else ())
         self._undo: Sequence[Undoing] = (
             rules.undo if rules is not None and rules.undo else (BackToBefore(task),)
         )

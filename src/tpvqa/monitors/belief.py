@@ -318,5 +318,5 @@ class BeliefMonitor:
 
 
 def _picture(observation: Observation) -> Picture:
-    """What tells what was seen from other pictures: the pictures, or else the number of the look."""
+    """What tells one look from another: the pictures, or else the look's number."""
     return tuple(frame.data for frame in observation.frames.values()) or observation.look
