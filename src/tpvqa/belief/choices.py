@@ -16,6 +16,8 @@ LIKELY = 0.02
 """Joint states of at least this probability get a plan of their own."""
 CHOICES = 6
 """Choices that are compared, at most."""
+IDLE = 0.97
+"""An action that changes nothing with this probability is no choice."""
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
 
@@ -133,7 +135,7 @@ class Chooser:
             self._rates = rates
             self._cost_of.clear()
         ranked = sorted(belief.weights.items(), key=lambda entry: (-entry[1], entry[0]))
-        choices = self._choices(ranked)
+        choices = [each for each in self._choices(ranked) if not self._idle(each, ranked)]
         columns = []
         for choice in choices:
             key = "" if choice.action is None else choice.action.pddl()
@@ -208,6 +210,19 @@ class Chooser:
     def _in(self, choice: Choice, plan: Sequence[Action]) -> bool:
         same, action = self._model.same_skill, choice.action
         return action is not None and any(same(action, each, choice.state) for each in plan)
+
+    def _idle(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> bool:
+        """Whether an action would almost surely change nothing.
+
+        Q-MDP, which takes everything to be known after the next action, would wait for ever.
+        """
+        action = choice.action
+        if action is None:
+            return False
+        idle = sum(
+            weight for number, weight in ranked if self._model.outcomes(number, action).achieved
+        )
+        return idle > IDLE
 
     def _is_goal(self, number: int) -> bool:
         if number not in self._goals:
