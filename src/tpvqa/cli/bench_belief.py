@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from tpvqa.bench.belief import Part
+    from tpvqa.bench.belief.targets import Check
 
 
 def belief(
@@ -53,6 +56,9 @@ def belief(
     out: Annotated[Path, typer.Option(help="Folder; a bench that was stopped goes on.")] = Path(
         "bench-belief"
     ),
+    only_tables: Annotated[
+        bool, typer.Option("--only-tables", help="Run nothing; write tables of what is finished.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
     """Measure the belief monitor against votes over several looks and the paper's baselines."""
@@ -87,13 +93,14 @@ def belief(
             bar(done, total)
 
         try:
-            results = run_belief_bench(
+            results, checks = run_belief_bench(
                 bench,
                 out,
                 workers=workers or os.cpu_count() or 1,
                 scheduler=scheduler,
                 calibrating=bar,
                 progress=progress,
+                only_tables=only_tables,
             )
         except KeyboardInterrupt:
             print(
@@ -102,9 +109,43 @@ def belief(
             )
             raise typer.Exit(130) from None
     if as_json:
-        print(json.dumps(summary_rows(results), indent=1))
+        told = {"targets": [check.flat() for check in checks], "cells": summary_rows(results)}
+        print(json.dumps(told, indent=1))
+    else:
+        _print(checks)
+        print(f"tables and figures: {out}/belief.md, {out}/targets.md, {out}/figures")
     if results.errors:
         raise typer.Exit(1)
+
+
+def _print(checks: "Sequence[Check]") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="targets", title_justify="left", title_style="bold", box=None)
+    for name in ("condition", "figure"):
+        table.add_column(name)
+    for name in ("target", "measured", "95% interval", "reached"):
+        table.add_column(name, justify="right", no_wrap=True)
+    last = ""
+    for check in checks:
+        if check.measured is None:
+            continue
+        found = check.measured
+        table.add_row(
+            check.condition if check.condition != last else "",
+            check.what,
+            check.target,
+            f"{found.value:.3g}",
+            f"{found.low:.3g} to {found.high:.3g}" if found.low < found.high else "",
+            "yes" if check.reached else "no",
+        )
+        last = check.condition
+    console = Console()
+    (console if console.is_terminal else Console(width=150)).print(table)
+    missing = sum(check.measured is None for check in checks)
+    if missing:
+        print(f"\n{missing} of {len(checks)} figures were not measured")
 
 
 def _list(text: str) -> tuple[str, ...]:

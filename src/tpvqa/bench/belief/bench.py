@@ -1,6 +1,7 @@
 """Runs the belief bench: calibrations first, then every missing episode, then the tables."""
 
-from collections.abc import Callable, Sequence
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,16 +11,19 @@ from tpvqa.bench.belief import calibrations as learnt
 from tpvqa.bench.belief.parts import Extent, Part, believes
 from tpvqa.bench.belief.results import BeliefResults
 from tpvqa.bench.belief.tables import write_results
+from tpvqa.bench.belief.targets import Check
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.paper import looks
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.stage import stage
+from tpvqa.errors import BenchError
 from tpvqa.plugins import Kind, load, make
 from tpvqa.tasks import find_task
 from tpvqa.trial import TrialConfig
 
 Told = Callable[[int, int], None]
+SPEED_FILE = "speed.json"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,10 +44,14 @@ class BeliefBench:
     embedded_world: str = "images"
     common: TrialConfig = field(default_factory=TrialConfig)
 
-    def wanted(self) -> dict[Cell, int]:
-        """How many episodes of each cell; a cell of several parts is run once."""
+    def wanted(self, parts: Iterable[Part] | None = None) -> dict[Cell, int]:
+        """How many episodes of each cell; a cell of several parts is run once.
+
+        Args:
+            parts: Which parts; by default those that are to be run.
+        """
         found: dict[Cell, int] = {}
-        for part in self.parts:
+        for part in self.parts if parts is None else parts:
             for cell, episodes in self.extent.cells(part):
                 found[cell] = max(episodes, found.get(cell, 0))
         return found
@@ -91,8 +99,9 @@ def run_belief_bench(
     scheduler: str | None = None,
     calibrating: Told = lambda done, total: None,
     progress: Told = lambda done, total: None,
-) -> BeliefResults:
-    """Run what is missing, and write tables and figures.
+    only_tables: bool = False,
+) -> tuple[BeliefResults, list[Check]]:
+    """Run what is missing, and write tables and figures of all parts that lie in the folder.
 
     Args:
         bench: What to run.
@@ -101,6 +110,10 @@ def run_belief_bench(
         scheduler: Address of a Dask scheduler to use instead.
         calibrating: Told how many calibrations are there and how many there will be.
         progress: Told how many episodes are done and how many there are.
+        only_tables: Run nothing.
+
+    Returns:
+        What was found, and what of it must be reached.
 
     Raises:
         TpvqaError: Something is not there, or the folder cannot be used.
@@ -108,7 +121,7 @@ def run_belief_bench(
     bench.check()
     ledger = Ledger(folder, bench.settings())
     try:
-        wanted = bench.wanted()
+        wanted = {} if only_tables else bench.wanted()
         believing = [
             cell for cell, n in wanted.items() if believes(cell.monitor) and ledger.missing(cell, n)
         ]
@@ -137,9 +150,20 @@ def run_belief_bench(
             done=count,
             calibrations={cell: known[bench.source_of(cell)] for cell in believing},
         )
-        rows = {cell: ledger.of(cell, episodes) for cell, episodes in wanted.items()}
+        found = ((cell, ledger.of(cell, n)) for cell, n in bench.wanted(Part).items())
+        rows = {cell: own for cell, own in found if own}
     finally:
         ledger.close()
-    results = BeliefResults(bench.settings(), rows)
-    write_results(folder, results)
-    return results
+    results = BeliefResults(bench.settings(), rows, _speed(folder / SPEED_FILE))
+    return results, write_results(folder, results, bench.extent)
+
+
+def _speed(path: Path) -> Mapping[str, float]:
+    """What `benchmarks/belief.py --out` measured, where it was run for this bench."""
+    if not path.exists():
+        return {}
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+        return {str(name): float(value) for name, value in found.items()}
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise BenchError(f"{path}: damaged ({error}). Measure again, or remove it") from error
