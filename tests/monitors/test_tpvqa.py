@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from tests.doubles import knowing, perform, replies
 from tests.monitors.conftest import agree
+from tpvqa.errors import PluginError
 from tpvqa.monitors import Decision, Step
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.memory import FactMemory
@@ -51,6 +52,37 @@ def test_a_strict_majority_goes_on_at_a_tie(at: Callable[..., Step]) -> None:
     monitor = TPVQA(majority="strict")
     verdict, _, _ = perform(monitor.before(at(3, monitor)), replies({SINK: Reply.YES}, Reply.NO))
     assert verdict.decision is Decision.GO_ON
+
+
+@pytest.mark.parametrize(
+    ("spec", "name", "looks", "decision"),
+    [
+        ("", "tpvqa", 1, Decision.REPLAN),
+        ("tie", "tpvqa", 1, Decision.REPLAN),
+        ("strict", "tpvqa:strict", 1, Decision.GO_ON),
+        ("3", "tpvqa:3", 3, Decision.REPLAN),
+        ("3:strict", "tpvqa:3:strict", 3, Decision.GO_ON),
+    ],
+)
+def test_a_specification_says_how_many_looks_and_which_majority(
+    spec: str, name: str, looks: int, decision: Decision, at: Callable[..., Step]
+) -> None:
+    monitor = TPVQA.from_spec(spec)
+    assert monitor.name == name
+    tie = replies({SINK: Reply.YES}, Reply.NO)
+    verdict, looked, _ = perform(monitor.before(at(3, monitor)), tie)
+    assert (verdict.decision, looked) == (decision, looks)
+
+
+@pytest.mark.parametrize("spec", ["x", "3:x", "strict:3", "-1", "3.5"])
+def test_a_specification_that_is_not_understood(spec: str) -> None:
+    with pytest.raises(PluginError, match=f"'tpvqa:{spec}' is not understood"):
+        TPVQA.from_spec(spec)
+
+
+def test_the_majority_of_a_specification_counts_before_the_option() -> None:
+    assert TPVQA.from_spec("5", majority="strict").name == "tpvqa:5:strict"
+    assert TPVQA.from_spec("5:tie", majority="strict").name == "tpvqa:5"
 
 
 def test_where_else_a_thing_is_seen_is_believed(at: Callable[..., Step]) -> None:

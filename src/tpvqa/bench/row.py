@@ -29,6 +29,7 @@ class EpisodeRow(BaseModel):
     monitor: str
     vlm: str
     world: str
+    condition: str = ""
     seed: int
     episode: int
     completed: bool = False
@@ -51,7 +52,7 @@ class EpisodeRow(BaseModel):
     @property
     def cell(self) -> Cell:
         """The cell it belongs to."""
-        return Cell(self.task, self.monitor, self.vlm, self.world)
+        return Cell(self.task, self.monitor, self.vlm, self.world, self.condition)
 
     @property
     def ending(self) -> str:

@@ -4,8 +4,10 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
+from types import MappingProxyType
 
+from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.row import EpisodeRow
@@ -17,6 +19,8 @@ BATCH: Mapping[str, int] = {"symbolic": 100, "images": 50}
 """Episodes that a worker is sent at once, by world: about a second's work."""
 SMALL_BATCH = 5
 """In other worlds."""
+SLOW = ("belief",)
+"""Monitors that are sent a fifth of that."""
 RETRIES = 3
 """How often a batch whose worker died is given to another."""
 
@@ -35,6 +39,8 @@ def batches(ledger: Ledger, wanted: Mapping[Cell, int]) -> list[Batch]:
     for place, (cell, episodes) in enumerate(wanted.items()):
         missing = ledger.missing(cell, episodes)
         size = BATCH.get(cell.world.partition(":")[0], SMALL_BATCH)
+        if cell.monitor.partition(":")[0] in SLOW:
+            size = max(size // 5, 1)
         made += [
             (first, place, Batch(cell, tuple(missing[first : first + size])))
             for first in range(0, len(missing), size)
@@ -51,6 +57,7 @@ def run_all(
     scheduler: str | None = None,
     distributed: bool | None = None,
     done: Callable[[int], None] = lambda count: None,
+    calibrations: Mapping[Cell, Calibration] = MappingProxyType({}),
 ) -> None:
     """Run every missing episode; each batch is on disk as soon as it is back.
 
@@ -64,6 +71,7 @@ def run_all(
         scheduler: Address of a Dask scheduler to use instead.
         distributed: Whether to use Dask; by default with more than one worker, or a scheduler.
         done: Told how many episodes have come back, after each batch.
+        calibrations: What the VLM's answers are worth, of cells whose monitor is told.
 
     Raises:
         MissingExtraError: Dask is needed and not installed.
@@ -72,19 +80,26 @@ def run_all(
     todo = batches(ledger, wanted)
     if distributed is None:
         distributed = workers > 1 or scheduler is not None
-    results = _on_dask(todo, common, workers, scheduler) if distributed else _here(todo, common)
+
+    def given(cell: Cell) -> TrialConfig:
+        return replace(common, calibration=calibrations.get(cell))
+
+    results = _on_dask(todo, given, workers, scheduler) if distributed else _here(todo, given)
     for batch, rows in results:
         ledger.add(rows)
         done(len(batch.episodes))
 
 
-def _here(todo: Sequence[Batch], common: TrialConfig) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
+Given = Callable[[Cell], TrialConfig]
+
+
+def _here(todo: Sequence[Batch], given: Given) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
     for batch in todo:
-        yield batch, _rows(run_batch(batch.cell, common, batch.episodes))
+        yield batch, _rows(run_batch(batch.cell, given(batch.cell), batch.episodes))
 
 
 def _on_dask(
-    todo: Sequence[Batch], common: TrialConfig, workers: int, scheduler: str | None
+    todo: Sequence[Batch], given: Given, workers: int, scheduler: str | None
 ) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
     if not todo:
         return
@@ -113,7 +128,7 @@ def _on_dask(
             client.submit(
                 run_batch,
                 batch.cell,
-                common,
+                given(batch.cell),
                 batch.episodes,
                 pure=False,
                 retries=RETRIES,
@@ -125,7 +140,9 @@ def _on_dask(
             failed = future.exception()
             yield (
                 batch,
-                _rows(future.result()) if failed is None else _failed(batch, common, repr(failed)),
+                _rows(future.result())
+                if failed is None
+                else _failed(batch, given(batch.cell), repr(failed)),
             )
     finally:
         client.close()
@@ -154,10 +171,7 @@ def _failed(batch: Batch, common: TrialConfig, error: str) -> list[EpisodeRow]:
     cell = batch.cell
     return [
         EpisodeRow(
-            task=cell.task,
-            monitor=cell.monitor,
-            vlm=cell.vlm,
-            world=cell.world,
+            **asdict(cell),
             seed=common.seed,
             episode=episode,
             error=error,

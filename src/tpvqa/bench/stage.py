@@ -3,6 +3,7 @@
 import time
 import traceback
 from collections.abc import Callable
+from dataclasses import asdict
 from functools import lru_cache
 from typing import Any
 
@@ -47,10 +48,7 @@ class Stage:
         """Run one episode. Whatever goes wrong in it is in its row, and the rest go on."""
         began = time.perf_counter()
         row: dict[str, Any] = {
-            "task": cell.task,
-            "monitor": cell.monitor,
-            "vlm": cell.vlm,
-            "world": cell.world,
+            **asdict(cell),
             "seed": common.seed,
             "episode": episode,
         }

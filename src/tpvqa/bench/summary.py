@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from statistics import fmean
 from typing import Any
 
@@ -108,7 +108,7 @@ def summaries(rows: Mapping[Cell, Sequence[EpisodeRow]]) -> list[Summary]:
     found = []
     for cell, own in rows.items():
         if own:
-            reference = Cell(cell.task, REFERENCE, cell.vlm, cell.world)
+            reference = replace(cell, monitor=REFERENCE)
             others = [] if cell.monitor == REFERENCE else rows.get(reference, [])
             found.append(summarise(cell, own, others))
     return found

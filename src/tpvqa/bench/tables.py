@@ -38,7 +38,9 @@ def write_tables(folder: Path, results: Results) -> list[Path]:
             for accuracy, rate in curve.items()
         ],
     }
-    return [path for name, rows in tables.items() if rows for path in _write(folder, name, rows)]
+    return [
+        path for name, rows in tables.items() if rows for path in write_table(folder, name, rows)
+    ]
 
 
 def _episodes(results: Results) -> Iterator[dict[str, Any]]:
@@ -71,7 +73,13 @@ def _limits(results: Results) -> Iterator[dict[str, Any]]:
                 yield {**asdict(cell), "limit_of": name, "limit": limit, "completion_rate": rate}
 
 
-def _write(folder: Path, name: str, values: Sequence[Mapping[str, Any]]) -> list[Path]:
+def write_table(folder: Path, name: str, values: Sequence[Mapping[str, Any]]) -> list[Path]:
+    """Write one table as CSV and Parquet.
+
+    Raises:
+        MissingExtraError: PyArrow is not installed.
+        BenchError: The folder cannot be written to.
+    """
     try:
         import pyarrow as pa
         from pyarrow import csv, parquet

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tpvqa.cli.bench_belief import belief
+
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
@@ -23,6 +25,7 @@ _EXIT = "Exit codes: 0 all episodes ran, 1 some failed with an error, 2 bad inpu
 def register(app: typer.Typer) -> None:
     """Add the commands."""
     bench_app.command(epilog=_EXIT)(paper)
+    bench_app.command(epilog=_EXIT)(belief)
     app.add_typer(bench_app, name="bench")
 
 
@@ -82,6 +85,7 @@ def paper(
     import os
 
     from tpvqa.bench.paper import PaperBench, as_rows, run_paper_bench
+    from tpvqa.cli.progress import CountBar
     from tpvqa.episodes import Limits
     from tpvqa.trial import TrialConfig
 
@@ -99,7 +103,7 @@ def paper(
             limits=Limits(repeats=max_repeats, replans=max_replans, actions=max_actions),
         ),
     )
-    with _Progress() as progress:
+    with CountBar() as progress:
         try:
             results = run_paper_bench(
                 bench,
@@ -125,48 +129,6 @@ def paper(
 
 def _list(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
-
-
-class _Progress:
-    """A bar with rate and time left, on standard error."""
-
-    def __enter__(self) -> "_Progress":
-        from rich.console import Console
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            TextColumn,
-            TimeElapsedColumn,
-            TimeRemainingColumn,
-        )
-
-        self._bar = Progress(
-            TextColumn("episodes"),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TextColumn("{task.fields[rate]}"),
-            TimeElapsedColumn(),
-            TextColumn("left"),
-            TimeRemainingColumn(),
-            console=Console(stderr=True),
-        )
-        self._bar.start()
-        self._task = self._bar.add_task("", total=None, rate="")
-        self._first: int | None = None
-        return self
-
-    def __call__(self, done: int, total: int) -> None:
-        if self._first is None:
-            self._first = done
-        elapsed = self._bar.tasks[0].elapsed or 0.0
-        rate = (done - self._first) / elapsed if elapsed > 0.5 else 0.0
-        self._bar.update(
-            self._task, completed=done, total=total, rate=f"{rate:.0f}/s" if rate else ""
-        )
-
-    def __exit__(self, *_: object) -> None:
-        self._bar.stop()
 
 
 def _print(results: "Results") -> None:

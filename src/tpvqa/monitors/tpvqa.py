@@ -29,8 +29,8 @@ class TPVQA:
         alternatives: Whether to ask where else a thing is, once a fact about it is denied.
 
     Example:
-        >>> TPVQA.from_spec("5").name
-        'tpvqa:5'
+        >>> TPVQA.from_spec("5:strict").name
+        'tpvqa:5:strict'
     """
 
     def __init__(
@@ -49,24 +49,28 @@ class TPVQA:
     def from_spec(
         cls, arguments: str = "", *, majority: Majority | str = Majority.TIE_DENIES
     ) -> "TPVQA":
-        """Make it from `tpvqa`, or `tpvqa:K` for votes over K looks.
+        """Make it from `tpvqa[:K][:MAJORITY]`: votes over K looks, `tie` or `strict`.
 
         Raises:
-            PluginError: K is not a number of looks.
+            PluginError: The arguments are others.
         """
-        if not arguments:
-            return cls(majority=majority)
-        if not arguments.isdecimal():
+        votes, _, rule = arguments.partition(":")
+        if votes and not votes.isdecimal():
+            votes, rule = "", arguments
+        if rule not in ("", *Majority):
             raise PluginError(
-                f"'tpvqa:{arguments}' is not understood. Write tpvqa, or tpvqa:K for votes over "
-                "K looks, e.g. tpvqa:5."
+                f"'tpvqa:{arguments}' is not understood. Write tpvqa, tpvqa:K for votes over "
+                "K looks, e.g. tpvqa:5, or either with the majority tie or strict at its end, "
+                "e.g. tpvqa:5:strict."
             )
-        return cls(majority=majority, votes=int(arguments))
+        return cls(majority=rule or majority, votes=int(votes or 1))
 
     @property
     def name(self) -> str:
         """What the log calls it."""
-        return "tpvqa" if self._asker.votes == 1 else f"tpvqa:{self._asker.votes}"
+        votes = "" if self._asker.votes == 1 else f":{self._asker.votes}"
+        strict = ":strict" if self._asker.majority is Majority.STRICT else ""
+        return f"tpvqa{votes}{strict}"
 
     def before(self, step: Step) -> Check:
         """Check the preconditions: go on, or replan from the corrected state."""

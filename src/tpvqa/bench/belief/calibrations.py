@@ -1,0 +1,82 @@
+"""What each VLM's answers are worth, learnt from trials that no cell of the bench runs."""
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.fitting import fit
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.labelled import gather
+from tpvqa.trial import TrialConfig
+
+MONITOR = "tpvqa:3"
+"""Who asks: several looks show how much a further one repeats the last."""
+OTHER_SEEDS = 10_000
+"""How far the seed of these trials lies from that of the bench."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Source:
+    """Where a calibration comes from."""
+
+    task: str
+    vlm: str
+    world: str
+
+    @property
+    def file(self) -> str:
+        """The name of the calibration's file."""
+        return f"{self.vlm}_{self.task}_{self.world}.json".replace(":", "-").replace("/", "-")
+
+
+def source_of(cell: Cell, embedded_world: str = "images") -> Source:
+    """Where the calibration of a cell comes from.
+
+    A recorded VLM that answers by one half of its problems is calibrated on the other half.
+
+    Args:
+        cell: Which.
+        embedded_world: Where the embedded network's trials are run.
+    """
+    vlm, world = cell.vlm, cell.world
+    if vlm.startswith("recorded:") and vlm.endswith((":0", ":1")):
+        vlm = vlm[:-1] + ("0" if vlm.endswith("1") else "1")
+    if vlm == "embedded":
+        world = embedded_world
+    return Source(cell.task, vlm, world)
+
+
+def calibrations(
+    folder: Path,
+    sources: Collection[Source],
+    common: TrialConfig,
+    episodes: int,
+    *,
+    done: Callable[[int, int], None] = lambda done, total: None,
+) -> dict[Source, Calibration]:
+    """Load what lies in a folder already, and learn the rest.
+
+    Args:
+        folder: Where they are kept, a file each.
+        sources: Which are needed.
+        common: Seed of the bench, rates of faults, limits.
+        episodes: Trials that each is learnt from.
+        done: Told how many there are, and of how many.
+
+    Raises:
+        TpvqaError: A trial cannot be run, a file is damaged or cannot be written.
+    """
+    found: dict[Source, Calibration] = {}
+    away = replace(common, seed=common.seed + OTHER_SEEDS)
+    for source in sorted(sources):
+        path = folder / source.file
+        done(len(found), len(sources))
+        if path.exists():
+            found[source] = Calibration.load(path)
+            continue
+        cell = Cell(source.task, MONITOR, source.vlm, source.world)
+        found[source] = fit(gather(cell, away, range(episodes)), source.vlm)
+        found[source].save(path)
+    done(len(found), len(sources))
+    return found

@@ -1,0 +1,216 @@
+"""The figures of the belief bench."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from tpvqa.bench.belief.comparison import curve_of
+from tpvqa.bench.belief.parts import (
+    ABLATED,
+    ABLATIONS,
+    BASELINES,
+    BELIEF,
+    SYMBOLIC,
+    VOTES,
+    Extent,
+    noise,
+    without,
+)
+from tpvqa.bench.belief.resampling import difference
+from tpvqa.bench.belief.results import BeliefResults
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.figures import Figure, styled_pyplot
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.statistics import wilson
+
+INK = "#0b4f8a"
+"""The belief monitor."""
+MARKS: Mapping[str, tuple[str, str, str]] = {
+    "tpvqa": ("o", "#d55e00", "#d55e00"),
+    "tpvqa:3": ("^", "#d55e00", "#d55e00"),
+    "tpvqa:5": ("s", "#d55e00", "#d55e00"),
+    "tpvqa:strict": ("o", "#d55e00", "white"),
+    "tpvqa:3:strict": ("^", "#d55e00", "white"),
+    "tpvqa:5:strict": ("s", "#d55e00", "white"),
+    "effectvqa": ("v", "#767676", "#767676"),
+    "palmevqa": ("P", "#767676", "#767676"),
+    "successvqa": ("X", "#767676", "#767676"),
+    "tp": ("_", "#222222", "#222222"),
+}
+"""Marker, edge and face of each rival: told apart without colour (Okabe and Ito 2008)."""
+Panel = tuple[Sequence[Sequence[EpisodeRow]], Mapping[str, Sequence[EpisodeRow]]]
+"""The episodes at each point of the belief curve, and those of each rival."""
+
+
+def draw(results: BeliefResults, extent: Extent) -> dict[str, Figure]:
+    """All figures by name."""
+    drawn = {}
+    for rho in extent.rhos:
+        named = {f"p = {p:g}": noise(p, rho) for p in extent.accuracies}
+        found = _curves(results, extent, named, SYMBOLIC)
+        if found is not None:
+            drawn[f"curves_rho_{rho:g}"] = found
+    for name, named, world in (
+        ("paper_table", {"the paper's table": "paper-table"}, SYMBOLIC),
+        ("embedded", {"embedded network": "embedded"}, "images"),
+    ):
+        found = _curves(results, extent, named, world)
+        if found is not None:
+            drawn[name] = found
+    for rho in extent.rhos:
+        found = _ablations(results, extent, rho)
+        if found is not None:
+            drawn[f"ablations_rho_{rho:g}"] = found
+    return drawn
+
+
+def _curves(
+    results: BeliefResults, extent: Extent, named: Mapping[str, str], world: str
+) -> Figure | None:
+    """Completion over questions: a row of panels for every task, a column for every VLM."""
+
+    def panel(task: str, vlm: str) -> Panel:
+        rivals = {each: results.of(Cell(task, each, vlm, world)) for each in (*VOTES, *BASELINES)}
+        return curve_of(results, extent, task, vlm, world), {
+            rival: rows for rival, rows in rivals.items() if rows
+        }
+
+    tasks = extent.household
+    panels = {(task, name): panel(task, vlm) for task in tasks for name, vlm in named.items()}
+    if not any(curve for curve, _ in panels.values()):
+        return None
+    if len(named) == 1:  # the tasks beside each other
+        (name,) = named
+        return _small_multiples(
+            [name], tasks, lambda row, column: panels[column, row], titles=tasks
+        )
+    return _small_multiples(
+        tasks, list(named), lambda row, column: panels[row, column], titles=list(named)
+    )
+
+
+def _small_multiples(
+    rows: Sequence[str],
+    columns: Sequence[str],
+    panel: Callable[[str, str], Panel],
+    *,
+    titles: Sequence[str],
+) -> Figure:
+    pyplot = styled_pyplot()
+    figure, grid = pyplot.subplots(
+        len(rows),
+        len(columns),
+        figsize=(1.0 + 1.75 * len(columns), 1.0 + 1.75 * len(rows)),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+    )
+    for line, row in zip(grid, rows, strict=True):
+        for axes, column, title in zip(line, columns, titles, strict=True):
+            _draw_panel(axes, *panel(row, column))
+            if line is grid[0]:
+                axes.set_title(title)
+            if line is grid[-1]:
+                axes.set_xlabel("questions")
+        line[0].set_ylabel(f"{row}\ncompletion rate")
+    handles: dict[str, Any] = {}
+    for axes in grid.flat:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+    figure.legend(
+        handles.values(),
+        handles,
+        frameon=False,
+        loc="outside upper center",
+        ncols=max(3, min(6, len(columns) * 2)),
+        fontsize=8,
+        handletextpad=0.3,
+        columnspacing=1.2,
+    )
+    return figure
+
+
+def _draw_panel(
+    axes: Any, curve: Sequence[Sequence[EpisodeRow]], rivals: Mapping[str, Sequence[EpisodeRow]]
+) -> None:
+    axes.set_xscale("symlog", linthresh=10, linscale=0.5)
+    axes.set_xlim(-1, 2000)
+    axes.set_ylim(-0.03, 1.05)
+    axes.set_xticks([0, 10, 100, 1000], ["0", "10", "100", "1000"])
+    axes.set_xticks([], minor=True)
+    axes.grid(color="#e6e6e6", linewidth=0.6)
+    axes.set_axisbelow(True)
+    for rival, rows in rivals.items():
+        marker, edge, face = MARKS[rival]
+        questions, rate, _, _ = _point(rows)
+        axes.plot(
+            questions,
+            rate,
+            linestyle="none",
+            marker=marker,
+            markersize=9 if marker == "_" else 5,
+            markeredgecolor=edge,
+            markerfacecolor=face,
+            markeredgewidth=1.6 if marker == "_" else 1,
+            label=rival,
+            clip_on=False,
+        )
+    points = sorted(map(_point, curve))
+    if points:
+        xs, ys, lows, highs = zip(*points, strict=True)
+        axes.fill_between(xs, lows, highs, color=INK, alpha=0.15, linewidth=0)
+        axes.plot(xs, ys, color=INK, linewidth=1.6, marker=".", markersize=5, label="belief")
+
+
+def _point(rows: Sequence[EpisodeRow]) -> tuple[float, float, float, float]:
+    """Questions, completion rate, and its interval."""
+    found = wilson(sum(row.completed for row in rows), len(rows))
+    return sum(row.questions for row in rows) / len(rows), found.rate, found.low, found.high
+
+
+def _ablations(results: BeliefResults, extent: Extent, rho: float) -> Figure | None:
+    """What leaving a part out does: bars of completion and of questions, by task and accuracy."""
+    accuracies = [each for each in extent.accuracies if each in ABLATED]
+    found = {
+        (task, accuracy, name): results.of(
+            Cell(task, without(name) if name else BELIEF, noise(accuracy, rho), SYMBOLIC)
+        )
+        for task in extent.household
+        for accuracy in accuracies
+        for name in ("", *ABLATIONS)
+    }
+    if not any(rows for (_, _, name), rows in found.items() if name):
+        return None
+    pyplot = styled_pyplot()
+    figure, grid = pyplot.subplots(
+        len(extent.household),
+        2 * len(accuracies),
+        figsize=(1.6 + 2.9 * len(accuracies), 0.8 + 1.45 * len(extent.household)),
+        sharey=True,
+        sharex="col",
+        squeeze=False,
+    )
+    places = range(len(ABLATIONS))
+    for line, task in zip(grid, extent.household, strict=True):
+        for k, accuracy in enumerate(accuracies):
+            left, right = line[2 * k], line[2 * k + 1]
+            whole = found[task, accuracy, ""]
+            for place, name in enumerate(ABLATIONS):
+                rows = found[task, accuracy, name]
+                if not rows or not whole:
+                    continue
+                change = difference(rows, whole)
+                left.barh(place, change.value, 0.7, color=INK)
+                left.plot([change.low, change.high], [place, place], color="#222222", linewidth=1)
+                share = _point(rows)[0] / max(_point(whole)[0], 1e-9)
+                right.barh(place, share, 0.7, color="#b7bcc4")
+            left.axvline(0, color="#222222", linewidth=0.8)
+            right.axvline(1, color="#222222", linewidth=0.8)
+            if line is grid[0]:
+                left.set_title(f"p = {accuracy:g}", loc="left")
+            if line is grid[-1]:
+                left.set_xlabel("completion, change")
+                right.set_xlabel("questions, ratio")
+        line[0].set_yticks(places, [f"no {name}" for name in ABLATIONS])
+        line[0].set_ylabel(task)
+    grid[0][0].invert_yaxis()
+    return figure
