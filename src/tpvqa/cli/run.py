@@ -10,6 +10,7 @@ import typer
 
 if TYPE_CHECKING:
     from tpvqa.episodes import Ended
+    from tpvqa.questions import QuestionBook
 
 _EXIT = "Exit codes: 0 goal reached, 1 not reached, 2 bad input, 130 interrupted."
 
@@ -142,7 +143,7 @@ def run(
         folder = out or _new_folder(trial.task.name, seed, episode)
         writer = EpisodeWriter(folder)
         try:
-            with _view(as_json=as_json) as view:
+            with _view(as_json=as_json, book=trial.book) as view:
                 ended = trial.run(writer, folder=folder, listeners=[view])
         finally:
             writer.close()
@@ -208,13 +209,17 @@ def _new_folder(task: str, seed: int, episode: int) -> Path:
     return folder
 
 
-def _view(*, as_json: bool):  # type: ignore[no-untyped-def]
+def _view(*, as_json: bool, book: "QuestionBook | None" = None):  # type: ignore[no-untyped-def]
     from rich.console import Console
 
     from tpvqa.cli.terminal import EpisodeView
 
     console = Console(stderr=as_json)
-    return nullcontext(_silent) if as_json and not console.is_terminal else EpisodeView(console)
+    return (
+        nullcontext(_silent)
+        if as_json and not console.is_terminal
+        else EpisodeView(console, book=book)
+    )
 
 
 def _silent(_event: object) -> None:

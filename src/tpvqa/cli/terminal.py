@@ -6,6 +6,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from tpvqa.cli.belief_bars import BeliefBars
 from tpvqa.episodes.events import (
     Acted,
     Acting,
@@ -22,8 +23,9 @@ from tpvqa.episodes.events import (
     Resumed,
     Started,
 )
+from tpvqa.episodes.fact_words import FactWords
 from tpvqa.monitors import Decision
-from tpvqa.questions import Way
+from tpvqa.questions import QuestionBook, Way
 from tpvqa.vlm import Reply
 
 _REPLY_STYLE = {
@@ -49,10 +51,21 @@ class EpisodeView:
         console: Where to print.
         truth: Whether to print what a simulated world knows about an action's outcome.
         live: Whether to keep the plan in view; by default in a terminal only.
+        book: The questions in whose words facts are said; by default those that the log keeps.
     """
 
-    def __init__(self, console: Console, *, truth: bool = True, live: bool | None = None):
+    def __init__(
+        self,
+        console: Console,
+        *,
+        truth: bool = True,
+        live: bool | None = None,
+        book: QuestionBook | None = None,
+    ):
         self._console, self._truth = console, truth
+        self._words = None if book is None else FactWords(book)
+        self._started: Started | None = None
+        self._bars = BeliefBars(bars=console.is_terminal)
         self._plan: PlanMade | None = None
         self._step, self._attempt, self._done = 0, 0, False
         self._headed, self._told = False, False
@@ -73,6 +86,7 @@ class EpisodeView:
         """Show an event."""
         match event:
             case Started():
+                self._started = event
                 noise = " (a noise model, not a VLM)" if event.noise_model else ""
                 self._line(
                     f"[bold]{escape(event.task)}[/]  [dim]world[/] {escape(event.world)}  "
@@ -80,7 +94,8 @@ class EpisodeView:
                     f"[dim]VLM[/] {escape(event.vlm)}{noise}  [dim]seed[/] {event.seed}"
                 )
             case PlanMade():
-                self._show_plan(event)
+                if not event.considered:
+                    self._show_plan(event)
             case Observed():
                 self._head()
                 names = ", ".join(frame.file for frame in event.frames) or "no picture"
@@ -96,9 +111,12 @@ class EpisodeView:
                 new = " ".join(event.added) or "nothing"
                 self._line(f"  [dim]now believed: {escape(new)}; no longer: {escape(gone)}[/]")
             case Decided():
+                self._go_to(event.step)
                 self._head()
                 self._show_decision(event)
+                self._show_belief(event)
             case Acting():
+                self._go_to(event.step)
                 self._head()
                 self._line(f"  [blue]▶ {escape(event.action.said)}[/]")
             case Acted():
@@ -113,6 +131,11 @@ class EpisodeView:
 
     def _line(self, text: str) -> None:
         self._console.print(text, highlight=False, soft_wrap=True)
+
+    def _go_to(self, step: int) -> None:
+        """Follow a monitor that goes on at another step than the next one."""
+        if step != self._step:
+            self._step, self._attempt, self._headed = step, 0, False
 
     def _head(self) -> None:
         """Name the step, once, before the first that happens in it."""
@@ -131,6 +154,14 @@ class EpisodeView:
             self._attempt, self._headed = self._attempt + 1, False
         elif event.when == "after" and event.decision is Decision.GO_ON:
             self._step, self._attempt, self._headed = event.step + 1, 0, False
+
+    def _show_belief(self, event: Decided) -> None:
+        if not event.belief:
+            return
+        if self._words is None:
+            self._words = FactWords() if self._started is None else FactWords.of(self._started)
+        for line in self._bars.lines(event.belief, self._words.say):
+            self._line(line)
 
     def _show_plan(self, event: PlanMade) -> None:
         replanned = self._plan is not None

@@ -4,8 +4,11 @@ import base64
 from contextlib import suppress
 from pathlib import Path
 
-from tpvqa.episodes.events import Event, FrameRecord
+from tpvqa.episodes.events import Decided, Event, FrameRecord
+from tpvqa.episodes.fact_words import FactWords
 from tpvqa.episodes.log import episode_folder, read_episode
+from tpvqa.episodes.notable_facts import probability
+from tpvqa.episodes.report.belief_chart import chart
 from tpvqa.episodes.report.story import Story, tell
 from tpvqa.errors import EpisodeError
 
@@ -60,4 +63,13 @@ def render_report(events: list[Event], folder: Path) -> str:
             return ""
         return f"data:{frame.media_type};base64,{base64.b64encode(data).decode()}"
 
-    return environment.get_template("report.html.j2").render(story=tell(events), picture=picture)
+    story = tell(events)
+    believes = any(isinstance(event, Decided) and event.belief for event in events)
+    words = FactWords.of(story.started) if believes else FactWords()
+    return environment.get_template("report.html.j2").render(
+        story=story,
+        picture=picture,
+        chart=chart(story, words.say),
+        say=words.say,
+        probability=probability,
+    )

@@ -20,6 +20,7 @@ from tpvqa.episodes.events import (
     QuestionRecord,
     Started,
 )
+from tpvqa.episodes.notable_facts import FactNow, notable
 from tpvqa.errors import EpisodeError
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
@@ -53,11 +54,17 @@ class Check:
 
 @dataclass
 class Phase:
-    """The checks before or after an action, and what was decided."""
+    """The checks before or after an action, and what was decided.
+
+    `facts` are those that matter most in a belief, where it is new; `considered` are plans that
+    the monitor thought about and that are not followed.
+    """
 
     checks: list[Check] = field(default_factory=list)
     decided: Decided | None = None
     believed: Believed | None = None
+    facts: list[FactNow] = field(default_factory=list)
+    considered: list[PlanMade] = field(default_factory=list)
 
 
 @dataclass
@@ -105,6 +112,7 @@ def tell(events: Sequence[Event]) -> Story:
     plan: PlanMade | None = None
     current: Chapter | None = None
     phase: Phase | None = None
+    probabilities: dict[str, float] = {}
 
     def chapter() -> Chapter:
         nonlocal current, phase
@@ -116,6 +124,10 @@ def tell(events: Sequence[Event]) -> Story:
 
     for event in events[1:]:
         match event:
+            case PlanMade() if event.considered:
+                chapter()
+                assert phase is not None
+                phase.considered.append(event)
             case PlanMade():
                 plan = event
                 story.chapters.append(Chapter(plan=event))
@@ -136,9 +148,15 @@ def tell(events: Sequence[Event]) -> Story:
                 for asking, answer in zip(askings, event.answers, strict=True):
                     asking.answer = answer
             case Decided():
+                # A monitor may go on at another step instead of acting: that step is told anew.
+                if event.when == "before" and current is not None and current.step != event.step:
+                    current = None if current.step is not None else current
                 here = chapter()
                 assert phase is not None
                 phase.decided = event
+                if event.belief and event.belief != probabilities:
+                    phase.facts = notable(event.belief, probabilities)
+                    probabilities = event.belief
                 here.step = event.step
                 if plan is not None and event.step < len(plan.plan):
                     here.action = plan.plan[event.step]
