@@ -8,7 +8,7 @@ from tpvqa.episodes.notable_facts import FactNow, notable, probability
 
 _CELLS = 8
 _EIGHTHS = " ▏▎▍▌▋▊▉█"
-_VISIBLE = 0.01
+_VISIBLE = 0.02
 _WIDEST = 44
 
 
@@ -47,7 +47,7 @@ class BeliefBars:
         names = [say(each.fact) for each in new]
         width = min(_WIDEST, max(map(len, names)))
         return [
-            f"    [dim]{escape(_fitted(name, width))}[/] {_bar(each.p)} {_coloured(each)}"
+            f"    {escape(_fitted(name, width))} {_bar(each.p)} {_coloured(each)}"
             for name, each in zip(names, new, strict=True)
         ]
 
@@ -72,17 +72,10 @@ def _fitted(name: str, width: int) -> str:
 
 
 def _numbers(fact: FactNow) -> str:
-    change = _change(fact)
-    return probability(fact.p) + (f" ({change})" if change else "")
+    return probability(fact.p) + (f" ({fact.arrow})" if fact.arrow else "")
 
 
 def _coloured(fact: FactNow) -> str:
     style = "green" if fact.change > 0 else "red"
-    change = _change(fact)
-    return f"[bold]{probability(fact.p):>4}[/]" + (f" [{style}]{change}[/]" if change else "")
-
-
-def _change(fact: FactNow) -> str:
-    if abs(fact.change) < _VISIBLE / 2:
-        return ""
-    return ("▲" if fact.change > 0 else "▼") + f"{abs(fact.change):.2f}".removeprefix("0")
+    arrow = f" [{style}]{fact.arrow}[/]" if fact.arrow else ""
+    return f"[bold]{probability(fact.p):>4}[/]{arrow}"

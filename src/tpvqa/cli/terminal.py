@@ -146,7 +146,8 @@ class EpisodeView:
         self._line(f"[bold]{self._step + 1}. {escape(self._plan.plan[self._step].said)}[/]{again}")
 
     def _show_decision(self, event: Decided) -> None:
-        if self._told or event.decision is not Decision.GO_ON:
+        explained = bool(event.belief) and event.when == "after"
+        if self._told or explained or event.decision is not Decision.GO_ON:
             style = _DECISION_STYLE[event.decision]
             self._line(f"  [{style}]→ {event.decision}:[/] {escape(event.reason)}")
         self._told = False

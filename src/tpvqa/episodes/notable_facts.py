@@ -30,6 +30,13 @@ class FactNow:
         """By how much the probability has changed; 0 where there was none before."""
         return 0.0 if self.before is None else self.p - self.before
 
+    @property
+    def arrow(self) -> str:
+        """The change as ▲.22 or ▼.22; empty where there is none."""
+        if abs(self.change) < 0.005:
+            return ""
+        return ("▲" if self.change > 0 else "▼") + f"{abs(self.change):.2f}".removeprefix("0")
+
 
 def in_doubt(p: float) -> bool:
     """Whether a probability leaves a doubt."""
@@ -49,13 +56,11 @@ def notable(belief: Mapping[str, float], before: Mapping[str, float]) -> list[Fa
 
 
 def probability(p: float) -> str:
-    """A probability in two digits, never called certain unless it is.
+    """A probability in two digits, never called certain.
 
-    >>> probability(0.847), probability(0.999), probability(0.001), probability(1.0)
-    ('.85', '>.99', '<.01', '1')
+    >>> probability(0.847), probability(0.999), probability(0.0)
+    ('.85', '>.99', '<.01')
     """
-    if p in (0.0, 1.0):
-        return f"{p:.0f}"
     if p >= 0.995:
         return ">.99"
     return "<.01" if p < 0.005 else f"{p:.2f}"[1:]
