@@ -12,6 +12,9 @@ from tpvqa.questions import QuestionBook
 
 _ASKING = re.compile(r"^(?:Is|Are) (?:there )?(?:it true: )?(?:the |an? )?(?P<said>.+)\?$")
 
+_PATIENCE = 30.0
+"""Seconds after which a log is shown without words rather than not at all."""
+
 
 class FactWords:
     """Says facts as they are asked about; as atoms where there are no words for them.
@@ -29,7 +32,7 @@ class FactWords:
         if started.questions is None:
             return FactWords()
         try:
-            task = task_from_text(started.domain, started.problem)
+            task = task_from_text(started.domain, started.problem, timeout=_PATIENCE)
             with tempfile.TemporaryDirectory() as folder:
                 file = Path(folder) / "questions.yaml"
                 file.write_text(started.questions, encoding="utf-8")

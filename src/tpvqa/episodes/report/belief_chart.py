@@ -16,13 +16,16 @@ _TICKS = 12
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One decision: which one, about what, and in which chapter it is told."""
+    """One decision: which one, about what, and in which chapter it is told.
+
+    `acted` says whether an action was executed just before it.
+    """
 
     number: int
     decided: Decided
     said: str
     chapter: int
-    acts: bool
+    acted: bool
 
     @property
     def title(self) -> str:
@@ -122,8 +125,8 @@ class BeliefChart:
 
     @property
     def acts(self) -> list[int]:
-        """Behind which decisions an action was executed."""
-        return [column.number for column in self.columns if column.acts]
+        """Behind how many decisions an action was executed."""
+        return [column.number - 1 for column in self.columns if column.acted]
 
     @property
     def ticks(self) -> list[int]:
@@ -159,8 +162,8 @@ def chart(story: Story, say: Callable[[str], str]) -> BeliefChart | None:
             if phase.decided is None or not phase.decided.belief:
                 continue
             said = chapter.action.said if chapter.action else phase.decided.action
-            acts = name == "before" and chapter.acting is not None
-            columns.append(Column(len(columns) + 1, phase.decided, said, number, acts))
+            done = name == "after" and chapter.acting is not None
+            columns.append(Column(len(columns) + 1, phase.decided, said, number, done))
             truths.append([truth.holds(fact) for fact in facts])
     rows = [
         Row(
