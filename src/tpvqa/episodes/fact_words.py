@@ -2,6 +2,7 @@
 
 import re
 import tempfile
+from functools import lru_cache
 from pathlib import Path
 
 from tpvqa.episodes.events import Started
@@ -32,11 +33,7 @@ class FactWords:
         if started.questions is None:
             return FactWords()
         try:
-            task = task_from_text(started.domain, started.problem, timeout=_PATIENCE)
-            with tempfile.TemporaryDirectory() as folder:
-                file = Path(folder) / "questions.yaml"
-                file.write_text(started.questions, encoding="utf-8")
-                return FactWords(QuestionBook.load(file, task))
+            return FactWords(_book(started.domain, started.problem, started.questions))
         except TpvqaError:  # a log of another version still has to be shown
             return FactWords()
 
@@ -57,3 +54,13 @@ class FactWords:
             if any(other.arguments[place] != argument for other in question.alike)
         ]
         return f"{said} ({', '.join(unsaid)})" if unsaid else said
+
+
+@lru_cache(maxsize=8)
+def _book(domain: str, problem: str, questions: str) -> QuestionBook:
+    """The questions, read once for all episodes of a task: reading PDDL takes a process."""
+    task = task_from_text(domain, problem, timeout=_PATIENCE)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "questions.yaml"
+        file.write_text(questions, encoding="utf-8")
+        return QuestionBook.load(file, task)
