@@ -38,6 +38,7 @@ def shown(events: list[Event], *, terminal: bool = False) -> list[str]:
 def test_outside_a_terminal_a_belief_is_one_line_of_numbers_that_are_new() -> None:
     lines = [line.strip() for line in shown(believing())]
     assert [line for line in lines if line.startswith("belief:")] == [
+        "belief: bread on the plate .30",
         "belief: bread in the image >.99 (▲1.00)",
         "belief: bread in a robot's hand (left) .60 (▲.60)",
         "belief: bread in a robot's hand (left) .97 (▲.37)",
@@ -46,7 +47,7 @@ def test_outside_a_terminal_a_belief_is_one_line_of_numbers_that_are_new() -> No
 
 def test_in_a_terminal_each_fact_has_a_bar() -> None:
     bars = [line for line in shown(believing(), terminal=True) if "▕" in line]
-    assert bars[1:] == [
+    assert bars[2:] == [
         "    bread in a robot's hand (left) ▕████▊   ▏  .60 ▲.60",
         "    bread in a robot's hand (left) ▕███████▊▏  .97 ▲.37",
     ]

@@ -10,6 +10,7 @@ from tpvqa.worlds import Report
 
 FLIPPED = "(near bread)"
 DOUBTED = "(in_hand bread left)"
+UNSURE = "(on bread plate)"
 SURE = "(on plate table)"
 
 FIND = ActionRecord(name="find", arguments=("bread", "sink"), said="find the bread")
@@ -58,7 +59,7 @@ def decided(
             "action": "(find bread sink)" if step == 0 else "(pick_up bread table left)",
             "decision": decision,
             "reason": f"because {when} {step}",
-            "belief": {**belief, SURE: 0.999} if belief else {},
+            "belief": {**belief, UNSURE: 0.3, SURE: 0.999} if belief else {},
         }
     )
 
@@ -93,7 +94,7 @@ def believing() -> list[Event]:
         *done(1, 0),
         plan(OTHER, considered=True),
         decided("after", 1, Decision.REPEAT, near=0.999, held=0.6),
-        decided("before", 1, Decision.GO_ON),
+        decided("before", 1, Decision.GO_ON, near=0.999, held=0.6),
         *done(1, 1, added=(DOUBTED,)),
         plan(OTHER, PICK, considered=True),
         decided("after", 1, Decision.DONE, near=0.999, held=0.97),

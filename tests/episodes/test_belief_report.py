@@ -10,6 +10,7 @@ from tests.episodes.believing import (
     FIND,
     FLIPPED,
     PICK,
+    UNSURE,
     all_followed,
     believing,
     decided,
@@ -65,7 +66,7 @@ def drawn(events: list[Event]) -> BeliefChart:
 
 
 def test_the_facts_that_were_in_doubt_or_changed_side_have_a_row_each() -> None:
-    assert Page(believing()).facts == [FLIPPED, DOUBTED]
+    assert Page(believing()).facts == [UNSURE, FLIPPED, DOUBTED]
 
 
 def test_without_a_belief_there_is_no_chart() -> None:
@@ -83,15 +84,15 @@ def test_rows_say_words_and_points_say_numbers_and_truths() -> None:
         "P = 0.001; in truth not true",
         "P = 0.001; in truth not true",
         "P = 0.600; in truth not true",
+        "P = 0.600; in truth not true",
         "P = 0.970; in truth true",
     ]
 
 
 def test_a_belief_on_the_wrong_side_is_marked_where_it_was() -> None:
-    flipped, doubted = drawn(believing()).rows
-    assert flipped.wrong == []
-    assert flipped.true == [Run(1, 4)]
-    assert (doubted.wrong, doubted.true) == ([Run(2, 3)], [Run(3, 4)])
+    _, flipped, doubted = drawn(believing()).rows
+    assert (flipped.wrong, flipped.true) == ([], [Run(1, 5)])
+    assert (doubted.wrong, doubted.true) == ([Run(2, 4)], [Run(4, 5)])
 
 
 def test_where_the_world_tells_no_truth_none_is_shown() -> None:
@@ -100,7 +101,7 @@ def test_where_the_world_tells_no_truth_none_is_shown() -> None:
         for event in believing()
     ]
     page = Page(events)
-    assert page.facts == [FLIPPED, DOUBTED]
+    assert page.facts == [UNSURE, FLIPPED, DOUBTED]
     assert not any("in truth" in title for title in page.titles)
     assert "truth-band" not in page.classes
     assert "truth-band" in Page(believing()).classes
@@ -110,19 +111,19 @@ def test_truth_is_unknown_from_an_action_on_that_nobody_judged() -> None:
     events = believing()
     last = max(place for place, event in enumerate(events) if isinstance(event, Acted))
     events[last] = events[last].model_copy(update={"truth": None})
-    assert drawn(events).rows[1].truths == (False, False, False, None)
+    assert drawn(events).rows[2].truths == (False, False, False, False, None)
 
 
 def test_what_follows_from_axioms_is_not_called_untrue() -> None:
     domain = "(define (domain d) (:derived (near ?x) (and)))"
     events = [started(domain=domain), *believing()[1:]]
-    flipped, doubted = drawn(events).rows
+    _, flipped, doubted = drawn(events).rows
     assert set(flipped.truths) == {None}
     assert None not in doubted.truths
 
 
 def test_actions_are_marked_before_the_decisions_that_follow_them() -> None:
-    assert drawn(believing()).acts == [1, 2, 3]
+    assert drawn(believing()).acts == [1, 2, 4]
 
 
 def test_a_fact_that_a_plan_does_not_need_leaves_a_gap_in_its_line() -> None:
@@ -135,8 +136,7 @@ def test_a_fact_that_a_plan_does_not_need_leaves_a_gap_in_its_line() -> None:
         *done(0, 1),
         decided("after", 0, Decision.REPEAT, near=0.4, held=0.75),
     ]
-    held = drawn(events).rows[0]
-    assert held.fact == DOUBTED
+    held = next(row for row in drawn(events).rows if row.fact == DOUBTED)
     assert held.line == "M0 75V75H1 M2 25V25H3"
 
 
@@ -158,12 +158,12 @@ def test_beside_a_decision_stand_the_facts_in_doubt_or_changed() -> None:
         for _, phase in chapter.phases
     ]
     assert told == [
+        [(UNSURE, 0.3, "")],
+        [(FLIPPED, 0.999, "▲1.00"), (UNSURE, 0.3, "")],
         [],
-        [(FLIPPED, 0.999, "▲1.00")],
-        [],
-        [(DOUBTED, 0.6, "▲.60")],
-        [],
-        [(DOUBTED, 0.97, "▲.37")],
+        [(DOUBTED, 0.6, "▲.60"), (UNSURE, 0.3, "")],
+        [],  # as decided after the action before
+        [(UNSURE, 0.3, ""), (DOUBTED, 0.97, "▲.37")],
     ]
 
 
