@@ -171,8 +171,8 @@ def test_no_plan_from_the_corrected_state_is_said(planner: Planner, tmp_path: Pa
 # Resuming
 
 
-def unbroken(folder: Path, planner: Planner) -> list[Event]:
-    config = symbolic(vlm="oracle:0.85:0.3", seed=11, episode=2)
+def unbroken(folder: Path, planner: Planner, monitor: str = "tpvqa") -> list[Event]:
+    config = symbolic(vlm="oracle:0.85:0.3", seed=11, episode=2, monitor=monitor)
     with Trial(config, planner=planner) as trial:
         writer = EpisodeWriter(folder)
         trial.run(writer, folder=folder)
@@ -180,13 +180,14 @@ def unbroken(folder: Path, planner: Planner) -> list[Event]:
     return read_episode(folder)
 
 
+@pytest.mark.parametrize("monitor", ["tpvqa", "belief"])
 def test_a_trial_killed_after_any_event_resumes_to_the_same_end(
-    tmp_path: Path, planner: Planner
+    tmp_path: Path, planner: Planner, monitor: str
 ) -> None:
-    whole = unbroken(tmp_path / "whole", planner)
+    whole = unbroken(tmp_path / "whole", planner, monitor)
     lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
     assert len(lines) > 40
-    for cut in range(1, len(lines)):
+    for cut in range(1, len(lines), max(1, len(lines) // 80)):
         folder = tmp_path / f"cut{cut}"
         folder.mkdir()
         torn = lines[cut][: len(lines[cut]) // 2] if cut % 2 else b""

@@ -7,6 +7,7 @@ import pytest
 from tpvqa.episodes import Ended, EpisodeWriter, Event, Parts, Resumed, read_episode
 from tpvqa.loop import run_episode
 from tpvqa.monitors import Monitor
+from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.monitors.none import NoMonitor
 from tpvqa.monitors.tpvqa import TPVQA
 from tpvqa.observation import Frame, Observation
@@ -85,10 +86,13 @@ def go_on(
     return read_episode(folder)
 
 
-@pytest.mark.parametrize("monitor", [TPVQA, NoMonitor])
+@pytest.mark.parametrize("kind", [TPVQA, NoMonitor, BeliefMonitor])
 def test_killed_anywhere_it_goes_on_with_a_new_look_to_the_goal(
-    monitor: type[Monitor], task: Task, planner: Planner, tmp_path: Path
+    kind: type[Monitor], task: Task, planner: Planner, tmp_path: Path
 ) -> None:
+    def monitor() -> Monitor:
+        return kind(task) if kind is BeliefMonitor else kind()  # type: ignore[call-arg]
+
     whole = go_on(tmp_path / "whole", Simulation(task, failure=0), planner, monitor(), kill_at=None)
     for cut in range(len(whole) - 1):
         room, folder = Simulation(task, failure=0), tmp_path / f"cut{cut}"

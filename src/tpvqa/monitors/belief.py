@@ -89,6 +89,7 @@ class BeliefMonitor:
         self._action: Action | None = None
         self._effects: frozenset[Atom] = frozenset()
         self._settled: str | None = None
+        self._stepped: Step | None = None
         self._asked_about: dict[frozenset[Atom], list[Question]] = {}
 
     @classmethod
@@ -166,7 +167,9 @@ class BeliefMonitor:
     def after(self, step: Step) -> Check:
         """Predict what the action led to, look where that is worth it, and decide what is next."""
         self._know(step)
-        self._acted(step)
+        if step is not self._stepped:  # a check that is done again predicts nothing again
+            self._stepped = step
+            self._acted(step)
         choice = yield from self._choose(step)
         return self._verdict(step, choice, acted=True)
 

@@ -1,0 +1,156 @@
+"""Answers as evidence: repeats, abstentions, surprises, trust."""
+
+from math import isclose
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tpvqa.belief import Calibration, Group, Rates
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.evidence import Evidence
+from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.faults import Rates as Faults
+from tpvqa.belief.trust import Trust
+from tpvqa.pddl import Literal, load_task
+from tpvqa.questions import QuestionBook, Way
+from tpvqa.tasks import find_task
+from tpvqa.vlm import Answer, Reply
+from tpvqa.worlds.world_file import load_world_file
+
+TASK = load_task("clean_dishes")
+FILES = find_task("clean_dishes")
+BOOK = QuestionBook.load(FILES.questions, TASK)
+MODEL = FaultModel(TASK, load_world_file(FILES.world, TASK))
+FIND = TASK.action("find", ["plate", "tv"])
+NEAR = next(atom for atom in TASK.atoms() if str(atom) == "near(plate)")
+QUESTION = BOOK.fact(Literal(NEAR), way=Way.EFFECT, action=FIND)
+
+
+def told(reply: Reply) -> Answer:
+    return Answer(QUESTION, reply)
+
+
+def found(repeat: float, *, unexplained: float = 0.0) -> tuple[Belief, Evidence]:
+    """After `find plate`, with a VLM that is right in .8 of its answers."""
+    belief = Belief(MODEL)
+    belief.act(FIND, Faults(0.25, 0.25, 0.0))
+    calibration = Calibration(
+        vlm="",
+        whole=Group(rates=Rates(0.8, 0.2, 0, 0)),
+        repeat_same_view=repeat,
+        repeat_other_view=repeat / 2,
+    )
+    return belief, Evidence(belief, calibration, None, unexplained=unexplained)
+
+
+def odds(belief: Belief) -> float:
+    p = belief.probability(NEAR)
+    return p / (1 - p)
+
+
+def test_independent_answers_multiply_their_ratios() -> None:
+    belief, evidence = found(0.0)
+    assert isclose(odds(belief), 3)
+    evidence.take(told(Reply.YES), 0, None)
+    assert isclose(odds(belief), 12)
+    evidence.take(told(Reply.YES), 1, None)
+    assert isclose(odds(belief), 48)
+    evidence.take(told(Reply.NO), 2, None)
+    assert isclose(odds(belief), 12)
+
+
+def test_the_same_picture_says_nothing_new() -> None:
+    belief, evidence = found(0.0)
+    evidence.take(told(Reply.YES), "a.jpg", None)
+    before = belief.probability(NEAR)
+    evidence.take(told(Reply.NO), "b.jpg", None)
+    evidence.take(told(Reply.YES), "a.jpg", None)
+    assert evidence.asked_of(QUESTION.text, "a.jpg")
+    assert isclose(odds(belief), 3)
+    assert before > belief.probability(NEAR)
+
+
+@given(st.floats(0, 1))
+def test_a_repeated_answer_is_worth_less_and_a_different_one_all(rho: float) -> None:
+    belief, evidence = found(rho)
+    evidence.take(told(Reply.YES), 0, None)
+    evidence.take(told(Reply.YES), 1, None)
+    expected = 12 * (rho + (1 - rho) * 0.8) / (rho + (1 - rho) * 0.2)
+    assert isclose(odds(belief), expected, rel_tol=1e-6)
+    if rho < 0.99:
+        evidence.take(told(Reply.NO), 2, None)
+        assert isclose(odds(belief), expected / 4, rel_tol=1e-6)
+
+
+def test_another_view_repeats_less() -> None:
+    same, other = found(0.6), found(0.6)
+    for belief_and_evidence, view in ((same, "front"), (other, "left")):
+        belief_and_evidence[1].take(told(Reply.YES), 0, "front")
+        belief_and_evidence[1].take(told(Reply.YES), 1, view)
+    assert odds(other[0]) > odds(same[0]) > 12
+
+
+def test_after_an_action_an_answer_is_worth_all_where_the_fact_has_changed() -> None:
+    """A no before, certain: then it was false. A yes after another try is no repetition."""
+    belief, evidence = found(0.9)
+    for look in range(60):
+        evidence.take(told(Reply.NO), look, None)
+    assert belief.probability(NEAR) < 0.02
+    belief.act(FIND, Faults(0.25, 0.25, 0.0))
+    evidence.acted()
+    before = odds(belief)
+    evidence.take(told(Reply.YES), 61, None)
+    assert odds(belief) / before > 3.9
+
+
+@pytest.mark.parametrize("reply", [Reply.UNKNOWN, Reply.CANNOT_SEE])
+def test_unknown_answers_change_nothing(reply: Reply) -> None:
+    belief, evidence = found(0.0, unexplained=0.1)
+    before = dict(belief.weights)
+    assert evidence.take(told(reply), 0, None) == 1.0
+    assert belief.weights == before
+    assert QUESTION.text in evidence.silent
+    evidence.acted()
+    assert not evidence.silent
+
+
+def test_a_surprising_answer_opens_what_the_model_does_not_explain() -> None:
+    belief = Belief(MODEL)
+    calibration = Calibration(
+        vlm="", whole=Group(rates=Rates(0.9, 0.1, 0, 0)), repeat_same_view=0, repeat_other_view=0
+    )
+    evidence = Evidence(belief, calibration, None)
+    assert belief.probability(NEAR) == 0
+    for look in range(5):
+        evidence.take(told(Reply.YES), look, None)
+    assert belief.probability(NEAR) > 0.9
+
+
+def test_a_skill_that_reports_trouble_is_believed() -> None:
+    belief, evidence = found(0.0)
+    evidence.acted(troubled=True)
+    assert belief.probability(NEAR) == pytest.approx(0.75 * 0.1 / (0.75 * 0.1 + 0.25 * 0.9))
+
+
+@given(st.lists(st.tuples(st.floats(0.01, 0.99), st.floats(-5, 5)), max_size=30))
+def test_trust_stays_a_distribution_and_never_turns_an_answer_round(
+    seen: list[tuple[float, float]],
+) -> None:
+    trust = Trust()
+    for true, ratio in seen:
+        trust.learn(true, ratio)
+    assert isclose(sum(trust.weights), 1.0, abs_tol=1e-6)
+    assert trust.ratio(0.0) == 0.0
+    assert trust.ratio(2.0) > 0 > trust.ratio(-2.0)
+    assert isclose(trust.ratio(2.0), -trust.ratio(-2.0))
+
+
+def test_trust_falls_where_answers_contradict_what_is_known_and_rises_where_they_agree() -> None:
+    wrong, right = Trust(), Trust()
+    for _ in range(40):
+        for answer in (2.0, -2.0):
+            wrong.learn(0.95, answer)
+        right.learn(0.95, 2.0)
+    assert wrong.mean < 0.4
+    assert right.mean > 1.0

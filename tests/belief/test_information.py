@@ -1,0 +1,92 @@
+"""What an answer is worth, against plain enumeration."""
+
+from itertools import product
+from math import isclose
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tpvqa.belief.information import Reliability, answers_to_be_sure, gain, joint_gain
+
+costs = st.lists(st.floats(0, 50), min_size=2, max_size=4)
+rates = st.floats(0.02, 0.98)
+
+
+def pairs(draw_true: list[float], draw_false: list[float], share: float) -> tuple[object, object]:
+    n = min(len(draw_true), len(draw_false))
+    return share * np.array(draw_true[:n]), (1 - share) * np.array(draw_false[:n])
+
+
+@given(costs, costs, st.floats(0.01, 0.99), rates, rates, st.integers(1, 6))
+def test_it_lies_between_nothing_and_the_truth(
+    a: list[float], b: list[float], share: float, yes: float, no: float, times: int
+) -> None:
+    if_true, if_false = pairs(a, b, share)
+    worth = gain(if_true, if_false, Reliability(yes, no), times)  # type: ignore[arg-type]
+    truth = float((if_true + if_false).min() - if_true.min() - if_false.min())  # type: ignore
+    assert -1e-9 <= worth <= truth + 1e-6
+
+
+@given(costs, costs, st.floats(0.01, 0.99), rates, rates)
+def test_one_answer_is_worth_what_enumeration_says(
+    a: list[float], b: list[float], share: float, yes: float, no: float
+) -> None:
+    yes, no = round(yes, 3), round(no, 3)
+    if_true, if_false = pairs(a, b, share)
+    after_yes = (yes * if_true + no * if_false).min()  # type: ignore[operator]
+    after_no = ((1 - yes) * if_true + (1 - no) * if_false).min()  # type: ignore[operator]
+    plain = float((if_true + if_false).min() - after_yes - after_no)  # type: ignore[operator]
+    worth = gain(if_true, if_false, Reliability(yes, no), 1)  # type: ignore[arg-type]
+    assert isclose(worth, max(0.0, plain), abs_tol=1e-9)
+
+
+@given(costs, costs, st.floats(0.01, 0.99), st.floats(0.55, 0.95), st.integers(1, 5))
+def test_more_answers_are_never_worth_less(
+    a: list[float], b: list[float], share: float, right: float, times: int
+) -> None:
+    if_true, if_false = pairs(a, b, share)
+    reliability = Reliability(right, 1 - right)
+    fewer = gain(if_true, if_false, reliability, times)  # type: ignore[arg-type]
+    assert gain(if_true, if_false, reliability, times + 1) >= fewer - 1e-9  # type: ignore[arg-type]
+
+
+def test_answers_that_say_nothing_are_worth_nothing() -> None:
+    if_true, if_false = np.array([0.0, 5.0]), np.array([5.0, 0.0])
+    assert gain(if_true, if_false, Reliability(0.4, 0.4), 20) == pytest.approx(0, abs=1e-9)
+    assert gain(if_true, if_false, Reliability(0.9, 0.1, abstains=1.0), 3) == 0
+    assert gain(if_true, if_false, Reliability(0.1, 0.9), 1) == pytest.approx(4)
+
+
+@given(st.lists(st.lists(st.floats(0, 20), min_size=3, max_size=3), min_size=4, max_size=4))
+def test_two_questions_together_are_worth_what_enumeration_says(table: list[list[float]]) -> None:
+    weights = np.array([0.4, 0.3, 0.2, 0.1])[:, None] * np.array(table)
+    truths = np.array([[1.0, 1.0, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0]])
+    one, other = Reliability(0.9, 0.2), Reliability(0.7, 0.1)
+    plain = float(weights.sum(axis=0).min())
+    for first, second in product((True, False), repeat=2):
+        total = np.zeros(3)
+        for state in range(4):
+            p = one.yes_if_true if truths[0, state] else one.yes_if_false
+            q = other.yes_if_true if truths[1, state] else other.yes_if_false
+            total += weights[state] * (p if first else 1 - p) * (q if second else 1 - q)
+        plain -= float(total.min())
+    assert isclose(joint_gain(weights, truths, [one, other], 1), max(0.0, plain), abs_tol=1e-9)
+
+
+def test_two_answers_can_change_what_neither_changes_alone() -> None:
+    """Done only where both facts hold: each alone leaves too much doubt."""
+    weights = np.array([[0.0, 0.5], [8.0, 0.1], [8.0, 0.1], [8.0, 0.1]]) * 0.25
+    truths = np.array([[1.0, 1.0, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0]])
+    sure = Reliability(1.0, 0.0)
+    alone = [gain(t @ weights, (1 - t) @ weights, sure, 1) for t in truths]
+    assert alone == [0.0, 0.0]
+    assert joint_gain(weights, truths, [sure, sure], 1) > 0.1
+
+
+def test_answers_to_be_sure() -> None:
+    assert answers_to_be_sure(0.95) == pytest.approx(1.06, abs=0.01)
+    assert answers_to_be_sure(0.6) == pytest.approx(34.7, abs=0.1)
+    assert answers_to_be_sure(0.8, repeat=0.5) == 2 * answers_to_be_sure(0.8)
+    assert answers_to_be_sure(0.3) == answers_to_be_sure(0.51)

@@ -1,0 +1,210 @@
+"""The belief monitor, at the seam a user touches: whole trials."""
+
+import re
+from collections.abc import Iterator
+
+import pytest
+
+from tpvqa.belief import Calibration, Group, Rates
+from tpvqa.belief.calibration import Curve
+from tpvqa.belief.costs import Costs
+from tpvqa.episodes import Ended, MemoryWriter
+from tpvqa.episodes.events import Asked, Decided, Event, PlanMade
+from tpvqa.errors import PluginError
+from tpvqa.monitors.belief import BeliefMonitor
+from tpvqa.pddl import load_task
+from tpvqa.planning import Planner
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import Remembering
+from tpvqa.tasks import find_task
+from tpvqa.trial import Trial, TrialConfig
+
+
+@pytest.fixture(scope="module")
+def planner() -> Iterator[Planner]:
+    planner = Remembering(FastDownward())
+    yield planner
+    planner.close()
+
+
+TASK = load_task("serve_breakfast")
+
+
+def right_in(accuracy: float, repeat: float = 0.0) -> Calibration:
+    """What is to be known of a noise model of some accuracy."""
+    return Calibration(
+        vlm="oracle",
+        whole=Group(rates=Rates(accuracy, 1 - accuracy, 0, 0), curve=Curve(slope=1)),
+        repeat_same_view=repeat,
+        repeat_other_view=repeat,
+    )
+
+
+def run(
+    planner: Planner, monitor: str = "belief", *, accuracy: float = 0.8, **changes: object
+) -> tuple[Ended, list[Event], Trial]:
+    settings: dict[str, object] = {
+        "task": "serve_breakfast",
+        "world": "symbolic",
+        "vlm": f"oracle:{accuracy}",
+        "calibration": right_in(accuracy),
+        "monitor": monitor,
+        **changes,
+    }
+    writer = MemoryWriter()
+    task = TASK if settings["task"] == "serve_breakfast" else None
+    with Trial(TrialConfig(**settings), planner=planner, task=task) as trial:  # type: ignore[arg-type]
+        return trial.run(writer), writer.events, trial
+
+
+def story(events: list[Event]) -> list[dict[str, object]]:
+    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
+
+
+def test_it_completes_what_votes_do_not_and_asks_less(planner: Planner) -> None:
+    ours = [run(planner, episode=n)[0] for n in range(30)]
+    votes = [run(planner, "tpvqa:5", episode=n)[0] for n in range(30)]
+    assert sum(bool(each.completed) for each in ours) >= 29
+    assert sum(bool(each.completed) for each in votes) <= 28
+    assert sum(each.questions for each in ours) < 0.7 * sum(each.questions for each in votes)
+
+
+def test_the_same_seed_gives_the_same_trial(planner: Planner) -> None:
+    one, other = run(planner, seed=4)[1], run(planner, seed=4)[1]
+    assert story(one) == story(other)
+    assert story(one) != story(run(planner, seed=5)[1])
+
+
+def test_dear_questions_are_not_asked_and_cheap_ones_are(planner: Planner) -> None:
+    dear = [run(planner, "belief:question=500", episode=n)[0] for n in range(5)]
+    assert all(each.questions == 0 for each in dear)
+    cheap = [run(planner, "belief:question=0.001", episode=n)[0] for n in range(5)]
+    usual = [run(planner, "belief:question=0.3", episode=n)[0] for n in range(5)]
+    assert sum(e.questions for e in cheap) > sum(e.questions for e in usual) > 0
+
+
+@pytest.mark.parametrize(
+    ("budget", "counted"),
+    [
+        ("questions_per_trial=7", "questions"),
+        ("looks_per_trial=4", "looks"),
+    ],
+)
+def test_a_budget_for_the_trial_is_kept(planner: Planner, budget: str, counted: str) -> None:
+    limit = int(budget.partition("=")[2])
+    used = [getattr(run(planner, f"belief:{budget}", episode=n)[0], counted) for n in range(6)]
+    assert max(used) == limit
+
+
+@pytest.mark.parametrize("what", ["questions", "looks"])
+def test_a_budget_between_two_actions_is_kept(planner: Planner, what: str) -> None:
+    _, events, _ = run(planner, f"belief:{what}_per_step=2")
+    kind, most, count = ("asked" if what == "questions" else "observed"), 0, 0
+    for event in events:
+        count = 0 if event.kind == "acting" else count + (event.kind == kind)
+        most = max(most, count)
+    assert most == 2
+
+
+def test_every_decision_explains_itself_from_the_numbers(planner: Planner) -> None:
+    decided = [e for n in range(4) for e in run(planner, episode=n)[1] if isinstance(e, Decided)]
+    after = [event for event in decided if event.when == "after"]
+    assert all(event.reason and event.belief for event in after)
+    assert all(0 <= p <= 1 for event in after for p in event.belief.values())
+    told = [
+        e for e in after if re.search(r"\) \d\.\d\d after (a|two|three|four) (no|yes)", e.reason)
+    ]
+    assert len(told) > len(after) / 2
+    assert any("which" in event.reason and "needs" in event.reason for event in told)
+    done = [event for event in decided if event.decision == "done"]
+    assert done
+    assert all(
+        "the goal holds with 0.9" in event.reason or "1.00" in event.reason for event in done
+    )
+
+
+def test_considered_plans_are_marked_and_replans_are_not(planner: Planner) -> None:
+    ended, events, _ = run(planner, accuracy=0.7, seed=2)
+    plans = [event for event in events if isinstance(event, PlanMade)]
+    followed = [event for event in plans if not event.considered]
+    assert len(followed) == ended.replans + 1
+    assert len(plans) > len(followed)
+
+
+def test_only_what_the_plan_needs_is_asked_about(planner: Planner) -> None:
+    _, events, _ = run(planner, seed=1)
+    asked = {q.atom for event in events if isinstance(event, Asked) for q in event.questions}
+    assert asked
+    assert not [atom for atom in asked if "knife" in str(atom) or "apple" in str(atom)]
+
+
+def test_a_person_who_is_not_there_is_asked_once(planner: Planner) -> None:
+    _, events, _ = run(planner, "belief:person=0.01", accuracy=0.6)
+    assert sum(isinstance(event, Asked) and event.person for event in events) == 1
+
+
+@pytest.mark.parametrize(
+    ("spec", "says"),
+    [
+        ("belief:price=3", "price"),
+        ("belief:question=much", "question"),
+        ("belief:question=-1", "question"),
+        ("belief:failure_rate=2", "between 0 and 1"),
+        ("belief:without=luck", "consistency, relevance"),
+    ],
+)
+def test_what_is_not_understood_is_said(planner: Planner, spec: str, says: str) -> None:
+    with pytest.raises(PluginError, match=says):
+        run(planner, spec)
+
+
+@pytest.mark.parametrize("part", ["consistency", "relevance", "calibration", "model", "learning"])
+def test_each_part_can_be_left_out(planner: Planner, part: str) -> None:
+    spec = f"belief:without={part}"
+    ended, events, _ = run(planner, spec)
+    assert ended.actions > 0
+    assert story(events) != story(run(planner)[1])
+
+
+def test_it_learns_from_trial_to_trial_that_the_vlm_is_worse_than_it_was_told(
+    planner: Planner,
+) -> None:
+    experience, means = None, []
+    for episode in range(12):
+        _, _, trial = run(
+            planner,
+            accuracy=0.7,
+            calibration=right_in(0.9).model_copy(
+                update={"whole": Group(rates=Rates(0.9, 0.1, 0, 0))}
+            ),
+            experience=experience,
+            episode=episode,
+        )
+        assert isinstance(trial.monitor, BeliefMonitor)
+        experience = trial.monitor.experience
+        assert trial.monitor.trust is not None
+        means.append(trial.monitor.trust.mean)
+    assert experience is not None
+    assert experience.trials == 12
+    # An answer of log odds 2.2 that is right in 0.7 of all cases is worth 0.85: a factor of 0.39.
+    assert 0.25 < means[-1] < 0.55
+
+
+def test_what_is_found_done_is_not_done_again(planner: Planner) -> None:
+    """Luck: the fridge is open though nobody opened it."""
+    files = find_task("eat_apple")
+    task = load_task("eat_apple")
+    monitor = BeliefMonitor(task, calibration=right_in(0.95), costs=Costs())
+    lucky = task.apply(task.init, task.action("open", ["fridge"]))
+    monitor.belief.replace(lucky)
+    config = TrialConfig(
+        task="eat_apple", world="symbolic", vlm="oracle:0.95", failure=0.0, monitor="tp"
+    )
+    with Trial(config, planner=planner, task=task.with_init(lucky)) as trial:
+        monitor.task = trial.task
+        trial.monitor = monitor
+        writer = MemoryWriter()
+        ended = trial.run(writer)
+    assert files.problem.exists()
+    assert ended.completed
+    assert not any(e.kind == "acting" and e.action.name == "open" for e in writer.events)
