@@ -91,7 +91,7 @@ def test_killed_anywhere_it_goes_on_with_a_new_look_to_the_goal(
     kind: type[Monitor], task: Task, planner: Planner, tmp_path: Path
 ) -> None:
     def monitor() -> Monitor:
-        return kind(task) if kind is BeliefMonitor else kind()  # type: ignore[call-arg]
+        return kind(task) if kind is BeliefMonitor else kind()
 
     whole = go_on(tmp_path / "whole", Simulation(task, failure=0), planner, monitor(), kill_at=None)
     for cut in range(len(whole) - 1):

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.information import Reliability, answers_to_be_sure, gain, joint_gain
+from tpvqa.belief.information import Floats, Reliability, answers_to_be_sure, gain, joint_gain
 
 costs = st.lists(st.floats(0, 50), min_size=2, max_size=4)
 rates = st.floats(0.02, 0.98)
 
 
-def pairs(draw_true: list[float], draw_false: list[float], share: float) -> tuple[object, object]:
+def pairs(draw_true: list[float], draw_false: list[float], share: float) -> tuple[Floats, Floats]:
     n = min(len(draw_true), len(draw_false))
     return share * np.array(draw_true[:n]), (1 - share) * np.array(draw_false[:n])
 
@@ -24,8 +24,8 @@ def test_it_lies_between_nothing_and_the_truth(
     a: list[float], b: list[float], share: float, yes: float, no: float, times: int
 ) -> None:
     if_true, if_false = pairs(a, b, share)
-    worth = gain(if_true, if_false, Reliability(yes, no), times)  # type: ignore[arg-type]
-    truth = float((if_true + if_false).min() - if_true.min() - if_false.min())  # type: ignore
+    worth = gain(if_true, if_false, Reliability(yes, no), times)
+    truth = float((if_true + if_false).min() - if_true.min() - if_false.min())
     assert -1e-9 <= worth <= truth + 1e-6
 
 
@@ -35,10 +35,10 @@ def test_one_answer_is_worth_what_enumeration_says(
 ) -> None:
     yes, no = round(yes, 3), round(no, 3)
     if_true, if_false = pairs(a, b, share)
-    after_yes = (yes * if_true + no * if_false).min()  # type: ignore[operator]
-    after_no = ((1 - yes) * if_true + (1 - no) * if_false).min()  # type: ignore[operator]
-    plain = float((if_true + if_false).min() - after_yes - after_no)  # type: ignore[operator]
-    worth = gain(if_true, if_false, Reliability(yes, no), 1)  # type: ignore[arg-type]
+    after_yes = (yes * if_true + no * if_false).min()
+    after_no = ((1 - yes) * if_true + (1 - no) * if_false).min()
+    plain = float((if_true + if_false).min() - after_yes - after_no)
+    worth = gain(if_true, if_false, Reliability(yes, no), 1)
     assert isclose(worth, max(0.0, plain), abs_tol=1e-9)
 
 
@@ -48,8 +48,8 @@ def test_more_answers_are_never_worth_less(
 ) -> None:
     if_true, if_false = pairs(a, b, share)
     reliability = Reliability(right, 1 - right)
-    fewer = gain(if_true, if_false, reliability, times)  # type: ignore[arg-type]
-    assert gain(if_true, if_false, reliability, times + 1) >= fewer - 1e-9  # type: ignore[arg-type]
+    fewer = gain(if_true, if_false, reliability, times)
+    assert gain(if_true, if_false, reliability, times + 1) >= fewer - 1e-9
 
 
 def test_answers_that_say_nothing_are_worth_nothing() -> None:
