@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 DEMO := episodes/demo
-SEED ?= 8
+SEED ?= 20
 
 .PHONY: demo test lint types tests gl install install-dev clean
 
