@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from tpvqa.belief.ablations import PARTS
 from tpvqa.bench.belief.comparison import curve_of
 from tpvqa.bench.belief.parts import (
     ABLATED,
-    ABLATIONS,
     BASELINES,
     BELIEF,
     SYMBOLIC,
@@ -105,13 +105,13 @@ def _small_multiples(
         squeeze=False,
     )
     for line, row in zip(grid, rows, strict=True):
-        for axes, column, title in zip(line, columns, titles, strict=True):
+        for axes, column in zip(line, columns, strict=True):
             _draw_panel(axes, *panel(row, column))
-            if line is grid[0]:
-                axes.set_title(title)
-            if line is grid[-1]:
-                axes.set_xlabel("questions")
         line[0].set_ylabel(f"{row}\ncompletion rate")
+    for axes, title in zip(grid[0], titles, strict=True):
+        axes.set_title(title)
+    for axes in grid[-1]:
+        axes.set_xlabel("questions")
     handles: dict[str, Any] = {}
     for axes in grid.flat:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -157,8 +157,11 @@ def _draw_panel(
     points = sorted(map(_point, curve))
     if points:
         xs, ys, lows, highs = zip(*points, strict=True)
+        if len(points) == 1:
+            axes.plot([*xs, *xs], [*lows, *highs], color=INK, linewidth=1.2)
         axes.fill_between(xs, lows, highs, color=INK, alpha=0.15, linewidth=0)
-        axes.plot(xs, ys, color=INK, linewidth=1.6, marker=".", markersize=5, label="belief")
+        axes.plot([xs[-1], 2000], [ys[-1]] * 2, color=INK, linewidth=1, linestyle=":")
+        axes.plot(xs, ys, color=INK, linewidth=1.6, marker="D", markersize=3.5, label="belief")
 
 
 def _point(rows: Sequence[EpisodeRow]) -> tuple[float, float, float, float]:
@@ -176,7 +179,7 @@ def _ablations(results: BeliefResults, extent: Extent, rho: float) -> Figure | N
         )
         for task in extent.household
         for accuracy in accuracies
-        for name in ("", *ABLATIONS)
+        for name in ("", *PARTS)
     }
     if not any(rows for (_, _, name), rows in found.items() if name):
         return None
@@ -189,12 +192,12 @@ def _ablations(results: BeliefResults, extent: Extent, rho: float) -> Figure | N
         sharex="col",
         squeeze=False,
     )
-    places = range(len(ABLATIONS))
+    places = range(len(PARTS))
     for line, task in zip(grid, extent.household, strict=True):
         for k, accuracy in enumerate(accuracies):
             left, right = line[2 * k], line[2 * k + 1]
             whole = found[task, accuracy, ""]
-            for place, name in enumerate(ABLATIONS):
+            for place, name in enumerate(PARTS):
                 rows = found[task, accuracy, name]
                 if not rows or not whole:
                     continue
@@ -205,12 +208,11 @@ def _ablations(results: BeliefResults, extent: Extent, rho: float) -> Figure | N
                 right.barh(place, share, 0.7, color="#b7bcc4")
             left.axvline(0, color="#222222", linewidth=0.8)
             right.axvline(1, color="#222222", linewidth=0.8)
-            if line is grid[0]:
-                left.set_title(f"p = {accuracy:g}", loc="left")
-            if line is grid[-1]:
-                left.set_xlabel("completion, change")
-                right.set_xlabel("questions, ratio")
-        line[0].set_yticks(places, [f"no {name}" for name in ABLATIONS])
+        line[0].set_yticks(places, [f"no {name}" for name in PARTS])
         line[0].set_ylabel(task)
+    for k, accuracy in enumerate(accuracies):
+        grid[0][2 * k].set_title(f"p = {accuracy:g}", loc="left")
+        grid[-1][2 * k].set_xlabel("completion, change")
+        grid[-1][2 * k + 1].set_xlabel("questions, ratio")
     grid[0][0].invert_yaxis()
     return figure

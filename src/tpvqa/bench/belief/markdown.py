@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from tpvqa.belief.ablations import PARTS
+from tpvqa.belief.costs import Costs
 from tpvqa.bench.belief.comparison import Lies, together, votes_beside_curve
 from tpvqa.bench.belief.parts import (
     ABLATED,
-    ABLATIONS,
     BELIEF,
     RIVALS,
     SYMBOLIC,
@@ -103,7 +104,7 @@ def _prices(results: BeliefResults, extent: Extent) -> str:
     return _table(("VLM", "task", *names), lines) if lines else ""
 
 
-DEFAULT_PRICE = 0.01
+DEFAULT_PRICE = Costs().question
 """The cost of a question where nothing else is said."""
 
 
@@ -158,7 +159,7 @@ def _ablations(results: BeliefResults, extent: Extent) -> str:
     for vlm in extent.vlms([each for each in extent.accuracies if each in ABLATED]):
         for task in extent.household:
             whole = results.of(Cell(task, BELIEF, vlm, SYMBOLIC))
-            parts = [results.of(Cell(task, without(n), vlm, SYMBOLIC)) for n in ABLATIONS]
+            parts = [results.of(Cell(task, without(n), vlm, SYMBOLIC)) for n in PARTS]
             if not whole or not any(parts):
                 continue
             told = (
@@ -166,7 +167,7 @@ def _ablations(results: BeliefResults, extent: Extent) -> str:
                 for part in parts
             )
             lines.append((vlm, task, _short(whole), *told))
-    names = ("VLM", "task", "whole", *(f"without {name}" for name in ABLATIONS))
+    names = ("VLM", "task", "whole", *(f"without {name}" for name in PARTS))
     return _table(names, lines) if lines else ""
 
 

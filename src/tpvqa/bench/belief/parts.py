@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from tpvqa.belief.ablations import PARTS
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.paper import TASKS
 
@@ -12,7 +13,6 @@ VOTES = ("tpvqa", "tpvqa:3", "tpvqa:5", "tpvqa:strict", "tpvqa:3:strict", "tpvqa
 BASELINES = ("effectvqa", "palmevqa", "successvqa", "tp")
 RIVALS = (*VOTES, *BASELINES)
 RECORDED_RIVALS = ("tpvqa", "tpvqa:3", "tpvqa:5", "tp")
-ABLATIONS = ("consistency", "relevance", "calibration", "model", "learning")
 ACCURACIES = (0.6, 0.7, 0.8, 0.9, 0.95)
 RHOS = (0.0, 0.5)
 PRICES = (10.0, 1.0, 0.3, 0.1, 0.03, 0.003)
@@ -92,7 +92,7 @@ class Extent:
             case Part.ABLATIONS:
                 ablated = [each for each in self.accuracies if each in ABLATED]
                 for vlm in self.vlms(ablated):
-                    for monitor in (BELIEF, *map(without, ABLATIONS)):
+                    for monitor in (BELIEF, *map(without, PARTS)):
                         for task in self.household:
                             yield Cell(task, monitor, vlm, SYMBOLIC), self.curve
 

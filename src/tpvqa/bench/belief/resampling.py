@@ -77,7 +77,7 @@ def interval(value: float, samples: Floats, count: int) -> Estimate:
         count: Episodes of the smallest cell in it.
     """
     half = Z * float(np.sqrt(np.var(samples) + 1 / (count + 2) ** 2))
-    return Estimate(value, value - half, value + half)
+    return Estimate(value, max(value - half, -1.0), min(value + half, 1.0))
 
 
 def difference(first: Sequence[EpisodeRow], second: Sequence[EpisodeRow]) -> Estimate:
