@@ -166,5 +166,5 @@ def _part(name: str) -> "Part":
     from tpvqa.errors import UnknownNameError
 
     if name not in set(Part):
-        raise UnknownNameError("part of the belief bench", name, list(Part))
+        raise UnknownNameError("part of the belief bench", name, [part.value for part in Part])
     return Part(name)

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from tpvqa.belief.ablations import PARTS
 from tpvqa.bench.belief.comparison import curve_of
 from tpvqa.bench.belief.parts import (
@@ -137,6 +139,8 @@ def _draw_panel(
     axes.set_ylim(-0.03, 1.05)
     axes.set_xticks([0, 10, 100, 1000], ["0", "10", "100", "1000"])
     axes.set_xticks([], minor=True)
+    axes.set_yticks([0, 0.5, 1], ["0", ".5", "1"])
+    axes.set_yticks([0.25, 0.75], minor=True)
     axes.grid(color="#e6e6e6", linewidth=0.6)
     axes.set_axisbelow(True)
     for rival, rows in rivals.items():
@@ -159,9 +163,14 @@ def _draw_panel(
         xs, ys, lows, highs = zip(*points, strict=True)
         if len(points) == 1:
             axes.plot([*xs, *xs], [*lows, *highs], color=INK, linewidth=1.2)
-        axes.fill_between(xs, lows, highs, color=INK, alpha=0.15, linewidth=0)
         axes.plot([xs[-1], 2000], [ys[-1]] * 2, color=INK, linewidth=1, linestyle=":")
-        axes.plot(xs, ys, color=INK, linewidth=1.6, marker="D", markersize=3.5, label="belief")
+        # What is linear in questions is not a straight line on this axis.
+        between = np.unique([*xs, *np.linspace(xs[0], xs[-1], 500)])
+        band = [np.interp(between, xs, edge) for edge in (lows, highs)]
+        axes.fill_between(between, *band, color=INK, alpha=0.15, linewidth=0)
+        axes.plot(between, np.interp(between, xs, ys), color=INK, linewidth=1.6)
+        axes.plot(xs, ys, color=INK, linestyle="none", marker="D", markersize=3.5)
+        axes.plot([], [], color=INK, linewidth=1.6, marker="D", markersize=3.5, label="belief")
 
 
 def _point(rows: Sequence[EpisodeRow]) -> tuple[float, float, float, float]:
