@@ -18,8 +18,10 @@ class Cell:
         monitor: Specification of the monitor.
         vlm: Specification of the VLM.
         world: Specification of the world.
-        condition: Rates of faults that differ from those of other cells, e.g. `failure=0.4` or
-            `failure=0.4,disturbance=0.5`; empty for none.
+        condition: What differs from other cells, with commas; empty for nothing. `failure=0.4`,
+            `disturbance=0.5` or `spontaneous=0.05`: true rates of faults. `believed=oracle:0.9`:
+            the monitor is given that VLM's calibration. `carried=30`: what is learned is passed
+            on through so many episodes.
     """
 
     task: str
@@ -51,19 +53,39 @@ class Cell:
         Raises:
             BenchError: The condition is not understood.
         """
-        found = {}
+        try:
+            return {name: float(value) for name, value in self._settings() if name in RATES}
+        except ValueError:
+            raise self._not_understood() from None
+
+    @property
+    def believed(self) -> str | None:
+        """The VLM for which the monitor takes the one that answers; None where it knows better."""
+        return dict(self._settings()).get("believed")
+
+    @property
+    def carried(self) -> int:
+        """How many episodes in a row pass on what was learned; 0 where each begins anew."""
+        value = dict(self._settings()).get("carried", "0")
+        if not value.isdecimal():
+            raise self._not_understood()
+        return int(value)
+
+    def _settings(self) -> list[tuple[str, str]]:
+        found = []
         for part in self.condition.split(",") if self.condition else []:
             name, _, value = part.partition("=")
-            try:
-                found[name] = float(value)
-            except ValueError:
-                found[""] = 0.0
-        if not found.keys() <= set(RATES):
-            raise BenchError(
-                f"The condition {self.condition!r} is not understood. Write rates of faults with "
-                f"commas, of {', '.join(RATES)}, e.g. failure=0.4"
-            )
+            if name not in (*RATES, "believed", "carried"):
+                raise self._not_understood()
+            found.append((name, value))
         return found
+
+    def _not_understood(self) -> BenchError:
+        return BenchError(
+            f"The condition {self.condition!r} is not understood. Write settings with commas: "
+            f"rates of faults ({', '.join(RATES)}), believed=VLM, carried=EPISODES; for example "
+            "failure=0.4"
+        )
 
     def __str__(self) -> str:
         parts = (self.task, self.monitor, self.vlm, self.world, self.condition)

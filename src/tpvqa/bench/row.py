@@ -18,6 +18,8 @@ class EpisodeRow(BaseModel):
             not.
         first_plan: Actions of the first plan.
         seconds: Wall time.
+        trust: The factor by which the VLM's answers are worth more or less than its calibration
+            says, as the monitor has learned by the end; None where it learns no such thing.
         error: What went wrong in the program; empty where nothing did.
         answers: How many answers were of which kind: "way|subject|truth|reply|P(yes)".
         decisions: How many decisions were of which kind: "before|truth|went on".
@@ -45,6 +47,7 @@ class EpisodeRow(BaseModel):
     wasted: int = 0
     first_plan: int = 0
     seconds: float = 0.0
+    trust: float | None = None
     error: str = ""
     answers: dict[str, int] = {}
     decisions: dict[str, int] = {}

@@ -3,10 +3,11 @@
 import time
 import traceback
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import lru_cache
 from typing import Any
 
+from tpvqa.belief.experience import Experience
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
 from tpvqa.bench.row import EpisodeRow
@@ -46,6 +47,12 @@ class Stage:
 
     def run(self, cell: Cell, common: TrialConfig, episode: int) -> EpisodeRow:
         """Run one episode. Whatever goes wrong in it is in its row, and the rest go on."""
+        return self.run_learning(cell, common, episode)[0]
+
+    def run_learning(
+        self, cell: Cell, common: TrialConfig, episode: int
+    ) -> tuple[EpisodeRow, Experience | None]:
+        """The same, and what the monitor has learned, where it learns."""
         began = time.perf_counter()
         row: dict[str, Any] = {
             **asdict(cell),
@@ -53,12 +60,13 @@ class Stage:
             "episode": episode,
         }
         try:
-            figures = self._figures(cell.config(common, episode))
+            figures, learned = self._figures(cell.config(common, episode))
         except TpvqaError as error:
-            figures = {"error": str(error)}
+            figures, learned = {"error": str(error)}, common.experience
         except Exception:  # noqa: BLE001 — one broken plug-in must not end a bench of thousands
-            figures = {"error": traceback.format_exc(limit=-3)}
-        return EpisodeRow(**row, **figures, seconds=round(time.perf_counter() - began, 4))
+            figures, learned = {"error": traceback.format_exc(limit=-3)}, common.experience
+        seconds = round(time.perf_counter() - began, 4)
+        return EpisodeRow(**row, **figures, seconds=seconds), learned
 
     def trial(self, config: TrialConfig) -> Trial:
         """A trial of the task, ready to run; made of what all its trials share."""
@@ -83,11 +91,14 @@ class Stage:
             raise KeyboardInterrupt
         return ended
 
-    def _figures(self, config: TrialConfig) -> dict[str, Any]:
+    def _figures(self, config: TrialConfig) -> tuple[dict[str, Any], Experience | None]:
         with self.trial(config) as trial:
             judge = Judge(true_simulation(trial), self.actions)
             ended = self.play(trial, judge)
-        return {
+            learned = getattr(trial.monitor, "experience", None)
+        if not isinstance(learned, Experience):
+            learned = None
+        figures = {
             "completed": bool(ended.completed),
             "because": ended.because,
             "believed_goal": ended.believed_goal,
@@ -102,7 +113,9 @@ class Stage:
             "first_plan": judge.first_plan or 0,
             "answers": dict(judge.answers),
             "decisions": dict(judge.decisions),
+            "trust": None if learned is None else round(learned.trusting().mean, 4),
         }
+        return figures, learned
 
 
 def true_simulation(trial: Trial) -> Simulation:
@@ -137,4 +150,12 @@ def run_batch(
 ) -> list[dict[str, object]]:
     """Run some episodes of a cell: what a worker is sent. Their rows as plain values."""
     here = stage(cell.task)
-    return [here.run(cell, common, episode).model_dump() for episode in episodes]
+    carried, rows = cell.carried, []
+    for episode in episodes:
+        if carried and episode % carried == 0:
+            common = replace(common, experience=None)
+        row, learned = here.run_learning(cell, common, episode)
+        if carried:
+            common = replace(common, experience=learned)
+        rows.append(row.model_dump())
+    return rows

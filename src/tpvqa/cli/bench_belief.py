@@ -19,9 +19,10 @@ def belief(
     parts: Annotated[
         str,
         typer.Option(
-            help="Parts, with commas: grid, paper, embedded, recorded, wrong-model, ablations."
+            help="Parts, with commas: grid, paper, embedded, recorded, wrong-model, wrong-vlm, "
+            "ablations."
         ),
-    ] = "grid,paper,embedded,recorded,wrong-model,ablations",
+    ] = "grid,paper,embedded,recorded,wrong-model,wrong-vlm,ablations",
     tasks: Annotated[
         str, typer.Option(help="Shipped tasks, with commas.")
     ] = "clean_dishes,serve_breakfast,eat_apple,build_tower",
@@ -40,6 +41,12 @@ def belief(
     curve_episodes: Annotated[
         int, typer.Option(help="Of every further point of a curve, and of every ablation.", min=1)
     ] = 300,
+    chains: Annotated[
+        int,
+        typer.Option(
+            help="Robots that learn, over 30 episodes each, how good their VLM is.", min=1
+        ),
+    ] = 30,
     calibration_episodes: Annotated[
         int, typer.Option(help="Trials that each calibration is learnt from.", min=1)
     ] = 80,
@@ -80,6 +87,7 @@ def belief(
             models=_list(models),
             episodes=episodes,
             curve=curve_episodes,
+            chains=chains,
         ),
         calibration_episodes=calibration_episodes,
         embedded_world=embedded_calibration,

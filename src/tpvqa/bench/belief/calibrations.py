@@ -39,7 +39,7 @@ def source_of(cell: Cell, embedded_world: str = "images") -> Source:
         cell: Which.
         embedded_world: Where the embedded network's trials are run.
     """
-    vlm, world = cell.vlm, cell.world
+    vlm, world = cell.believed or cell.vlm, cell.world
     if vlm.startswith("recorded:") and vlm.endswith((":0", ":1")):
         vlm = vlm[:-1] + ("0" if vlm.endswith("1") else "1")
     if vlm == "embedded":

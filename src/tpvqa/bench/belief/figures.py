@@ -7,12 +7,15 @@ import numpy as np
 
 from tpvqa.belief.ablations import PARTS
 from tpvqa.bench.belief.comparison import curve_of
+from tpvqa.bench.belief.learning import BLOCK, RIGHT_TRUST, blocks
 from tpvqa.bench.belief.parts import (
     ABLATED,
     BASELINES,
     BELIEF,
+    BELIEVED,
     SYMBOLIC,
     VOTES,
+    WRONG_VLM,
     Extent,
     noise,
     without,
@@ -62,6 +65,9 @@ def draw(results: BeliefResults, extent: Extent) -> dict[str, Figure]:
         found = _ablations(results, extent, rho)
         if found is not None:
             drawn[f"ablations_rho_{rho:g}"] = found
+    found = _learning(results, extent)
+    if found is not None:
+        drawn["learning"] = found
     return drawn
 
 
@@ -177,6 +183,62 @@ def _point(rows: Sequence[EpisodeRow]) -> tuple[float, float, float, float]:
     """Questions, completion rate, and its interval."""
     found = wilson(sum(row.completed for row in rows), len(rows))
     return sum(row.questions for row in rows) / len(rows), found.rate, found.low, found.high
+
+
+def _learning(results: BeliefResults, extent: Extent) -> Figure | None:
+    """Completion and trust by how many episodes a robot has behind it."""
+    by_task = {task: found for task in extent.household if (found := blocks(results, task))}
+    if not by_task:
+        return None
+    pyplot = styled_pyplot()
+    figure, grid = pyplot.subplots(
+        2,
+        len(by_task),
+        figsize=(1.0 + 2.4 * len(by_task), 4.4),
+        sharex=True,
+        sharey="row",
+        squeeze=False,
+    )
+    for (above, below), (task, found) in zip(grid.T, by_task.items(), strict=True):
+        middles = [block.first + (BLOCK + 1) / 2 for block in found]
+        learning = [block.learning for block in found]
+        margins = [(block.difference.high - block.difference.low) / 2 for block in found]
+        above.errorbar(
+            middles,
+            learning,
+            yerr=margins,
+            color=INK,
+            marker="D",
+            markersize=3.5,
+            linewidth=1.6,
+            elinewidth=0.8,
+            label=f"told {BELIEVED.partition(':')[2]}, has to learn",
+        )
+        above.plot(
+            middles,
+            [block.knowing for block in found],
+            color="#d55e00",
+            marker="o",
+            markersize=4,
+            linestyle="--",
+            label=f"told {WRONG_VLM.partition(':')[2]}, as it is",
+        )
+        below.plot(middles, [block.trust for block in found], color=INK, marker="D", markersize=3.5)
+        below.axhline(RIGHT_TRUST, color="#d55e00", linestyle="--")
+        below.axhline(1, color="#767676", linewidth=0.8, linestyle=":")
+        for axes in (above, below):
+            axes.grid(color="#e6e6e6", linewidth=0.6)
+            axes.set_axisbelow(True)
+        above.set_title(task)
+        above.set_ylim(0, 1.05)
+        below.set_ylim(0, 1.1)
+        below.set_xlabel("episode")
+    grid[0][0].set_ylabel("completion rate")
+    grid[1][0].set_ylabel("trust in answers")
+    figure.legend(
+        *grid[0][0].get_legend_handles_labels(), frameon=False, loc="outside upper center", ncols=2
+    )
+    return figure
 
 
 def _ablations(results: BeliefResults, extent: Extent, rho: float) -> Figure | None:

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from tpvqa.belief.ablations import PARTS
 from tpvqa.belief.costs import Costs
 from tpvqa.bench.belief.comparison import Lies, together, votes_beside_curve
+from tpvqa.bench.belief.learning import BLOCK, blocks
 from tpvqa.bench.belief.parts import (
     ABLATED,
     BELIEF,
@@ -49,6 +50,7 @@ def results_markdown(results: BeliefResults, extent: Extent) -> str:
         ("The embedded network on the shipped pictures", _full(results, extent, Part.EMBEDDED)),
         ("Recorded VLMs", _full(results, extent, Part.RECORDED)),
         ("Wrong action model", _wrong_model(results, extent)),
+        ("VLM believed to be better than it is", _wrong_vlm(results, extent)),
         ("Without a part", _ablations(results, extent)),
     ]
     return "\n".join(
@@ -151,6 +153,24 @@ def _wrong_model(results: BeliefResults, extent: Extent) -> str:
             lost = _signed(difference(wrong, right))
             lines.append((cell.condition, cell.task, _short(wrong), _short(right), lost))
     names = ("in truth", "task", "wrong model", "right model", "difference (95%)")
+    return _table(names, lines) if lines else ""
+
+
+def _wrong_vlm(results: BeliefResults, extent: Extent) -> str:
+    lines = []
+    for task in extent.household:
+        for block in blocks(results, task):
+            lines.append(
+                (
+                    task,
+                    f"{block.first + 1}–{block.first + BLOCK}",
+                    _rate(block.learning),
+                    _rate(block.knowing),
+                    _signed(block.difference),
+                    f"{block.trust:.2f}",
+                )
+            )
+    names = ("task", "episodes", "has to learn", "was told", "difference (95%)", "trust")
     return _table(names, lines) if lines else ""
 
 

@@ -22,6 +22,13 @@ ABLATED = (0.6, 0.8, 0.95)
 TRUE_RATES = ("failure=0.1", "failure=0.4", "disturbance=0.5", "spontaneous=0.05")
 """What holds in truth where the action model is wrong; each is believed to be its default."""
 WRONG_MODEL_VLM = "oracle:0.8"
+WRONG_VLM = "oracle:0.7"
+BELIEVED = "oracle:0.9"
+"""What `WRONG_VLM` is taken for at first."""
+CHAIN = 30
+"""Episodes through which what was learned is passed on."""
+LEARNING, KNOWING = f"believed={BELIEVED},carried={CHAIN}", f"carried={CHAIN}"
+"""Robots that have to learn that, and robots that were told."""
 SYMBOLIC = "symbolic"
 DOMAIN_TASKS = {
     "blocksworld": ("build_tower",),
@@ -38,6 +45,7 @@ class Part(StrEnum):
     EMBEDDED = "embedded"
     RECORDED = "recorded"
     WRONG_MODEL = "wrong-model"
+    WRONG_VLM = "wrong-vlm"
     ABLATIONS = "ablations"
 
 
@@ -53,6 +61,7 @@ class Extent:
         models: Recorded VLMs.
         episodes: Of every cell.
         curve: Episodes of every further point of the curve, and of every ablation.
+        chains: Robots that learn how good their VLM is, for `CHAIN` episodes each.
     """
 
     tasks: Sequence[str] = (*TASKS, "build_tower")
@@ -62,6 +71,7 @@ class Extent:
     models: Sequence[str] = ()
     episodes: int = 1000
     curve: int = 300
+    chains: int = 30
 
     def cells(self, part: Part) -> Iterator[tuple[Cell, int]]:
         """The cells of a part, each with its number of episodes."""
@@ -89,6 +99,11 @@ class Extent:
                         for task in self.household:
                             cell = Cell(task, monitor, WRONG_MODEL_VLM, SYMBOLIC, rate)
                             yield cell, self.episodes
+            case Part.WRONG_VLM:
+                for condition in (LEARNING, KNOWING):
+                    for task in self.household:
+                        cell = Cell(task, BELIEF, WRONG_VLM, SYMBOLIC, condition)
+                        yield cell, CHAIN * self.chains
             case Part.ABLATIONS:
                 ablated = [each for each in self.accuracies if each in ABLATED]
                 for vlm in self.vlms(ablated):

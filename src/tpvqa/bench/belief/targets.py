@@ -5,13 +5,23 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from tpvqa.bench.belief.comparison import Lies, together, votes_beside_curve
+from tpvqa.bench.belief.learning import (
+    LOST,
+    RIGHT_TRUST,
+    WITHIN,
+    after_learning,
+    blocks,
+    episodes_until_learned,
+)
 from tpvqa.bench.belief.parts import (
     BELIEF,
+    BELIEVED,
     RECORDED_RIVALS,
     RIVALS,
     SYMBOLIC,
     TRUE_RATES,
     WRONG_MODEL_VLM,
+    WRONG_VLM,
     Extent,
     Part,
     knowing,
@@ -35,8 +45,6 @@ QUESTIONS = {"clean_dishes": 0.7, "serve_breakfast": 0.9, "eat_apple": 0.7}
 """Most questions at accuracy .95, of TPVQA's."""
 AHEAD = 0.15
 """How far to be above tpvqa:5 on serve_breakfast, at accuracy .8."""
-LOST = 0.03
-"""Most completion that may be lost where the action model is wrong."""
 SPEED = {
     "annotation of a plan, median": 15.0,
     "check of a plan, median": 0.2,
@@ -86,6 +94,7 @@ def targets(results: BeliefResults, extent: Extent) -> list[Check]:
         *_embedded(results),
         *_recorded(results, extent),
         *_wrong_model(results),
+        *_wrong_vlm(results),
         *_speed(results),
     ]
 
@@ -180,6 +189,21 @@ def _wrong_model(results: BeliefResults) -> Iterator[Check]:
             right = results.of(_rival(cell, knowing(rate)))
             condition = f"true {rate.replace('=', ' ')}, believed to be the default"
             yield _ahead(condition, task, results.of(cell), right, "the right model", -LOST)
+
+
+def _wrong_vlm(results: BeliefResults) -> Iterator[Check]:
+    condition = f"{BELIEVED} believed, {WRONG_VLM} in truth"
+    for task in TASKS:
+        what = f"completion from episode {WITHIN + 1} on less that of the right VLM, {task}"
+        found = after_learning(results, task)
+        if found is None:
+            yield Check(condition, what, f"≥ {-LOST:+.2f}", None, None)
+            continue
+        told = blocks(results, task)
+        episodes = episodes_until_learned(told)
+        speed = "not learned" if episodes is None else f"learned after {episodes} episodes"
+        note = f"{speed}; trust {told[-1].trust:.2f}, right is {RIGHT_TRUST:.2f}"
+        yield Check(condition, what, f"≥ {-LOST:+.2f}", found, found.high >= -LOST, note)
 
 
 def _speed(results: BeliefResults) -> Iterator[Check]:
