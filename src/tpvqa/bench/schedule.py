@@ -39,15 +39,9 @@ def batches(ledger: Ledger, wanted: Mapping[Cell, int]) -> list[Batch]:
     for place, (cell, episodes) in enumerate(wanted.items()):
         missing = ledger.missing(cell, episodes)
         if cell.carried:  # what is learned is passed on in one process, from the first of them
-            runs = {number // cell.carried for number in missing}
-            made += [
-                (
-                    run,
-                    place,
-                    Batch(cell, tuple(range(run * cell.carried, (run + 1) * cell.carried))),
-                )
-                for run in runs
-            ]
+            size = cell.carried
+            firsts = {number - number % size for number in missing}
+            made += [(n, place, Batch(cell, tuple(range(n, n + size)))) for n in firsts]
             continue
         size = BATCH.get(cell.world.partition(":")[0], SMALL_BATCH)
         if cell.monitor.partition(":")[0] in SLOW:

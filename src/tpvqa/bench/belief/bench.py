@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa import __version__
+from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.belief import calibrations as learnt
 from tpvqa.bench.belief.parts import Extent, Part, believes
 from tpvqa.bench.belief.results import BeliefResults
@@ -148,7 +149,7 @@ def run_belief_bench(
             workers=workers,
             scheduler=scheduler,
             done=count,
-            calibrations={cell: known[bench.source_of(cell)] for cell in believing},
+            calibrations={cell: _told(cell, known[bench.source_of(cell)]) for cell in believing},
         )
         found = ((cell, ledger.of(cell, n)) for cell, n in bench.wanted(Part).items())
         rows = {cell: own for cell, own in found if own}
@@ -156,6 +157,14 @@ def run_belief_bench(
         ledger.close()
     results = BeliefResults(bench.settings(), rows, _speed(folder / SPEED_FILE))
     return results, write_results(folder, results, bench.extent)
+
+
+def _told(cell: Cell, calibration: Calibration) -> Calibration:
+    """What a cell's monitor is told; of what is wrongly believed only how often it is right.
+
+    A noise model's P(yes) says how good it truly is, which would give it away.
+    """
+    return learnt.by_replies(calibration) if cell.believed else calibration
 
 
 def _speed(path: Path) -> Mapping[str, float]:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.calibration import Calibration, Group
 from tpvqa.belief.fitting import fit
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
@@ -80,3 +80,18 @@ def calibrations(
         found[source].save(path)
     done(len(found), len(sources))
     return found
+
+
+def by_replies(calibration: Calibration) -> Calibration:
+    """The same calibration for a VLM that says yes or no and not how sure it is."""
+
+    def blind(group: Group) -> Group:
+        return group.model_copy(update={"curve": None})
+
+    return calibration.model_copy(
+        update={
+            "groups": tuple(map(blind, calibration.groups)),
+            "ways": tuple(map(blind, calibration.ways)),
+            "whole": blind(calibration.whole),
+        }
+    )

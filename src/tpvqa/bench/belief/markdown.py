@@ -157,19 +157,18 @@ def _wrong_model(results: BeliefResults, extent: Extent) -> str:
 
 
 def _wrong_vlm(results: BeliefResults, extent: Extent) -> str:
-    lines = []
-    for task in extent.household:
-        for block in blocks(results, task):
-            lines.append(
-                (
-                    task,
-                    f"{block.first + 1}–{block.first + BLOCK}",
-                    _rate(block.learning),
-                    _rate(block.knowing),
-                    _signed(block.difference),
-                    f"{block.trust:.2f}",
-                )
-            )
+    lines = [
+        (
+            task,
+            f"{block.first + 1}–{block.first + BLOCK}",
+            _rate(block.learning),
+            _rate(block.knowing),
+            _signed(block.difference),
+            f"{block.trust:.2f}",
+        )
+        for task in extent.household
+        for block in blocks(results, task)
+    ]
     names = ("task", "episodes", "has to learn", "was told", "difference (95%)", "trust")
     return _table(names, lines) if lines else ""
 
