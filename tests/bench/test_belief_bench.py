@@ -10,20 +10,38 @@ from typing import Any
 
 import pytest
 
+from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.belief import BeliefBench, BeliefResults, Part, run_belief_bench
-from tpvqa.bench.belief.calibrations import OTHER_SEEDS, Source, calibrations, source_of
+from tpvqa.bench.belief.calibrations import (
+    OTHER_SEEDS,
+    Source,
+    by_replies,
+    calibrations,
+    source_of,
+)
 from tpvqa.bench.belief.comparison import Lies, against, together
+from tpvqa.bench.belief.learning import BLOCK, after_learning, blocks, episodes_until_learned
 from tpvqa.bench.belief.markdown import results_markdown, targets_markdown
-from tpvqa.bench.belief.parts import RIVALS, VOTES, Extent
+from tpvqa.bench.belief.parts import (
+    CHAIN,
+    KNOWING,
+    LEARNING,
+    RIVALS,
+    VOTES,
+    WRONG_VLM,
+    Extent,
+)
 from tpvqa.bench.belief.resampling import difference, ratio
 from tpvqa.bench.belief.targets import Check, targets
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.ledger import ROWS, Ledger
 from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.schedule import batches
 from tpvqa.bench.stage import run_batch
 from tpvqa.errors import BenchError, CalibrationError
 from tpvqa.trial import TrialConfig
+from tpvqa.vlm import Reply
 
 CELL = Cell("clean_dishes", "belief", "oracle:0.8", "symbolic")
 SMALL = Extent(
@@ -169,10 +187,44 @@ def test_a_condition_sets_the_true_rates_and_is_kept(tmp_path: Path) -> None:
     ledger.close()
 
 
-@pytest.mark.parametrize("condition", ["failure=x", "failures=0.1", "failure"])
+def test_what_is_learned_is_carried_through_a_run_of_episodes_and_no_further() -> None:
+    calibration = Calibration.default()
+    told = TrialConfig(calibration=calibration)
+    plain = replace(CELL, vlm="oracle:0.7")
+    alone = [row["trust"] for row in run_batch(plain, told, tuple(range(4)))]
+    carrying = run_batch(replace(plain, condition="carried=2"), told, tuple(range(4)))
+    carried = [row["trust"] for row in carrying]
+    assert (carried[0], carried[2]) == (alone[0], alone[2])
+    assert carried[1] != alone[1]
+    assert carried[3] != alone[3]
+    assert [row["trust"] for row in run_batch(replace(CELL, monitor="tpvqa"), told, (0,))] == [None]
+
+
+def test_a_run_of_episodes_is_one_batch_and_is_begun_anew(tmp_path: Path) -> None:
+    cell = replace(CELL, condition="carried=3")
+    ledger = Ledger(tmp_path, {})
+    ledger.add(first(5, 5, cell=cell))
+    (missing,) = batches(ledger, {cell: 6})
+    assert missing.episodes == (3, 4, 5)
+    ledger.close()
+
+
+def test_what_is_wrongly_believed_is_another_vlms_calibration_without_how_sure_it_is() -> None:
+    cell = replace(CELL, vlm="oracle:0.7", condition="believed=oracle:0.9,carried=30")
+    assert source_of(cell).vlm == "oracle:0.9"
+    blind = by_replies(Calibration.default())
+    assert blind.whole.log_ratio(Reply.YES, 0.99) == blind.whole.log_ratio(Reply.YES, 0.51) > 1
+
+
+@pytest.mark.parametrize("condition", ["failure=x", "failures=0.1", "failure", "failure=0.1,x"])
 def test_a_condition_that_is_not_understood(condition: str) -> None:
     with pytest.raises(BenchError, match="is not understood"):
         replace(CELL, condition=condition).config(TrialConfig(), 0)
+
+
+def test_a_number_of_episodes_that_is_not_understood() -> None:
+    with pytest.raises(BenchError, match="carried=EPISODES"):
+        run_batch(replace(CELL, condition="carried=x"), TrialConfig(), (0,))
 
 
 def test_every_grid_cell_has_every_rival_and_the_curve() -> None:
@@ -273,6 +325,51 @@ def check(results: BeliefResults, what: str) -> Check:
         and each.condition in ("p = 0.8, ρ = 0", "speed", "every cell of the grid")
     )
     return found
+
+
+def learned(*behind: int) -> BeliefResults:
+    """Ten robots: in each block of five episodes so many of 50 fewer than of those who know."""
+
+    def robots(condition: str, failed: Sequence[int]) -> tuple[Cell, list[EpisodeRow]]:
+        cell = replace(CELL, vlm=WRONG_VLM, condition=condition)
+        left = list(failed)
+        done = []
+        for number in range(CHAIN * 10):
+            block = number % CHAIN // BLOCK
+            done.append(left[block] <= 0)
+            left[block] -= 1
+        return cell, rows(done, cell=cell)
+
+    return BeliefResults({}, dict([robots(LEARNING, behind), robots(KNOWING, [0] * 6)]))
+
+
+class TestLearning:
+    def test_blocks_of_episodes_of_all_robots(self) -> None:
+        found = blocks(learned(20, 10, 0, 0, 0, 0), CELL.task)
+        assert [block.first for block in found] == [0, 5, 10, 15, 20, 25]
+        assert [block.learning for block in found] == [0.6, 0.8, 1.0, 1.0, 1.0, 1.0]
+        assert {block.knowing for block in found} == {1.0}
+
+    @pytest.mark.parametrize(
+        ("behind", "episodes"),
+        [
+            ((0, 0, 0, 0, 0, 0), 0),
+            ((20, 10, 1, 0, 0, 0), 10),  # one of fifty is less than may be lost
+            ((20, 0, 10, 0, 0, 0), 15),
+            ((0, 0, 0, 0, 0, 5), None),
+        ],
+    )
+    def test_how_fast(self, behind: Sequence[int], episodes: int | None) -> None:
+        assert episodes_until_learned(blocks(learned(*behind), CELL.task)) == episodes
+
+    def test_it_counts_what_comes_after_twenty_episodes(self) -> None:
+        good = after_learning(learned(50, 50, 50, 50, 0, 0), CELL.task)
+        assert good is not None
+        assert good.value == 0
+        poor = after_learning(learned(0, 0, 0, 0, 20, 20), CELL.task)
+        assert poor is not None
+        assert poor.value == -0.4
+        assert after_learning(BeliefResults({}, {}), CELL.task) is None
 
 
 class TestTargets:

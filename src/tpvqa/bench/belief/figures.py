@@ -231,7 +231,7 @@ def _learning(results: BeliefResults, extent: Extent) -> Figure | None:
             axes.set_axisbelow(True)
         above.set_title(task)
         above.set_ylim(0, 1.05)
-        below.set_ylim(0, 1.1)
+        below.set_ylim(0, 1.4)
         below.set_xlabel("episode")
     grid[0][0].set_ylabel("completion rate")
     grid[1][0].set_ylabel("trust in answers")

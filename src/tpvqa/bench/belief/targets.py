@@ -127,12 +127,14 @@ def _paper_table(results: BeliefResults) -> Iterator[Check]:
 
 
 def _curves(results: BeliefResults, extent: Extent) -> Iterator[Check]:
-    found = []
+    found, some = [], 0
     for vlm in extent.vlms(extent.accuracies):
         for task in extent.household:
             beside = votes_beside_curve(results, extent, task, vlm, SYMBOLIC)
             if beside:
-                found.append((f"{task} {vlm}", together(list(beside.values()))))
+                verdicts = list(beside.values())
+                found.append((f"{task} {vlm}", together(verdicts)))
+                some += any(each.lies is Lies.ABOVE for each in verdicts)
     condition, total = "every cell of the grid", len(found)
     if not found:
         yield Check(condition, "curve over the votes", "on or above in all", None, None)
@@ -154,6 +156,7 @@ def _curves(results: BeliefResults, extent: Extent) -> Iterator[Check]:
         f"≥ {(total + 1) // 2}",
         Estimate(clear, clear, clear),
         2 * clear >= total,
+        f"at least one vote: {some}",
     )
 
 
