@@ -27,6 +27,8 @@ from tpvqa.bench.figures import Figure, styled_pyplot
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import wilson
 
+MOST = 20_000
+"""Questions at the right end of the axis."""
 INK = "#0b4f8a"
 """The belief monitor."""
 MARKS: Mapping[str, tuple[str, str, str]] = {
@@ -141,9 +143,9 @@ def _draw_panel(
     axes: Any, curve: Sequence[Sequence[EpisodeRow]], rivals: Mapping[str, Sequence[EpisodeRow]]
 ) -> None:
     axes.set_xscale("symlog", linthresh=10, linscale=0.5)
-    axes.set_xlim(-1, 2000)
+    axes.set_xlim(-1, MOST)
     axes.set_ylim(-0.03, 1.05)
-    axes.set_xticks([0, 10, 100, 1000], ["0", "10", "100", "1000"])
+    axes.set_xticks([0, 10, 100, 1000, 10_000], ["0", "10", "100", "1k", "10k"])
     axes.set_xticks([], minor=True)
     axes.set_yticks([0, 0.5, 1], ["0", ".5", "1"])
     axes.set_yticks([0.25, 0.75], minor=True)
@@ -169,7 +171,7 @@ def _draw_panel(
         xs, ys, lows, highs = zip(*points, strict=True)
         if len(points) == 1:
             axes.plot([*xs, *xs], [*lows, *highs], color=INK, linewidth=1.2)
-        axes.plot([xs[-1], 2000], [ys[-1]] * 2, color=INK, linewidth=1, linestyle=":")
+        axes.plot([xs[-1], MOST], [ys[-1]] * 2, color=INK, linewidth=1, linestyle=":")
         # What is linear in questions is not a straight line on this axis.
         between = np.unique([*xs, *np.linspace(xs[0], xs[-1], 500)])
         band = [np.interp(between, xs, edge) for edge in (lows, highs)]
