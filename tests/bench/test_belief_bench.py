@@ -229,7 +229,7 @@ def test_a_number_of_episodes_that_is_not_understood() -> None:
 
 def test_every_grid_cell_has_every_rival_and_the_curve() -> None:
     cells = [cell for cell, _ in Extent().cells(Part.GRID)]
-    assert len(set(cells)) == len(cells) == 5 * 2 * 3 * (1 + 10 + 6)
+    assert len(set(cells)) == len(cells) == 5 * 2 * 3 * (1 + 10 + 8)
     assert set(VOTES) < {cell.monitor for cell in cells}
 
 

@@ -35,7 +35,7 @@ def belief(
     ] = "0,0.5",
     prices: Annotated[
         str, typer.Option(help="Costs of a question along the grid's curves, with commas.")
-    ] = "10,1,0.3,0.1,0.03,0.003",
+    ] = "10,3,2,1,0.3,0.1,0.03,0.003",
     models: Annotated[str, typer.Option(help="Recorded VLMs, with commas. Default: all.")] = "",
     episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 1000,
     curve_episodes: Annotated[

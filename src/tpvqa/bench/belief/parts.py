@@ -15,7 +15,7 @@ RIVALS = (*VOTES, *BASELINES)
 RECORDED_RIVALS = ("tpvqa", "tpvqa:3", "tpvqa:5", "tp")
 ACCURACIES = (0.6, 0.7, 0.8, 0.9, 0.95)
 RHOS = (0.0, 0.5)
-PRICES = (10.0, 1.0, 0.3, 0.1, 0.03, 0.003)
+PRICES = (10.0, 3.0, 2.0, 1.0, 0.3, 0.1, 0.03, 0.003)
 """Costs of a question along the curve; that of `belief` itself lies between."""
 ABLATED = (0.6, 0.8, 0.95)
 """Accuracies at which parts are left out."""
