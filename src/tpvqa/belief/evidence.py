@@ -16,6 +16,8 @@ UNEXPLAINED = 0.002
 """Chance that a fact that an answer speaks against has changed without the action model."""
 SURPRISING = 0.25
 """An answer less probable than this makes that chance be taken in."""
+PSEUDO = 15.0
+"""Cases that a rate of yes is worth before any were seen."""
 PERSON = 0.99
 """How often a person's answer is right."""
 SKILL = 0.9
@@ -34,6 +36,8 @@ class _Last:
         pictures: Of which pictures it was asked since something was done last.
         view: From which view the last one was.
         true: Probability, after it, that yes was right.
+        yes: Yeses to the question since something was done last.
+        no: Noes since then.
         settled: Whether nothing was done since, so that what is true is unchanged.
     """
 
@@ -41,6 +45,8 @@ class _Last:
     pictures: set[Picture]
     view: str | None
     true: float
+    yes: int = 0
+    no: int = 0
     settled: bool = True
 
 
@@ -82,6 +88,7 @@ class Evidence:
         for last in self._last.values():
             last.settled = False
             last.pictures.clear()
+            last.yes = last.no = 0
         self._opened.clear()
         self.silent.clear()
 
@@ -110,6 +117,7 @@ class Evidence:
             true, false = 0.5 + share * (true - 0.5), 0.5 + share * (false - 0.5)
         last = self._last.get(question.text)
         if last is not None:
+            true, false = self._with_history(question, last, true, false)
             rho = self._calibration.repeat(_apart(last, view))
             before = 1.0 if last.reply is Reply.YES else 0.0
             if_true, if_false = _unchanged(last)
@@ -138,7 +146,13 @@ class Evidence:
         if_true = _sigmoid(ratio)
         if_false = 1 - if_true
         repeated = False
+        yes = answer.reply is Reply.YES
         if last is not None:
+            if yes:
+                if_true, if_false = self._with_history(question, last, if_true, if_false)
+            else:
+                yes_true, yes_false = self._with_history(question, last, 1 - if_true, 1 - if_false)
+                if_true, if_false = 1 - yes_true, 1 - yes_false
             rho = self._calibration.repeat(_apart(last, view))
             same = 1.0 if last.reply is answer.reply else 0.0
             repeated = bool(same) and rho > 0.05
@@ -154,8 +168,23 @@ class Evidence:
             self._trust.learn(true, raw)
         after = self._belief.probability(question.atom, question.alike)
         pictures = {picture} if last is None else last.pictures | {picture}
-        self._last[question.text] = _Last(answer.reply, pictures, view, after)
+        counts = (0, 0) if last is None else (last.yes, last.no)
+        self._last[question.text] = _Last(
+            answer.reply, pictures, view, after, counts[0] + yes, counts[1] + (not yes)
+        )
         return probable
+
+    def _with_history(
+        self, question: Question, last: _Last, if_true: float, if_false: float
+    ) -> tuple[float, float]:
+        """Rates of yes, given the answers to the same question since the last action.
+
+        A rate is known from so many cases only. Answers that go on coming where one of the two
+        says they should not speak against that rate as well as against the fact (Beta-binomial).
+        """
+        cases = PSEUDO + self._calibration.group(question).rows / 2
+        total = cases + last.yes + last.no
+        return (cases * if_true + last.yes) / total, (cases * if_false + last.yes) / total
 
     def take_from_person(self, answer: Answer) -> None:
         """Weigh the belief by a person's answer."""

@@ -49,7 +49,7 @@ def belief(
     ] = 30,
     calibration_episodes: Annotated[
         int, typer.Option(help="Trials that each calibration is learnt from.", min=1)
-    ] = 80,
+    ] = 120,
     embedded_calibration: Annotated[
         str, typer.Option(help="World where the embedded network is calibrated: images or kitchen.")
     ] = "images",

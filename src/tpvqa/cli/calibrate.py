@@ -84,7 +84,8 @@ def calibrate(
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
     image = curves or out.with_suffix(".png")
     _check(out, image)
-    chosen_looks = pictures is None
+    surveyed = trials is not None and monitor.partition(":")[0] == "survey"
+    chosen_looks = pictures is None and not surveyed
     if episodes:
         name, rows = _from_episodes(episodes, vlm)
     elif pictures is not None:

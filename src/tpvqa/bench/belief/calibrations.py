@@ -8,10 +8,13 @@ from tpvqa.belief.calibration import Calibration, Group
 from tpvqa.belief.fitting import fit
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
+from tpvqa.bench.paper import looks
 from tpvqa.trial import TrialConfig
 
-MONITOR = "tpvqa:3"
-"""Who asks: several looks show how much a further one repeats the last."""
+SURVEY = "survey"
+"""Who asks noise models: it asks regardless of the answers, so that all of them count."""
+LOOKING = "tpvqa:3"
+"""Who asks VLMs that look: it also goes where things lie elsewhere. Its first answers count."""
 OTHER_SEEDS = 10_000
 """How far the seed of these trials lies from that of the bench."""
 
@@ -75,8 +78,10 @@ def calibrations(
         if path.exists():
             found[source] = Calibration.load(path)
             continue
-        cell = Cell(source.task, MONITOR, source.vlm, source.world)
-        found[source] = fit(gather(cell, away, range(episodes)), source.vlm)
+        looking = looks(source.vlm)
+        cell = Cell(source.task, LOOKING if looking else SURVEY, source.vlm, source.world)
+        rows = gather(cell, away, range(episodes))
+        found[source] = fit(rows, source.vlm, chosen_looks=looking)
         found[source].save(path)
     done(len(found), len(sources))
     return found
