@@ -31,13 +31,13 @@ def told(reply: Reply) -> Answer:
     return Answer(QUESTION, reply)
 
 
-def found(repeat: float, *, unexplained: float = 0.0) -> tuple[Belief, Evidence]:
+def found(repeat: float, *, unexplained: float = 0.0, rows: int = 10**9) -> tuple[Belief, Evidence]:
     """After `find plate`, with a VLM that is right in .8 of its answers."""
     belief = Belief(MODEL)
     belief.act(FIND, Faults(0.25, 0.25, 0.0))
     calibration = Calibration(
         vlm="",
-        whole=Group(rates=Rates(0.8, 0.2, 0, 0)),
+        whole=Group(rates=Rates(0.8, 0.2, 0, 0), rows=rows),
         repeat_same_view=repeat,
         repeat_other_view=repeat / 2,
     )
@@ -55,9 +55,9 @@ def test_independent_answers_multiply_their_ratios() -> None:
     evidence.take(told(Reply.YES), 0, None)
     assert isclose(odds(belief), 12)
     evidence.take(told(Reply.YES), 1, None)
-    assert isclose(odds(belief), 48)
+    assert isclose(odds(belief), 48, rel_tol=1e-6)
     evidence.take(told(Reply.NO), 2, None)
-    assert isclose(odds(belief), 12)
+    assert isclose(odds(belief), 12, rel_tol=1e-6)
 
 
 def test_the_same_picture_says_nothing_new() -> None:
@@ -81,6 +81,24 @@ def test_a_repeated_answer_is_worth_less_and_a_different_one_all(rho: float) -> 
     if rho < 0.99:
         evidence.take(told(Reply.NO), 2, None)
         assert isclose(odds(belief), expected / 4, rel_tol=1e-6)
+
+
+def test_a_rate_that_is_known_from_few_cases_does_not_convince_without_end() -> None:
+    """Yes after yes: perhaps the fact, perhaps a VLM that says yes more often than it did."""
+    sure, unsure = found(0.0), found(0.0, rows=40)
+    for _, evidence in (sure, unsure):
+        for look in range(4):
+            evidence.take(told(Reply.YES), look, None)
+    assert odds(unsure[0]) < odds(sure[0])
+    gained = []
+    belief, evidence = found(0.0, rows=40)
+    for look in range(6):
+        before = odds(belief)
+        evidence.take(told(Reply.YES), look, None)
+        gained.append(odds(belief) / before)
+    assert gained[0] > 3.9
+    assert gained[-1] < 3.1
+    assert gained == sorted(gained, reverse=True)
 
 
 def test_another_view_repeats_less() -> None:
@@ -118,7 +136,10 @@ def test_unknown_answers_change_nothing(reply: Reply) -> None:
 def test_a_surprising_answer_opens_what_the_model_does_not_explain() -> None:
     belief = Belief(MODEL)
     calibration = Calibration(
-        vlm="", whole=Group(rates=Rates(0.9, 0.1, 0, 0)), repeat_same_view=0, repeat_other_view=0
+        vlm="",
+        whole=Group(rates=Rates(0.9, 0.1, 0, 0), rows=1000),
+        repeat_same_view=0,
+        repeat_other_view=0,
     )
     evidence = Evidence(belief, calibration, None)
     assert belief.probability(NEAR) == 0

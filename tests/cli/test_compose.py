@@ -113,7 +113,7 @@ def test_a_composed_set_is_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     asked += ["--task", "clean_dishes", "--shares", "100,0,0", "--variations", "none"]
     assert CliRunner().invoke(dataset, asked).exit_code == 0
     words = ["tpvqa", "run", "clean_dishes", "--pictures", str(tmp_path / "set"), "--failure", "0"]
-    words += ["--vlm", "oracle", "--out", str(tmp_path / "episode")]
+    words += ["--monitor", "tpvqa", "--vlm", "oracle", "--out", str(tmp_path / "episode")]
     monkeypatch.setattr(sys, "argv", words)
     with suppress(SystemExit):
         main()

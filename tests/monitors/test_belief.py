@@ -34,7 +34,8 @@ def right_in(accuracy: float, repeat: float = 0.0) -> Calibration:
     """What is to be known of a noise model of some accuracy."""
     return Calibration(
         vlm="oracle",
-        whole=Group(rates=Rates(accuracy, 1 - accuracy, 0, 0), curve=Curve(slope=1)),
+        rows=5000,
+        whole=Group(rows=5000, rates=Rates(accuracy, 1 - accuracy, 0, 0), curve=Curve(slope=1)),
         repeat_same_view=repeat,
         repeat_other_view=repeat,
     )
@@ -175,7 +176,7 @@ def test_it_learns_from_trial_to_trial_that_the_vlm_is_worse_than_it_was_told(
             planner,
             accuracy=0.7,
             calibration=right_in(0.9).model_copy(
-                update={"whole": Group(rates=Rates(0.9, 0.1, 0, 0))}
+                update={"whole": Group(rows=5000, rates=Rates(0.9, 0.1, 0, 0))}
             ),
             experience=experience,
             episode=episode,
