@@ -10,7 +10,10 @@ import pytest
 from PIL import Image
 
 from tpvqa.belief import Calibration
+from tpvqa.belief.experience import Experience
 from tpvqa.cli import main
+from tpvqa.episodes import read_episode
+from tpvqa.episodes.events import Acted
 from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
 
 Run = Callable[..., tuple[int, str, str]]
@@ -80,6 +83,27 @@ def test_from_recorded_episodes(tpvqa: Run) -> None:
     code, _, err = tpvqa("calibrate", "e1", "--vlm", "embedded")
     assert code == 2
     assert "oracle:0.8 answered in it, not embedded" in err
+
+
+def test_recorded_episodes_say_how_often_actions_fail(tpvqa: Run) -> None:
+    words = ["--world", "symbolic", "--vlm", "oracle", "--monitor", "tpvqa", "--failure", 0.6]
+    for seed in range(4):
+        tpvqa("run", "clean_dishes", *words, "--seed", seed, "--out", f"e{seed}")
+    folders = [f"e{seed}" for seed in range(4)]
+    code, _, err = tpvqa("calibrate", *folders, "--experience", "known.json")
+    assert code == 0, err
+    known = Experience.load(Path("known.json"))
+    assert known is not None
+    assert known.trials == 4
+    failures, successes = (
+        count - prior for count, prior in zip(known.failure, (3, 9), strict=True)
+    )
+    told = [event for folder in folders for event in read_episode(folder) if event.kind == "acted"]
+    assert failures == sum(event.truth["reason"] == "the action failed" for event in told)
+    assert 0.35 < failures / (failures + successes) < 0.8
+    code, _, err = tpvqa("calibrate", "--trials", 2, "--experience", "known.json")
+    assert code == 2
+    assert "name their folders" in err
 
 
 def test_from_a_folder_of_pictures(tpvqa: Run, tmp_path: Path) -> None:

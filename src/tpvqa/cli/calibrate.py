@@ -63,6 +63,12 @@ def calibrate(
         str, typer.Option(help="With --trials: who asks; tpvqa:K looks K times.")
     ] = "tpvqa",
     seed: Annotated[int, typer.Option(help="With --trials: decides every random number.")] = 0,
+    experience: Annotated[
+        Path | None,
+        typer.Option(
+            help="With EPISODES: also write how often actions failed, for `tpvqa run --experience`."
+        ),
+    ] = None,
     curves: Annotated[
         Path | None,
         typer.Option(help="Picture of reliability before and after. Default: beside the file."),
@@ -76,18 +82,23 @@ def calibrate(
     """
     from tpvqa.belief.fitting import fit
     from tpvqa.belief.held_out import held_out
+    from tpvqa.bench.recorded_faults import experience_from
     from tpvqa.bench.reliability import lines
     from tpvqa.errors import TpvqaError
 
     given = [bool(episodes), pictures is not None, trials is not None]
     if sum(given) != 1:
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
+    if experience is not None and not episodes:
+        raise TpvqaError("--experience counts the faults of recorded episodes: name their folders.")
     image = curves or out.with_suffix(".png")
     _check(out, image)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
     if episodes:
         name, rows = _from_episodes(episodes, vlm)
+        if experience is not None:
+            experience_from(episodes).save(experience)
     elif pictures is not None:
         name, rows = _from_pictures(vlm or "embedded", pictures, hidden=hidden)
     else:

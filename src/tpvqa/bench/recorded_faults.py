@@ -1,0 +1,49 @@
+"""How often actions failed in recorded episodes, as what a robot knows before its next trial."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from tpvqa.belief.chances import Chances
+from tpvqa.belief.experience import Experience
+from tpvqa.belief.trust import Trust
+from tpvqa.episodes import read_episode
+from tpvqa.episodes.events import Acted
+from tpvqa.errors import CalibrationError
+
+
+def experience_from(folders: Iterable[Path | str]) -> Experience:
+    """Count the faults of recorded episodes, on top of what is believed of any robot.
+
+    A failure counts as one that could have disturbed something wherever an action had achieved
+    something before.
+
+    Args:
+        folders: The episodes' folders.
+
+    Raises:
+        CalibrationError: No episode says what truly came of its actions.
+        EpisodeError: There is no episode, or it is damaged.
+    """
+    chances, trials, known = Chances(), 0, False
+    for folder in folders:
+        trials += 1
+        achieved = False
+        for event in read_episode(folder):
+            if not isinstance(event, Acted) or event.truth is None:
+                continue
+            known = True
+            failed = event.truth["reason"] == "the action failed"
+            worked = event.truth["succeeded"] and bool(event.truth["added"])
+            chances.failure.yes += failed
+            chances.failure.no += worked
+            if achieved and not event.truth["succeeded"]:
+                disturbed = event.truth["undone"] is not None
+                chances.disturbance.yes += disturbed
+                chances.disturbance.no += not disturbed
+            achieved = achieved or worked
+    if not known:
+        raise CalibrationError(
+            "No episode says what truly came of its actions, as in a simulated world it would. "
+            "Leave --experience out: `tpvqa run --experience FILE` learns while it runs"
+        )
+    return Experience.of(chances, Trust(), trials)
