@@ -22,7 +22,7 @@ from tpvqa.loop import run_episode
 from tpvqa.monitors import Monitor
 from tpvqa.pddl import Task, load_task
 from tpvqa.planning import Planner
-from tpvqa.plugins import Kind, make, make_from
+from tpvqa.plugins import Kind, load, make, make_from
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM
@@ -164,6 +164,8 @@ class Trial:
         self.vlm_spec = config.vlm or ("embedded" if pictures else "oracle")
         context["calibration"] = config.calibration or shipped_calibration(self.vlm_spec)
         context["experience"] = config.experience
+        answering = vlm or load(Kind.VLM, self.vlm_spec.partition(":")[0].strip())
+        context["noise_model"] = bool(getattr(answering, "noise_model", False))
         self.monitor: Monitor
         self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor, context)
         weighs = "calibration" in by_monitor

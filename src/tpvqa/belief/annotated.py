@@ -41,13 +41,17 @@ class AnnotatedPlan:
         if state in self._places:
             return self._places[state]
         full = self.task.extend(state)
-        found = next(
-            (
-                index
-                for index in range(len(self._wanted) - 1, -1, -1)
-                if self._wanted[index][0] <= full and full.isdisjoint(self._wanted[index][1])
-            ),
-            None,
+        found = (
+            len(self.actions)
+            if self.task.goal_holds(state)
+            else next(
+                (
+                    index
+                    for index in range(len(self._wanted) - 1, -1, -1)
+                    if self._wanted[index][0] <= full and full.isdisjoint(self._wanted[index][1])
+                ),
+                None,
+            )
         )
         self._places[state] = found
         return found

@@ -26,6 +26,7 @@ class Came:
     success: dict[int, float] = field(default_factory=dict)
     failure: dict[int, float] = field(default_factory=dict)
     disturbed: dict[int, float] = field(default_factory=dict)
+    achieved: dict[int, float] = field(default_factory=dict)
     could_disturb: dict[int, float] = field(default_factory=dict)
 
 
@@ -58,13 +59,17 @@ class Belief:
 
     def states(self) -> list[tuple[State, float]]:
         """The joint states with their probabilities, the most probable first."""
-        ranked = sorted(self.weights.items(), key=lambda entry: (-entry[1], entry[0]))
-        return [(self.model.state(number), weight) for number, weight in ranked]
+        return [(self.model.state(number), weight) for number, weight in self.ranked()]
+
+    def ranked(self) -> list[tuple[int, float]]:
+        """The numbers of the joint states with their probabilities, the most probable first."""
+        keys = self.model.keys
+        return sorted(self.weights.items(), key=lambda each: (-each[1], keys[each[0]]))
 
     def most_probable(self) -> tuple[State, float]:
         """The most probable joint state. It is consistent: every joint state is."""
-        number = max(self.weights, key=lambda each: (self.weights[each], -each))
-        return self.model.state(number), self.weights[number]
+        number, weight = self.ranked()[0]
+        return self.model.state(number), weight
 
     def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
         """The probability of a fact, or of it or any fact alike."""
@@ -105,7 +110,7 @@ class Belief:
         for number, weight in self.weights.items():
             outcomes = self.model.outcomes(number, action)
             if outcomes.achieved:
-                add(number, weight)
+                add(number, weight, came.achieved)
                 continue
             failing = weight
             possible = outcomes.intended is not None
@@ -162,7 +167,8 @@ class Belief:
         if self.came is None:
             return
         shares = {
-            number: self.came.success.get(number, 0.0) / self._predicted[number]
+            number: (self.came.success.get(number, 0.0) + self.came.achieved.get(number, 0.0))
+            / self._predicted[number]
             for number in self.weights
         }
         self.weigh(lambda n: shares[n] * succeeded + (1 - shares[n]) * failed)
@@ -177,7 +183,7 @@ class Belief:
             How many joint states that added.
         """
         grown = dict(self.weights)
-        new = 0
+        new, most = 0, 1
         for number, weight in self.weights.items():
             if weight < 0.01:
                 continue
@@ -186,11 +192,12 @@ class Belief:
             if not others:
                 continue
             grown[number] -= chance * weight
+            most = max(most, len(others))
             for other in others:
                 there = self.model.become(number, other)
                 new += there not in grown
                 grown[there] = grown.get(there, 0.0) + chance * weight / len(others)
-        self._become(grown)
+        self._become(grown, self._smallest / most)
         return new
 
     def replace(self, state: State) -> None:
@@ -237,11 +244,13 @@ class Belief:
             )
         return shares
 
-    def _become(self, weights: dict[int, float]) -> None:
+    def _become(self, weights: dict[int, float], smallest: float | None = None) -> None:
         total = sum(weights.values())
-        kept = {n: w / total for n, w in weights.items() if w > self._smallest * total}
+        least = (self._smallest if smallest is None else smallest) * total
+        kept = {n: w / total for n, w in weights.items() if w > least}
         if len(kept) > self._most:
-            ranked = sorted(kept, key=lambda n: (-kept[n], n))[: self._most]
+            keys = self.model.keys
+            ranked = sorted(kept, key=lambda n: (-kept[n], keys[n]))[: self._most]
             kept = {n: kept[n] for n in ranked}
         share = sum(kept.values())
         self.lost += 1 - share

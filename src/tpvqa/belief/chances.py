@@ -23,6 +23,31 @@ class Beta:
         """The expected probability."""
         return self.yes / (self.yes + self.no)
 
+    def learn(self, yes: float, no: float) -> None:
+        """Take in a case of which it is only probable how it came out.
+
+        What is known then is a mixture of Beta distributions; the one of the same mean and
+        variance takes its place. A case about which nothing was seen teaches nothing.
+
+        Args:
+            yes: Probability that it was a case for.
+            no: Probability that it was one against; with `yes` at most 1, the rest is no case.
+        """
+        a, b = self.yes, self.no
+        n = a + b
+        if yes + no <= 1e-9 or a <= 0 or b <= 0:
+            return
+        rest = max(0.0, 1 - yes - no)
+        mean = rest * a / n + (yes * (a + 1) + no * a) / (n + 1)
+        square = rest * a * (a + 1) / (n * (n + 1)) + (
+            yes * (a + 1) * (a + 2) + no * a * (a + 1)
+        ) / ((n + 1) * (n + 2))
+        variance = square - mean * mean
+        if variance <= 1e-15 or not 0 < mean < 1:
+            return
+        cases = max(mean * (1 - mean) / variance - 1, 1e-3)
+        self.yes, self.no = mean * cases, (1 - mean) * cases
+
 
 class Chances:
     """The rates of faults, learned while running from expected numbers of cases.
@@ -45,7 +70,5 @@ class Chances:
 
     def learn(self, shares: Mapping[str, float]) -> None:
         """Learn from how an action came out, see `Belief.outcome_shares`."""
-        self.failure.yes += shares.get("failure", 0.0)
-        self.failure.no += shares.get("success", 0.0)
-        self.disturbance.yes += shares.get("disturbed", 0.0)
-        self.disturbance.no += shares.get("undisturbed", 0.0)
+        self.failure.learn(shares.get("failure", 0.0), shares.get("success", 0.0))
+        self.disturbance.learn(shares.get("disturbed", 0.0), shares.get("undisturbed", 0.0))

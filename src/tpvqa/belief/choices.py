@@ -86,7 +86,9 @@ class Chooser:
         self._goals: dict[int, bool] = {}
         self._cost_of: dict[str, dict[int, float]] = {}
         self._rates = Rates()
-        self._step = costs.action + CHECKS * (costs.question + costs.look)
+        checks = CHECKS * (costs.question + costs.look)
+        self._step = costs.action + min(checks, 0.1 * costs.action)
+        self._postponed: set[State] = set()
 
     def add(self, plan: AnnotatedPlan) -> None:
         """Take in a plan; the latest is preferred among equals."""
@@ -100,6 +102,14 @@ class Chooser:
         """Note that no plan exists from a state."""
         self.hopeless.add(state)
         self._cost_of.clear()
+
+    def postpone(self, state: State) -> None:
+        """Note that the planner found no plan in time; it may be asked after the next action."""
+        self._postponed.add(state)
+
+    def acted(self) -> None:
+        """Note that an action was executed."""
+        self._postponed.clear()
 
     def shortest(self, number: int) -> tuple[int, AnnotatedPlan] | None:
         """The fewest actions to the goal by a known plan, and that plan."""
@@ -115,11 +125,13 @@ class Chooser:
 
     def unplanned(self, belief: Belief) -> State | None:
         """The most probable joint state that no known plan helps; None if none is likely."""
-        for number, weight in sorted(belief.weights.items(), key=lambda e: (-e[1], e[0])):
+        for number, weight in belief.ranked():
             if weight < LIKELY:
                 return None
             state = self._model.state(number)
-            if state not in self.hopeless and self.shortest(number) is None:
+            if state in self.hopeless or state in self._postponed:
+                continue
+            if self.shortest(number) is None:
                 return state
         return None
 
@@ -134,7 +146,7 @@ class Chooser:
         if rates != self._rates:
             self._rates = rates
             self._cost_of.clear()
-        ranked = sorted(belief.weights.items(), key=lambda entry: (-entry[1], entry[0]))
+        ranked = belief.ranked()
         choices = [each for each in self._choices(ranked) if not self._idle(each, ranked)]
         columns = []
         for choice in choices:
@@ -160,7 +172,7 @@ class Chooser:
     def _cost(self, action: Action | None, number: int) -> float:
         """The expected cost of a choice in one joint state."""
         if action is None:
-            return 0.0 if self._is_goal(number) else self._costs.failure
+            return 0.0 if self._is_goal(number) else self._failure()
         f, d, s = self._rates.failure, self._rates.disturbance, self._rates.spontaneous
         outcomes = self._model.outcomes(number, action)
         failed = self._to_go(number)
@@ -183,11 +195,22 @@ class Chooser:
         if found is not None:
             steps: float = found[0]
         elif self._model.state(number) in self.hopeless:
-            return self._costs.failure
+            return self._failure()
         else:
-            steps = max((len(plan.actions) for plan in self.plans), default=0) + 2
-        ahead = self._step / max(1 - self._rates.failure, 0.05)
-        return min(steps * ahead, self._costs.failure)
+            steps = self._longest() + 2
+        return steps * self._ahead()
+
+    def _ahead(self) -> float:
+        """What a step of a plan costs, failures counted in."""
+        return self._step / max(1 - self._rates.failure, 0.05)
+
+    def _longest(self) -> int:
+        return max((len(plan.actions) for plan in self.plans), default=0)
+
+    def _failure(self) -> float:
+        """What a failed task costs: at least twice what it takes to do it, so that long plans
+        are worth their while."""
+        return max(self._costs.failure, 2 * self._longest() * self._ahead())
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[str | None, Choice] = {}

@@ -19,7 +19,7 @@ class Costs(BaseModel):
         looks_per_trial: Most looks in a trial.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     action: float = Field(default=1.0, gt=0)
     question: float = Field(default=0.01, ge=0)

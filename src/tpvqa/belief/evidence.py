@@ -145,7 +145,7 @@ class Evidence:
         ratio = raw if self._trust is None else self._trust.ratio(raw)
         if_true = _sigmoid(ratio)
         if_false = 1 - if_true
-        repeated = False
+        again_true = again_false = same = 0.0
         yes = answer.reply is Reply.YES
         if last is not None:
             if yes:
@@ -155,17 +155,18 @@ class Evidence:
                 if_true, if_false = 1 - yes_true, 1 - yes_false
             rho = self._calibration.repeat(_apart(last, view))
             same = 1.0 if last.reply is answer.reply else 0.0
-            repeated = bool(same) and rho > 0.05
-            unchanged_true, unchanged_false = _unchanged(last)
-            if_true = rho * unchanged_true * same + (1 - rho * unchanged_true) * if_true
-            if_false = rho * unchanged_false * same + (1 - rho * unchanged_false) * if_false
+            again_true, again_false = (rho * unchanged for unchanged in _unchanged(last))
+            if_true = again_true * same + (1 - again_true) * if_true
+            if_false = again_false * same + (1 - again_false) * if_false
         probable = true * if_true + (1 - true) * if_false
         if probable < SURPRISING and atoms not in self._opened and self._unexplained:
             self._opened.add(atoms)
             self._belief.open(atoms, self._unexplained)
         self._belief.see(atoms, if_true, if_false)
-        if self._trust is not None and not repeated:
-            self._trust.learn(true, raw)
+        if self._trust is not None:
+            self._trust.learn(
+                true, raw, same=bool(same), again_true=again_true, again_false=again_false
+            )
         after = self._belief.probability(question.atom, question.alike)
         pictures = {picture} if last is None else last.pictures | {picture}
         counts = (0, 0) if last is None else (last.yes, last.no)
@@ -205,10 +206,10 @@ def _apart(last: _Last, view: str | None) -> Apart:
 
 
 def _share(trust: Trust, true: float, false: float) -> float:
-    """By how much trust draws the rates of yes towards one half."""
+    """By how much trust draws the rates of yes towards one half; never away from it."""
     right = min(max((true + 1 - false) / 2, 0.501), 0.999)
     trusted = _sigmoid(trust.ratio(_logit(right)))
-    return (trusted - 0.5) / (right - 0.5)
+    return min((trusted - 0.5) / (right - 0.5), 1.0)
 
 
 def _sigmoid(x: float) -> float:

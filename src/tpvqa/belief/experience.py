@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from tpvqa.belief.chances import Beta, Chances
 from tpvqa.belief.faults import Rates
@@ -28,19 +28,28 @@ class Experience(BaseModel):
         trials: How many trials that is from.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     failure: Cases
     disturbance: Cases
-    trust: tuple[float, ...] = Field(min_length=len(GRID), max_length=len(GRID))
+    trust: tuple[Annotated[float, Field(ge=0)], ...] = Field(
+        min_length=len(GRID), max_length=len(GRID)
+    )
     trials: int = Field(default=0, ge=0)
+
+    @field_validator("trust")
+    @classmethod
+    def _some(cls, weights: tuple[float, ...]) -> tuple[float, ...]:
+        if sum(weights) <= 0:
+            raise ValueError("the probabilities add up to nothing")
+        return weights
 
     @staticmethod
     def of(chances: Chances, trust: Trust, trials: int) -> "Experience":
         """What a monitor has learned by the end of a trial."""
         return Experience(
-            failure=(chances.failure.yes, chances.failure.no),
-            disturbance=(chances.disturbance.yes, chances.disturbance.no),
+            failure=_cases(chances.failure),
+            disturbance=_cases(chances.disturbance),
             trust=trust.weights,
             trials=trials,
         )
@@ -96,3 +105,8 @@ class Experience(BaseModel):
         except OSError as error:
             temporary.unlink(missing_ok=True)
             raise CalibrationError(f"{path}: cannot be written ({error.strerror})") from error
+
+
+def _cases(beta: Beta) -> tuple[float, float]:
+    """Cases for and against; a rate that was believed for certain can be learned again."""
+    return max(beta.yes, 1e-3), max(beta.no, 1e-3)

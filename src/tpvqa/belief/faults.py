@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from hashlib import blake2b
 from typing import Any, Protocol
 
 from tpvqa.belief.surprise import Surprise
@@ -103,6 +104,7 @@ class FaultModel:
         self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
         self._keep = _Keep(self._undo, task)
         self.hypotheses: list[Hypothesis] = []
+        self.keys: list[bytes] = []
         self._numbers: dict[Hypothesis, int] = {}
         self._outcomes: dict[tuple[int, str], Outcomes] = {}
         self._undone: dict[int, tuple[tuple[float, int], ...]] = {}
@@ -113,6 +115,7 @@ class FaultModel:
         if number is None:
             number = self._numbers[hypothesis] = len(self.hypotheses)
             self.hypotheses.append(hypothesis)
+            self.keys.append(_key(hypothesis))
         return number
 
     def state(self, number: int) -> State:
@@ -180,6 +183,12 @@ class FaultModel:
             found = tuple((share, outcome) for outcome, share in shares.items())
             self._undone[number] = found
         return found
+
+
+def _key(hypothesis: Hypothesis) -> bytes:
+    """Orders hypotheses the same in every process, whichever were met first."""
+    words = sorted(map(str, hypothesis.state)), list(map(str, hypothesis.ended))
+    return blake2b(repr(words).encode(), digest_size=8).digest()
 
 
 class _Keep:

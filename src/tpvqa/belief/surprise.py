@@ -8,7 +8,7 @@ from tpvqa.belief.consistency import most_probable
 from tpvqa.belief.constraints import Constraints
 from tpvqa.belief.disturbances import disturbances
 from tpvqa.belief.mutexes import h2_mutexes
-from tpvqa.errors import BeliefError, ContradictionError, PlannerError
+from tpvqa.errors import BeliefError, ContradictionError, MissingExtraError, PlannerError
 from tpvqa.pddl import Atom, State, Task
 
 KEPT = 2.0
@@ -80,7 +80,7 @@ class Surprise:
         for wish in wishes:
             try:
                 after = static | most_probable(odds, self.constraints, fixed=wish).state
-            except (ContradictionError, BeliefError):
+            except (ContradictionError, BeliefError, MissingExtraError):
                 continue
             if after != state:
                 found[after] = len(after ^ state)

@@ -138,6 +138,11 @@ def run(
         options={name: value for name, value in options.items() if value is not None},
     )
     with Trial(config) as trial:
+        if (calibration or experience) and trial.calibration is None:
+            raise TpvqaError(
+                f"The monitor {monitor} weighs no answers: leave out --calibration and "
+                "--experience, or take --monitor belief."
+            )
         for notice in trial.book.notices:
             print(f"note: {notice}", file=sys.stderr)
         folder = out or _new_folder(trial.task.name, seed, episode)

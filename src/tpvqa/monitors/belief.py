@@ -1,6 +1,7 @@
 """The monitor that believes: probabilities instead of votes, costs instead of thresholds."""
 
 from collections.abc import Generator, Sequence
+from copy import deepcopy
 from typing import Any
 
 from pydantic import ValidationError
@@ -23,11 +24,13 @@ from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
 from tpvqa.monitors.verdict import Decision, Verdict
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, State, Task
-from tpvqa.planning import Plan
+from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import needed
 from tpvqa.questions import Question, QuestionBook, Way
 from tpvqa.vlm import Answer, Reply
 
+SAME = 3
+"""Looks in a row that may show a picture which the question was asked of already."""
 _RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate")
 
 
@@ -47,6 +50,7 @@ class BeliefMonitor:
         rates: What is believed about faults beforehand.
         experience: What was learned in earlier trials; goes before `rates`.
         without: One of `belief.ablations.PARTS`, to be left out.
+        noise_model: Whether answers do not depend on the picture, but on the look.
 
     Example:
         >>> BeliefMonitor.from_spec("question=0.05", task=task).costs.question  # doctest: +SKIP
@@ -64,6 +68,7 @@ class BeliefMonitor:
         rates: Rates | None = None,
         experience: Experience | None = None,
         without: str | None = None,
+        noise_model: bool = False,
         name: str = "belief",
     ):
         self.task, self.costs, self.name = task, costs or Costs(), name
@@ -81,7 +86,7 @@ class BeliefMonitor:
         self.evidence = Evidence(self.belief, calibration, self.trust)
         self._chooser = Chooser(self.belief.model, self.costs)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
-        self._views = tuple(views)
+        self._views, self._blind = tuple(views), noise_model
         self._view = self._views[0] if self._views else None
         self._picture: Picture | None = None
         self._looks = self._questions = self._looks_here = self._questions_here = 0
@@ -89,7 +94,7 @@ class BeliefMonitor:
         self._person = self.costs.person is not None
         self._action: Action | None = None
         self._effects: frozenset[Atom] = frozenset()
-        self._settled: str | None = None
+        self._settled: Action | None = None
         self._stepped: Step | None = None
         self._asked_about: dict[frozenset[Atom], list[Question]] = {}
 
@@ -103,6 +108,7 @@ class BeliefMonitor:
         calibration: Calibration | None = None,
         views: Sequence[str] = (),
         experience: Experience | None = None,
+        noise_model: bool = False,
     ) -> "BeliefMonitor":
         """Make it from `belief`, or `belief:question=0.05:failure=200` with other costs.
 
@@ -146,6 +152,7 @@ class BeliefMonitor:
             rates=Rates(**believed),
             experience=experience,
             without=without,
+            noise_model=noise_model,
             name=f"belief:{arguments}" if arguments else "belief",
         )
 
@@ -154,14 +161,16 @@ class BeliefMonitor:
         """What is known now, for the next trial; None where nothing is learned."""
         if self.trust is None:
             return None
-        return Experience.of(self.chances, self.trust, self._trials + 1)
+        chances = deepcopy(self.chances)
+        chances.learn(self.belief.outcome_shares())  # of the last action
+        return Experience.of(chances, self.trust, self._trials + 1)
 
     def before(self, step: Step) -> Check:
         """Act where this is the step to take; otherwise go to what is."""
         self._know(step)
-        if self._settled is not None:  # decided by this very belief, after the last action
-            reason, self._settled = self._settled, None
-            return Verdict(Decision.GO_ON, reason)
+        settled, self._settled = self._settled, None
+        if settled is not None and self.belief.model.same_skill(settled, step.action, step.state):
+            return Verdict(Decision.GO_ON, "as decided")  # by this very belief, a moment ago
         choice = yield from self._choose(step)
         return self._verdict(step, choice, acted=False)
 
@@ -196,6 +205,7 @@ class BeliefMonitor:
             self.chances.learn(self.belief.outcome_shares())
         self.belief.act(step.action, self.chances.rates)
         self.evidence.acted(troubled=bool(step.trouble))
+        self._chooser.acted()
         self._action = step.action
         self._effects = frozenset(effect.literal.atom for effect in step.action.effects)
         self._picture, self._view = None, self._views[0] if self._views else None
@@ -209,8 +219,10 @@ class BeliefMonitor:
                 result = yield PlanFrom(state)
                 if isinstance(result, Plan):
                     self._annotate(result, state)
-                else:
+                elif isinstance(result, Unsolvable):
                     self._chooser.give_up_on(state)
+                else:
+                    self._chooser.postpone(state)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions)
             inquiry = self._inquire(step, table)
             if inquiry is None:
@@ -275,10 +287,17 @@ class BeliefMonitor:
             self._person = answer.reply in (Reply.YES, Reply.NO)
             self.evidence.take_from_person(answer)
         else:
-            if self._picture is None or self.evidence.asked_of(question.text, self._picture):
+            for again in range(1 + SAME):
+                if self._picture is not None and not self.evidence.asked_of(
+                    question.text, self._picture
+                ):
+                    break
+                if again == SAME:  # there is no other picture of it to be had
+                    self.evidence.silent.add(question.text)
+                    return
                 self._view = self._next_view()
                 observation: Observation = yield Look(self._view)
-                self._picture = _picture(observation)
+                self._picture = observation.look if self._blind else _picture(observation)
                 self._looks += 1
                 self._looks_here += 1
             answers: list[Answer] = yield Ask((question,))
@@ -313,7 +332,7 @@ class BeliefMonitor:
         if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
             acted or place != step.index
         ):
-            self._settled = "as decided"
+            self._settled = action
         return Verdict(decision, reason, state, step=place, belief=self._marginals())
 
     def _marginals(self) -> dict[Atom, float]:
