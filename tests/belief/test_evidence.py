@@ -175,3 +175,23 @@ def test_trust_falls_where_answers_contradict_what_is_known_and_rises_where_they
         right.learn(0.95, 2.0)
     assert wrong.mean < 0.4
     assert right.mean > 1.0
+
+
+@given(st.floats(0.02, 0.98), st.floats(0.02, 0.98), st.integers(0, 40))
+def test_what_is_expected_of_an_answer_is_a_probability(
+    if_true: float, if_false: float, agreeing: int
+) -> None:
+    """However good the VLM turns out, and however lopsided its calibration is."""
+    trust = Trust()
+    for _ in range(agreeing):
+        trust.learn(0.99, 3.0)
+    calibration = Calibration(
+        vlm="",
+        whole=Group(rates=Rates(if_true, if_false, 0, 0)),
+        repeat_same_view=0.3,
+        repeat_other_view=0.1,
+    )
+    evidence = Evidence(Belief(MODEL), calibration, trust)
+    expected = evidence.expect(QUESTION, None)
+    assert 0 <= expected.yes_if_true <= 1
+    assert 0 <= expected.yes_if_false <= 1

@@ -78,7 +78,7 @@ def test_the_same_seed_gives_the_same_trial(planner: Planner) -> None:
 
 def test_dear_questions_are_not_asked_and_cheap_ones_are(planner: Planner) -> None:
     dear = [run(planner, "belief:question=500", episode=n)[0] for n in range(5)]
-    assert all(each.questions == 0 for each in dear)
+    assert all(each.questions == 0 and each.actions >= 6 for each in dear)
     cheap = [run(planner, "belief:question=0.001", episode=n)[0] for n in range(5)]
     usual = [run(planner, "belief:question=0.3", episode=n)[0] for n in range(5)]
     assert sum(e.questions for e in cheap) > sum(e.questions for e in usual) > 0
@@ -122,6 +122,51 @@ def test_every_decision_explains_itself_from_the_numbers(planner: Planner) -> No
     assert all(
         "the goal holds with 0.9" in event.reason or "1.00" in event.reason for event in done
     )
+
+
+def test_a_cheap_failure_is_no_reason_not_to_begin(planner: Planner) -> None:
+    """A plan that costs more than a failed task is tried all the same."""
+    ended, _, _ = run(planner, "belief:failure=1")
+    assert ended.actions >= 6
+
+
+def test_pictures_that_repeat_are_not_asked_again_and_again(planner: Planner) -> None:
+    """The picture set has six pictures of a state; a noise model answers by the look."""
+    pictures = run(planner, task="clean_dishes", world="images", vlm="embedded", calibration=None)
+    assert pictures[0].completed
+    asked: list[tuple[bytes, str]] = []
+    for event in pictures[1]:
+        if event.kind == "acting":
+            asked.clear()
+        elif event.kind == "observed":
+            source = event.frames[0].source
+        elif event.kind == "asked":
+            pairs = [(source, question.text) for question in event.questions]
+            assert not set(pairs) & set(asked)
+            asked += pairs  # type: ignore[arg-type]
+    noise = run(planner, task="clean_dishes", world="images", vlm="oracle:0.8")[0]
+    assert noise.completed
+    assert noise.questions < 300
+
+
+def test_with_a_right_calibration_trust_stays_where_it_is_though_answers_repeat(
+    planner: Planner,
+) -> None:
+    experience = None
+    for episode in range(10):
+        _, _, trial = run(
+            planner,
+            task="clean_dishes",
+            vlm="oracle:0.8:0.5",
+            calibration=right_in(0.8, 0.5),
+            experience=experience,
+            episode=episode,
+        )
+        assert isinstance(trial.monitor, BeliefMonitor)
+        experience = trial.monitor.experience
+    assert isinstance(trial.monitor, BeliefMonitor)
+    assert trial.monitor.trust is not None
+    assert 0.7 < trial.monitor.trust.mean < 1.6
 
 
 def test_considered_plans_are_marked_and_replans_are_not(planner: Planner) -> None:

@@ -1,0 +1,58 @@
+"""What is learned of how often actions fail."""
+
+from math import isclose
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tpvqa.belief.chances import Beta, Chances
+from tpvqa.belief.experience import Experience
+from tpvqa.belief.faults import Rates
+from tpvqa.belief.trust import Trust
+
+cases = st.floats(0.5, 200)
+
+
+@given(cases, cases)
+def test_a_certain_case_counts_as_one(yes: float, no: float) -> None:
+    beta = Beta(yes, no)
+    beta.learn(1.0, 0.0)
+    assert isclose(beta.yes, yes + 1, rel_tol=1e-6)
+    assert isclose(beta.no, no, rel_tol=1e-6)
+
+
+@given(cases, cases)
+def test_a_case_of_which_nothing_was_seen_teaches_nothing(yes: float, no: float) -> None:
+    beta = Beta(yes, no)
+    for _ in range(20):
+        beta.learn(beta.mean, 1 - beta.mean)
+    assert isclose(beta.yes, yes, rel_tol=1e-4)
+    assert isclose(beta.no, no, rel_tol=1e-4)
+
+
+@given(cases, cases, st.floats(0, 1), st.floats(0, 1))
+def test_the_mean_is_that_of_the_mixture(yes: float, no: float, p: float, share: float) -> None:
+    beta = Beta(yes, no)
+    for_it, against = share * p, share * (1 - p)
+    n = yes + no
+    mean = (1 - share) * yes / n + (for_it * (yes + 1) + against * yes) / (n + 1)
+    beta.learn(for_it, against)
+    assert isclose(beta.mean, mean, rel_tol=1e-4)
+
+
+def test_the_rate_is_found_from_probable_cases() -> None:
+    """Every outcome is seen nearly: the rate settles at the true one."""
+    chances = Chances(Rates(0.25, 0.25, 0.0))
+    for number in range(300):
+        failed = number % 10 < 4
+        sure = {"failure": 0.95, "success": 0.05} if failed else {"failure": 0.03, "success": 0.97}
+        chances.learn(sure)
+    assert 0.36 < chances.rates.failure < 0.44
+    assert chances.rates.disturbance == 0.25
+
+
+@pytest.mark.parametrize("rate", [0.0, 1.0])
+def test_a_rate_that_was_believed_for_certain_can_be_kept(rate: float) -> None:
+    known = Experience.of(Chances(Rates(rate, rate, 0.0)), Trust(), 1)
+    assert isclose(known.chances().rates.failure, rate, abs_tol=1e-3)
