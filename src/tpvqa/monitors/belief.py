@@ -233,14 +233,7 @@ class BeliefMonitor:
                     break
 
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
-        costs = self.costs
-        budget = Budget(
-            min(
-                costs.questions_per_step - self._questions_here,
-                costs.questions_per_trial - self._questions,
-            ),
-            min(costs.looks_per_step - self._looks_here, costs.looks_per_trial - self._looks),
-        )
+        budget = self._budget()
         questions = self._about_needs(step.book)
         if self._all_facts and budget.questions > 0:
             fresh = [each for each in questions if each.atom not in self._told and each.atom]
@@ -254,6 +247,16 @@ class BeliefMonitor:
             picture=self._picture,
             view=self._next_view(),
             person=self._person,
+        )
+
+    def _budget(self) -> Budget:
+        costs = self.costs
+        return Budget(
+            min(
+                costs.questions_per_step - self._questions_here,
+                costs.questions_per_trial - self._questions,
+            ),
+            min(costs.looks_per_step - self._looks_here, costs.looks_per_trial - self._looks),
         )
 
     def _likely(self, question: Question) -> float:
@@ -325,7 +328,14 @@ class BeliefMonitor:
         plan = self._annotated(step)
         reason = "; ".join(
             (
-                because(step, self.belief, self._told, plan),
+                because(
+                    step,
+                    self.belief,
+                    self._told,
+                    plan,
+                    unseen=bool(self.evidence.silent),
+                    spent=self._budget().questions <= 0,
+                ),
                 deciding(step, self.belief, decision, action, state, place),
             )
         )

@@ -19,6 +19,9 @@ def because(
     belief: Belief,
     told: Mapping[Atom, Sequence[Reply]],
     plan: AnnotatedPlan | None,
+    *,
+    unseen: bool,
+    spent: bool,
 ) -> str:
     """What was seen since the last action, with what it makes probable and what needs it.
 
@@ -27,8 +30,14 @@ def because(
         belief: What is believed.
         told: The replies since the last action, by fact.
         plan: The plan that is followed, with its needs.
+        unseen: Whether some question got no answer.
+        spent: Whether nothing more may be asked.
     """
     if not told:
+        if spent:
+            return "nothing more may be asked"
+        if unseen:
+            return "what was asked about cannot be seen from here"
         return "no answer would be worth its price"
     needed = {} if plan is None else {atom: plan.needing(atom, step.index) for atom in told}
 
