@@ -15,8 +15,10 @@ from uuid import uuid4
 import pytest
 
 from tests.planning.test_processes import eventually
+from tpvqa import __version__
 from tpvqa.cli import main
 from tpvqa.episodes import Ended, read_episode
+from tpvqa.tasks import find_task
 
 TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
 Run = Callable[..., tuple[int, str, str]]
@@ -77,6 +79,33 @@ def test_ones_own_domain_against_a_scripted_world(tpvqa: Run) -> None:
     )
     assert (code, err) == (0, "")
     assert "find the cyan container" in out
+
+
+def test_domain_and_problem_can_simply_be_named(tpvqa: Run) -> None:
+    files = find_task("clean_dishes")
+    words = ["--vlm", "oracle", "--failure", 0, "--json"]
+    code, out, _ = tpvqa("run", files.domain, files.problem, *words, "--out", "e1")
+    assert code == 0
+    assert json.loads(out)["task"] == "clean_dishes"
+    code, _, err = tpvqa("run", files.domain, files.problem, "--domain", files.domain)
+    assert code == 2
+    assert "given twice" in err
+
+
+def test_the_version_is_said(tpvqa: Run) -> None:
+    assert tpvqa("--version") == (0, f"tpvqa {__version__}\n", "")
+
+
+def test_files_that_a_monitor_cannot_use_are_refused(tpvqa: Run) -> None:
+    words = ["--world", "symbolic", "--monitor", "tpvqa", "--experience", "known.json"]
+    code, _, err = tpvqa("run", "clean_dishes", *words)
+    assert code == 2
+    assert "weighs no answers" in err
+    Path("broken.json").write_text('{"failure": [1, 2]}')
+    code, _, err = tpvqa("run", "clean_dishes", "--experience", "broken.json")
+    assert code == 2
+    assert "broken.json" in err
+    assert not Path("episodes").exists()
 
 
 def test_without_a_questions_file_the_fallbacks_are_reported_once(tpvqa: Run) -> None:

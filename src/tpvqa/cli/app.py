@@ -1,7 +1,7 @@
 """`tpvqa`: the commands and how their errors reach the user."""
 
 import sys
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
@@ -30,6 +30,27 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     cls=_Commands,
 )
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from tpvqa import __version__
+
+        typer.echo(f"tpvqa {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    *,
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version."),
+    ] = False,
+) -> None:
+    """Visually grounded task planning: plan, look, act, check, repeat, replan."""
+
+
 plan.register(app)
 questions.register(app)
 run.register(app)

@@ -24,7 +24,13 @@ def register(app: typer.Typer) -> None:
 
 
 def run(
-    task: Annotated[str | None, typer.Argument(help="A shipped task, see `tpvqa tasks`.")] = None,
+    task: Annotated[
+        str | None,
+        typer.Argument(help="A shipped task (see `tpvqa tasks`), or your own domain file."),
+    ] = None,
+    problem_file: Annotated[
+        Path | None, typer.Argument(metavar="[PROBLEM]", help="Your problem, after a domain file.")
+    ] = None,
     *,
     world: Annotated[
         str | None,
@@ -103,6 +109,10 @@ def run(
     from tpvqa.errors import TpvqaError
     from tpvqa.trial import Trial, TrialConfig
 
+    if task is not None and problem_file is not None:
+        if domain or problem:
+            raise TpvqaError("Domain and problem were given twice; leave one pair out.")
+        domain, problem, task = Path(task), problem_file, None
     if task is not None and (domain or problem):
         raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
     if monitor is None:
