@@ -76,6 +76,10 @@ class Chooser:
     Args:
         model: The action model.
         costs: What things cost.
+
+    Attributes:
+        left: Actions that the trial still allows; None for any number. Where they are fewer than
+            what a state needs, the task fails there.
     """
 
     def __init__(self, model: FaultModel, costs: Costs):
@@ -89,6 +93,7 @@ class Chooser:
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._postponed: set[State] = set()
+        self.left: int | None = None
 
     def add(self, plan: AnnotatedPlan) -> None:
         """Take in a plan; the latest is preferred among equals."""
@@ -110,6 +115,9 @@ class Chooser:
     def acted(self) -> None:
         """Note that an action was executed."""
         self._postponed.clear()
+        if self.left is not None:
+            self.left -= 1
+            self._cost_of.clear()
 
     def shortest(self, number: int) -> tuple[int, AnnotatedPlan] | None:
         """The fewest actions to the goal by a known plan, and that plan."""
@@ -198,6 +206,8 @@ class Chooser:
             return self._failure()
         else:
             steps = self._longest() + 2
+        if self.left is not None and steps >= self.left:  # the action at hand is one of them
+            return self._failure()
         return steps * self._ahead()
 
     def _ahead(self) -> float:

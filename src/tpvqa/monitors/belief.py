@@ -50,6 +50,7 @@ class BeliefMonitor:
         rates: What is believed about faults beforehand.
         experience: What was learned in earlier trials; goes before `rates`.
         without: One of `belief.ablations.PARTS`, to be left out.
+        most_actions: Actions after which the trial ends; None for any number.
         noise_model: Whether answers do not depend on the picture, but on the look.
 
     Example:
@@ -69,6 +70,7 @@ class BeliefMonitor:
         experience: Experience | None = None,
         without: str | None = None,
         noise_model: bool = False,
+        most_actions: int | None = None,
         name: str = "belief",
     ):
         self.task, self.costs, self.name = task, costs or Costs(), name
@@ -85,6 +87,7 @@ class BeliefMonitor:
         self._trials = 0 if experience is None else experience.trials
         self.evidence = Evidence(self.belief, calibration, self.trust)
         self._chooser = Chooser(self.belief.model, self.costs)
+        self._chooser.left = most_actions
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
         self._view = self._views[0] if self._views else None
@@ -109,6 +112,7 @@ class BeliefMonitor:
         views: Sequence[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
+        most_actions: int | None = None,
     ) -> "BeliefMonitor":
         """Make it from `belief`, or `belief:question=0.05:failure=200` with other costs.
 
@@ -153,6 +157,7 @@ class BeliefMonitor:
             experience=experience,
             without=without,
             noise_model=noise_model,
+            most_actions=most_actions,
             name=f"belief:{arguments}" if arguments else "belief",
         )
 
