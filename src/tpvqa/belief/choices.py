@@ -198,7 +198,7 @@ class Chooser:
         return self._step + (1 - f) * done + f * failed
 
     def _to_go(self, number: int) -> float:
-        """What the rest of the shortest plan costs, failures counted in."""
+        """What the rest of the shortest plan costs: repeated where checks say so, or unchecked."""
         found = self.shortest(number)
         if found is not None:
             steps: float = found[0]
@@ -208,11 +208,14 @@ class Chooser:
             steps = self._longest() + 2
         if self.left is not None and steps >= self.left:  # the action at hand is one of them
             return self._failure()
-        return steps * self._ahead()
+        works: float = 1 - self._rates.failure
+        unchecked = steps * self._costs.action + (1 - works**steps) * self._failure()
+        return float(min(steps * self._ahead(), unchecked))
 
     def _ahead(self) -> float:
-        """What a step of a plan costs, failures counted in."""
-        return self._step / max(1 - self._rates.failure, 0.05)
+        """What a step of a plan costs, its checks and its repeats counted in."""
+        step = self._costs.action + CHECKS * (self._costs.question + self._costs.look)
+        return step / max(1 - self._rates.failure, 0.05)
 
     def _longest(self) -> int:
         return max((len(plan.actions) for plan in self.plans), default=0)
@@ -220,7 +223,8 @@ class Chooser:
     def _failure(self) -> float:
         """What a failed task costs: at least twice what it takes to do it, so that long plans
         are worth their while."""
-        return max(self._costs.failure, 2 * self._longest() * self._ahead())
+        acting = self._longest() * self._costs.action / max(1 - self._rates.failure, 0.05)
+        return max(self._costs.failure, 2 * acting)
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[str | None, Choice] = {}
