@@ -1,7 +1,7 @@
 """The filter against brute force over all joint states, and its laws."""
 
 from fractions import Fraction
-from math import isclose, isfinite
+from math import inf, isclose, isfinite, log
 
 import pytest
 from hypothesis import given, settings
@@ -176,3 +176,14 @@ def test_shares_of_the_last_outcome_follow_the_evidence() -> None:
     belief.see((Atom("near", ("bread",)),), 0.05, 0.95)
     shares = belief.outcome_shares()
     assert isclose(shares["failure"], 0.25 * 0.95 / (0.25 * 0.95 + 0.75 * 0.05))
+
+
+def test_the_margin_says_how_close_the_call_is() -> None:
+    belief = Belief(MODEL)
+    near, home = Atom("near", ("bread",)), Atom("on", ("plate", "table"))
+    belief.act(plan_of(SERVE)[0], Rates(0.25, 0.0, 0.0))
+    assert isclose(belief.margin(near), log(0.75 / 0.25))
+    belief.see((near,), 0.1, 0.9)
+    assert isclose(belief.margin(near), log(0.75 / 0.25 / 9))
+    assert belief.margin(home) == inf
+    assert belief.margin(Atom("on", ("plate", "floor"))) == -inf

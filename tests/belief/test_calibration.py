@@ -53,7 +53,6 @@ def test_an_abstention_is_worth_nothing(
 ) -> None:
     one = calibration(Curve(slope=slope, intercept=intercept))
     assert one.log_ratio(Answer(ON, reply, p)) == 0.0
-    assert one.further(Answer(ON, reply, p), Reply.YES, Apart.OTHER_VIEW) == 0.0
 
 
 @given(P, P, SLOPE, st.floats(-2, 2), st.floats(0, 2))
@@ -106,26 +105,6 @@ def test_words_that_are_the_same_stand_in_for_each_other() -> None:
     assert rate(Way.EFFECT, "clean") == rate(Way.ALTERNATIVE, "clean") == 0.93
     assert one.rates(Question("?", Way.SUCCESSFUL)).yes_if_true == 0.94
     assert one.rates(Question("?", Way.POSSIBLE)).yes_if_true == 0.95
-
-
-@given(st.floats(0.01, 0.99), st.sampled_from([Reply.YES, Reply.NO]))
-def test_a_further_answer_is_worth_less_the_nearer_its_picture(p: float, reply: Reply) -> None:
-    one = calibration(Curve(slope=1.0))
-    answer = Answer(ON, reply, p)
-    alone = one.log_ratio(answer)
-    same, view, other = (one.further(answer, reply, apart) for apart in Apart)
-    assert same == 0.0
-    assert abs(view) <= abs(other) <= abs(alone) + 1e-9
-    assert view * alone >= 0
-    differing = Reply.NO if reply is Reply.YES else Reply.YES
-    assert one.further(answer, differing, Apart.SAME_VIEW) == alone
-    assert one.further(answer, differing, Apart.SAME_PICTURE) == 0.0
-
-
-def test_what_a_repeated_answer_is_worth() -> None:
-    one = calibration(Curve(slope=1.0))
-    found = one.further(Answer(ON, Reply.YES, 0.8), Reply.YES, Apart.SAME_VIEW)
-    assert found == pytest.approx(log((0.5 + 0.5 * 0.8) / (0.5 + 0.5 * 0.2)))
 
 
 @given(

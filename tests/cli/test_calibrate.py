@@ -2,41 +2,17 @@
 
 import json
 import shutil
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from PIL import Image
 
+from tests.cli.conftest import Run
 from tpvqa.belief import Calibration
 from tpvqa.belief.experience import Experience
-from tpvqa.cli import main
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.events import Acted
 from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
-
-Run = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def tpvqa(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> Run:
-    """Run the command in an empty folder: its exit code, stdout and stderr."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["tpvqa", *map(str, words)])
-        try:
-            main()
-            code = 0
-        except SystemExit as end:
-            code = int(end.code or 0)
-        return code, *capsys.readouterr()
-
-    return run
-
 
 TRIALS = ["--trials", "10", "--tasks", "clean_dishes", "--vlm", "oracle:0.9:0.4"]
 

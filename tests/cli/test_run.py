@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from contextlib import suppress
 from html.parser import HTMLParser
 from pathlib import Path
@@ -14,33 +13,13 @@ from uuid import uuid4
 
 import pytest
 
+from tests.cli.conftest import Run
 from tests.planning.test_processes import eventually
 from tpvqa import __version__
-from tpvqa.cli import main
 from tpvqa.episodes import Ended, read_episode
 from tpvqa.tasks import find_task
 
 TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
-Run = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def tpvqa(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> Run:
-    """Run the command in an empty folder: its exit code, stdout and stderr."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["tpvqa", *map(str, words)])
-        try:
-            main()
-            code = 0
-        except SystemExit as end:
-            code = int(end.code or 0)
-        return code, *capsys.readouterr()
-
-    return run
 
 
 SYMBOLIC = ["--world", "symbolic", "--vlm", "oracle"]

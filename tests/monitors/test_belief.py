@@ -7,17 +7,16 @@ import pytest
 
 from tpvqa.belief import Calibration, Group, Rates
 from tpvqa.belief.calibration import Curve
-from tpvqa.belief.costs import Costs
 from tpvqa.episodes import Ended, MemoryWriter
 from tpvqa.episodes.events import Asked, Decided, Event, PlanMade
 from tpvqa.errors import PluginError
 from tpvqa.monitors.belief import BeliefMonitor
-from tpvqa.pddl import load_task
+from tpvqa.pddl import Literal, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
-from tpvqa.tasks import find_task
 from tpvqa.trial import Trial, TrialConfig
+from tpvqa.vlm import Answer, Reply
 
 
 @pytest.fixture(scope="module")
@@ -237,20 +236,24 @@ def test_it_learns_from_trial_to_trial_that_the_vlm_is_worse_than_it_was_told(
 
 
 def test_what_is_found_done_is_not_done_again(planner: Planner) -> None:
-    """Luck: the fridge is open though nobody opened it."""
-    files = find_task("eat_apple")
-    task = load_task("eat_apple")
-    monitor = BeliefMonitor(task, calibration=right_in(0.95), costs=Costs())
-    lucky = task.apply(task.init, task.action("open", ["fridge"]))
-    monitor.belief.replace(lucky)
+    """Luck: the fridge is open though nobody opened it, and an answer says so."""
     config = TrialConfig(
-        task="eat_apple", world="symbolic", vlm="oracle:0.95", failure=0.0, monitor="tp"
+        task="eat_apple",
+        world="symbolic",
+        vlm="oracle:0.95",
+        failure=0.0,
+        monitor="belief",
+        calibration=right_in(0.95),
     )
-    with Trial(config, planner=planner, task=task.with_init(lucky)) as trial:
-        monitor.task = trial.task
-        trial.monitor = monitor
+    with Trial(config, planner=planner) as trial:
+        assert isinstance(trial.monitor, BeliefMonitor)
+        opening = trial.task.action("open", ["fridge"])
+        trial.simulation.state = trial.task.apply(trial.task.init, opening)
+        (opened,) = trial.simulation.state - trial.task.init
+        question = trial.book.fact(Literal(opened))
+        for look in range(-4, 0):
+            trial.monitor.evidence.take(Answer(question, Reply.YES, p_yes=0.95), look, None)
         writer = MemoryWriter()
         ended = trial.run(writer)
-    assert files.problem.exists()
     assert ended.completed
     assert not any(e.kind == "acting" and e.action.name == "open" for e in writer.events)

@@ -200,12 +200,6 @@ class Belief:
         self._become(grown, self._smallest / most)
         return new
 
-    def replace(self, state: State) -> None:
-        """Believe a state for certain, from now on."""
-        self.weights = {self.model.number(Hypothesis(state)): 1.0}
-        self.came = None
-        self._marginals.clear()
-
     def margin(self, atom: Atom) -> float:
         """How close the call is: log odds of the best joint state with the fact to that without.
 

@@ -1,7 +1,6 @@
 """How likely an answer is where yes is right and where it is wrong: what a VLM's word is worth."""
 
 import math
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,6 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError
 from tpvqa.questions.question import Question, Way
 from tpvqa.vlm.answer import Answer, Reply
@@ -27,7 +27,6 @@ Probability = Annotated[float, Field(ge=0, le=1)]
 class Apart(StrEnum):
     """What lies between an answer and the last one to the same question about the same fact."""
 
-    SAME_PICTURE = "same picture"
     SAME_VIEW = "same view"  # a new picture of the same view
     OTHER_VIEW = "other view"
 
@@ -201,30 +200,7 @@ class Calibration(_Model):
 
     def repeat(self, apart: Apart) -> float:
         """ρ: the probability that a further answer only repeats the last one."""
-        if apart is Apart.SAME_PICTURE:
-            return 1.0
         return self.repeat_same_view if apart is Apart.SAME_VIEW else self.repeat_other_view
-
-    def further(self, answer: Answer, last: Reply, apart: Apart) -> float:
-        """What an answer adds where the same question was answered about the unchanged fact before.
-
-        An answer that differs from the last one was drawn afresh and is worth all of `log_ratio`.
-        One that agrees may only repeat it: log (ρ + (1 - ρ) P(answer | yes is right)) less the
-        same where no is right, with the two probabilities σ(±log ratio), whose ratio is the
-        answer's own. Abstentions in between count as nothing said.
-
-        Args:
-            answer: The new answer.
-            last: The last yes or no to the question since the fact last changed.
-            apart: What lies between the two.
-        """
-        ratio, rho = self.log_ratio(answer), self.repeat(apart)
-        if rho >= 1:
-            return 0.0
-        if answer.reply is not last:
-            return ratio
-        for_yes = 1 / (1 + math.exp(-ratio))
-        return math.log(rho + (1 - rho) * for_yes) - math.log(rho + (1 - rho) * (1 - for_yes))
 
     @classmethod
     def load(cls, path: Path) -> "Calibration":
@@ -259,16 +235,7 @@ class Calibration(_Model):
         Raises:
             CalibrationError: The file cannot be written.
         """
-        temporary = path.with_name(f".{path.name}.{os.getpid()}")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            temporary.write_text(self.model_dump_json(indent=1) + "\n")
-            temporary.replace(path)
-        except OSError as error:
-            temporary.unlink(missing_ok=True)
-            raise CalibrationError(
-                f"{path}: cannot be written ({error.strerror}). Name another file with --out"
-            ) from error
+        write_json(path, self, remedy="Name another file with --out")
 
 
 def _log_odds(if_true: float, if_false: float) -> float:

@@ -6,6 +6,7 @@ from math import exp, log
 
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.calibration import Apart, Calibration
+from tpvqa.belief.counts import PSEUDO
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.trust import Trust
 from tpvqa.pddl import Atom
@@ -16,16 +17,13 @@ UNEXPLAINED = 0.002
 """Chance that a fact that an answer speaks against has changed without the action model."""
 SURPRISING = 0.25
 """An answer less probable than this makes that chance be taken in."""
-PSEUDO = 15.0
-"""Cases that a rate of yes is worth before any were seen."""
 PERSON = 0.99
 """How often a person's answer is right."""
 SKILL = 0.9
 """How far a skill is believed that says that it failed."""
 
-
 Picture = Hashable
-"""What tells one picture from another: where it comes from, or else the number of the look."""
+"""What tells one picture from another: what it shows, or else the number of the look."""
 
 
 @dataclass(slots=True)

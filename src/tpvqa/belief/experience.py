@@ -3,7 +3,6 @@
 Kept from one trial to the next, as one small JSON file.
 """
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from tpvqa.belief.chances import Beta, Chances
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.trust import GRID, Trust
+from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError
 
 Cases = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
@@ -97,14 +97,7 @@ class Experience(BaseModel):
         Raises:
             CalibrationError: It cannot be written.
         """
-        temporary = path.with_name(f".{path.name}.{os.getpid()}")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            temporary.write_text(self.model_dump_json(indent=1) + "\n")
-            temporary.replace(path)
-        except OSError as error:
-            temporary.unlink(missing_ok=True)
-            raise CalibrationError(f"{path}: cannot be written ({error.strerror})") from error
+        write_json(path, self, remedy="Name another file with --experience")
 
 
 def _cases(beta: Beta) -> tuple[float, float]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from tpvqa.belief.choices import Table
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import Evidence, Picture
+from tpvqa.belief.evidence import PERSON, Evidence, Picture
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import TIMES, Floats, Reliability, gain, joint_gain
 from tpvqa.questions.question import Question
@@ -16,8 +16,6 @@ DOUBT = 1e-3
 """Facts that are surer than this are not asked about."""
 TOGETHER = 4
 """Questions that are thought to be asked together, at most."""
-PERSON = Reliability(0.99, 0.01)
-"""What a person's answer is worth."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +95,9 @@ class Inquirer:
             if_false = total - if_true
             most = now - float(if_true.min()) - float(if_false.min())
             if person and self._costs.person is not None:
-                saving = gain(if_true, if_false, PERSON, 1) - self._costs.person
+                saving = (
+                    gain(if_true, if_false, Reliability(PERSON, 1 - PERSON), 1) - self._costs.person
+                )
                 found = _better(found, Inquiry(question, 1, saving, person=True))
             if question.text in self._evidence.silent:
                 continue

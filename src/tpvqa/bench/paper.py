@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tpvqa import __version__
 from tpvqa.bench.balanced import Judged, balanced
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.curve import curve_cells, curves
@@ -14,6 +13,7 @@ from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.report import WAYS, WORDS, AnswerLine, Results, write_bench_report
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import run_all
+from tpvqa.bench.settings import common_settings
 from tpvqa.bench.tables import write_tables
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.plugins import Kind, load, make
@@ -79,15 +79,7 @@ class PaperBench:
 
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""
-        common = self.common
-        return {
-            "version": __version__,
-            "seed": common.seed,
-            "failure": common.failure,
-            "disturbance": common.disturbance,
-            "spontaneous": common.spontaneous,
-            **{f"limit of {k}": v for k, v in common.limits.model_dump().items()},
-        }
+        return common_settings(self.common)
 
 
 def looks(vlm: str) -> bool:

@@ -24,7 +24,6 @@ class _Commands(TyperGroup):
 
 app = typer.Typer(
     name="tpvqa",
-    help="Visually grounded task planning: plan, look, act, check, repeat, replan.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

@@ -172,28 +172,19 @@ def _from_trials(
 
 @contextmanager
 def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
-    """A bar on standard error."""
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+    """A bar on standard error that each call moves on by one."""
+    from tpvqa.cli.progress import CountBar
 
-    columns = (
-        TextColumn(what),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True)) as bar:
-        row = bar.add_task("", total=total)
-        yield lambda: bar.advance(row)
+    done = 0
+
+    def one() -> None:
+        nonlocal done
+        done += 1
+        bar(done, total)
+
+    with CountBar(what) as bar:
+        bar(0, total)
+        yield one
 
 
 def _draw(path: Path, judged: "Sequence[HeldOut]", vlm: str) -> None:

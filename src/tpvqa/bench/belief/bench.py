@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tpvqa import __version__
 from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.belief import calibrations as learnt
 from tpvqa.bench.belief.parts import Extent, Part, believes
@@ -17,6 +16,7 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.paper import looks
 from tpvqa.bench.schedule import run_all
+from tpvqa.bench.settings import common_settings
 from tpvqa.bench.stage import stage
 from tpvqa.errors import BenchError
 from tpvqa.plugins import Kind, load, make
@@ -79,16 +79,10 @@ class BeliefBench:
 
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""
-        common = self.common
         return {
-            "version": __version__,
-            "seed": common.seed,
-            "failure": common.failure,
-            "disturbance": common.disturbance,
-            "spontaneous": common.spontaneous,
+            **common_settings(self.common),
             "trials of a calibration": self.calibration_episodes,
             "the embedded network is calibrated in": self.embedded_world,
-            **{f"limit of {k}": v for k, v in common.limits.model_dump().items()},
         }
 
 
