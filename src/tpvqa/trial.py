@@ -164,7 +164,7 @@ class Trial:
         self.vlm_spec = config.vlm or ("embedded" if pictures else "oracle")
         context["calibration"] = config.calibration or shipped_calibration(self.vlm_spec)
         context["experience"] = config.experience
-        context["most_actions"] = config.limits.actions
+        context["limits"] = config.limits
         answering = vlm or load(Kind.VLM, self.vlm_spec.partition(":")[0].strip())
         context["noise_model"] = bool(getattr(answering, "noise_model", False))
         self.monitor: Monitor

@@ -104,10 +104,14 @@ def test_words_alone_teach_counts() -> None:
     assert worth(found, Reply.YES, 0.99) == worth(found, Reply.YES)
 
 
-def test_a_p_yes_that_points_the_wrong_way_is_said_so() -> None:
+def test_yes_that_means_no_is_said_so_and_worth_nothing() -> None:
     rows = [replace(row, truth=not row.truth) for row in trials(100, surer=1.0)]
     found = fit(rows, "v")
-    assert any("higher where no is right" in notice for notice in found.notices)
+    assert any("worded the other way round" in notice for notice in found.notices)
+    silent = fit([replace(row, p_yes=None) for row in rows], "v")
+    for calibration in (found, silent):
+        for reply, p in ((Reply.YES, 0.8), (Reply.NO, 0.2), (Reply.YES, None), (Reply.NO, None)):
+            assert worth(calibration, reply, p) == pytest.approx(0, abs=0.02)
     assert fit(trials(100, surer=1.0), "v").notices == ()
 
 

@@ -80,6 +80,7 @@ class Chooser:
     Attributes:
         left: Actions that the trial still allows; None for any number. Where they are fewer than
             what a state needs, the task fails there.
+        changes_left: Changes of plan that it still allows; None for any number.
     """
 
     def __init__(self, model: FaultModel, costs: Costs):
@@ -94,6 +95,7 @@ class Chooser:
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._postponed: set[State] = set()
         self.left: int | None = None
+        self.changes_left: int | None = None
 
     def add(self, plan: AnnotatedPlan) -> None:
         """Take in a plan; the latest is preferred among equals."""
@@ -143,19 +145,30 @@ class Chooser:
                 return state
         return None
 
-    def table(self, belief: Belief, rates: Rates, current: Sequence[Action]) -> Table:
+    def table(
+        self,
+        belief: Belief,
+        rates: Rates,
+        current: Sequence[Action],
+        barred: Action | None = None,
+    ) -> Table:
         """All choices and their costs in every joint state.
 
         Args:
             belief: What is believed.
             rates: Of faults.
             current: The plan that is being followed; other actions cost a change of plan.
+            barred: An action that the trial does not allow now: it was repeated too often.
         """
         if rates != self._rates:
             self._rates = rates
             self._cost_of.clear()
         ranked = belief.ranked()
-        choices = [each for each in self._choices(ranked) if not self._idle(each, ranked)]
+        choices = [
+            each
+            for each in self._choices(ranked)
+            if self._allowed(each, current, barred) and not self._idle(each, ranked)
+        ]
         columns = []
         for choice in choices:
             key = "" if choice.action is None else choice.action.pddl()
@@ -243,6 +256,14 @@ class Chooser:
         if None not in found:
             found[None] = Choice(None, self._model.state(ranked[0][0]))
         return list(found.values())
+
+    def _allowed(self, choice: Choice, current: Sequence[Action], barred: Action | None) -> bool:
+        """Whether the trial's limits allow a choice."""
+        if choice.action is None:
+            return True
+        if barred is not None and self._model.same_skill(choice.action, barred, choice.state):
+            return False
+        return self.changes_left != 0 or self._in(choice, current)
 
     def _in(self, choice: Choice, plan: Sequence[Action]) -> bool:
         same, action = self._model.same_skill, choice.action

@@ -1,6 +1,7 @@
 """From labelled answers to a calibration."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import zip_longest
 
 from tpvqa.belief.calibration import Calibration, Group, Rates
@@ -49,7 +50,7 @@ def fit(rows: Iterable[LabelledAnswer], vlm: str, *, chosen_looks: bool = True) 
         for outer, inner in zip_longest(nested, nested[1:]):
             ring = [row for row in every if _between(row, outer, inner)]
             found = shrunk(ring, [row for row in answers if _between(row, outer, inner)], found)
-        return found
+        return _never_swapped(found)
 
     def group(key: Key) -> Group:
         return Group(
@@ -93,6 +94,14 @@ def telling(
         ]
     every = [each.row for each in placed]
     return every, [row for row in every if row.reply in ANSWERS]
+
+
+def _never_swapped(rates: Rates) -> Rates:
+    """Rates by which a yes never speaks for no, as with the curves."""
+    if rates.yes_if_true >= rates.yes_if_false:
+        return rates
+    middle = (rates.yes_if_true + rates.yes_if_false) / 2
+    return replace(rates, yes_if_true=middle, yes_if_false=middle)
 
 
 def _between(row: LabelledAnswer, outer: Key, inner: Key | None) -> bool:

@@ -1,7 +1,7 @@
 """What P(yes) is worth: Platt scaling with partial pooling over ways of asking and predicates."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,10 +18,12 @@ from tpvqa.vlm.answer import Reply
 Key = tuple[Way | None, str | None]
 """A group: way and predicate, a way alone, or all."""
 WHOLE: Key = (None, None)
-INTERCEPT, SLOPE = 0.5, 0.3
-"""How far the curves of two groups are thought to lie apart: standard deviations of the normal
-priors that an L2 penalty is. A way's curve is drawn around that of all, a group's around its
-way's."""
+APART = (0.5, 0.3, 0.3)
+"""How far the intercepts, slopes and signs of two groups are thought to lie apart: standard
+deviations of the normal priors that an L2 penalty is. A way's curve is drawn around that of all, a
+group's around its way's."""
+SURE = 3.0
+"""Standard errors from which on a user is told that yes and no seem to be swapped."""
 _LOOSE = 10.0
 """Standard deviation of what all groups share; the default's pseudo-answers hold it."""
 
@@ -43,11 +45,13 @@ class Curves:
 def fit_curves(answers: Sequence[LabelledAnswer]) -> Curves:
     """Fit the curves of all groups in one logistic regression.
 
-    Truth on logit P(yes) and the reply's sign, with an intercept and a slope of its own for every
-    way and group, under L2. In every group the answers are weighted so that yes is right as often
-    as no: what is learnt are likelihood ratios, without the base rate; a group in which only one
-    of the two ever was right tells none, and follows the others. `Calibration.default` counts as
-    `PSEUDO` answers.
+    Truth on logit P(yes) and the reply's sign, with an intercept, a slope and a sign of its own for
+    every way and group, under L2. In every group the answers are weighted so that yes is right as
+    often as no: what is learnt are likelihood ratios, without the base rate; a group in which only
+    one of the two ever was right tells none, and follows the others. `Calibration.default` counts
+    as `PSEUDO` answers. A slope or a sign that points the wrong way is left out, and the rest
+    fitted again: of dozens of groups one or two do so by chance, and hardly any VLM means no by
+    yes.
 
     Args:
         answers: Yes and no with their P(yes).
@@ -58,66 +62,104 @@ def fit_curves(answers: Sequence[LabelledAnswer]) -> Curves:
     groups: list[Key] = sorted({(row.way, row.predicate) for row in answers})
     ways: list[Key] = [(way, None) for way in sorted({row.way for row in answers})]
     place = {key: k for k, key in enumerate([*ways, *groups])}
-    curves, errors = _fit(answers, place, with_sign=True)
-    if curves[WHOLE].sign < 0:  # a yes would be worth less than a no of the same P(yes)
-        curves, errors = _fit(answers, place, with_sign=False)
-    notices = []
-    for key, curve in curves.items():
-        if curve.slope >= 0:
-            continue
-        if curve.slope < -2 * errors[key]:
-            notices.append(
-                f"{_said(key)}: P(yes) is higher where no is right (slope {curve.slope:.2f} ± "
-                f"{errors[key]:.2f}); its answers are taken the other way round."
-            )
-        else:
-            curves[key] = curve.model_copy(update={"slope": 0.0})
-    return Curves(curves, tuple(notices))
+    without: dict[Key, set[int]] = {}
+    notices: list[str] | None = None
+    while True:
+        fitted = _fit(answers, place, without)
+        if notices is None:
+            notices = [_swapped(key) for key, each in fitted.items() if each.gain < -SURE]
+        astray = {key: each.astray() for key, each in fitted.items()}
+        if not any(astray.values()):
+            return Curves({key: each.curve for key, each in fitted.items()}, tuple(notices))
+        without = {key: without.get(key, set()) | astray[key] for key in fitted}
 
 
-def _said(key: Key) -> str:
-    return " ".join(str(part) for part in key if part is not None) or "all answers"
+@dataclass(frozen=True, slots=True)
+class _Fitted:
+    """A group's curve.
+
+    Attributes:
+        curve: It.
+        gain: By how much more its yeses speak for yes than its noes, in standard errors.
+    """
+
+    curve: Curve
+    gain: float
+
+    def astray(self) -> set[int]:
+        """Which of intercept (0), slope (1) and sign (2) point the wrong way."""
+        return {n for n, value in ((1, self.curve.slope), (2, self.curve.sign)) if value < 0}
+
+
+def _swapped(key: Key) -> str:
+    said = " ".join(str(part) for part in key if part is not None) or "all answers"
+    return (
+        f"{said}: yes is said more often, or more surely, where no is right. Such answers count as "
+        "worth nothing; see that the question is not worded the other way round."
+    )
 
 
 def _fit(
-    answers: Sequence[LabelledAnswer], place: dict[Key, int], *, with_sign: bool
-) -> tuple[dict[Key, Curve], dict[Key, float]]:
-    """The curves by group, and the standard errors of their slopes."""
+    answers: Sequence[LabelledAnswer],
+    place: dict[Key, int],
+    without: Mapping[Key, Collection[int]],
+) -> dict[Key, _Fitted]:
+    """The curves by group.
+
+    Args:
+        answers: What they are fitted to.
+        place: Numbers of the ways and groups.
+        without: What is left out of a group's answers; of the whole, of all answers.
+    """
     told, tells, weights = _default_answers()
     x = np.array([*tells, *(_logit(row.p_yes) for row in answers)])
     sign = np.array([*np.sign(tells), *(1 if row.reply is Reply.YES else -1 for row in answers)])
     truth = np.array([*told, *(row.truth for row in answers)], bool)
     weight = np.array([*weights, *_balance(answers)])
-    design = np.zeros((len(x), 3 + 2 * len(place)))
-    design[:, 0], design[:, 1] = _LOOSE, _LOOSE * x
-    design[:, 2] = _LOOSE * sign if with_sign else 0
+    terms = np.stack([np.ones(len(x)), x, sign], axis=1)
+    terms[:, list(without.get(WHOLE, ()))] = 0
+    for n, row in enumerate(answers, len(tells)):
+        terms[n, list(without.get((row.way, row.predicate), ()))] = 0
+    design = np.zeros((len(x), 3 + 3 * len(place)))
+    design[:, :3] = _LOOSE * terms
+    members: dict[Key, list[int]] = {WHOLE: list(range(len(x)))}
     for n, row in enumerate(answers, len(tells)):
         for part in ((row.way, None), (row.way, row.predicate)):
-            column = 3 + 2 * place[part]
-            design[n, column], design[n, column + 1] = INTERCEPT, SLOPE * x[n]
+            column = 3 + 3 * place[part]
+            design[n, column : column + 3] = APART * terms[n]
+            members.setdefault(part, []).append(n)
     found = regression().fit(design, truth, sample_weight=weight).coef_[0]
     p = 1 / (1 + np.exp(-design @ found))
     curvature = design.T @ (design * (weight * p * (1 - p))[:, None]) + np.eye(design.shape[1])
     covariance = np.linalg.inv(curvature)
-    curves: dict[Key, Curve] = {}
-    errors: dict[Key, float] = {}
+    fitted: dict[Key, _Fitted] = {}
     for key in (WHOLE, *place):
-        intercept, slope = (_combination(key, place, which, design.shape[1]) for which in (0, 1))
-        curves[key] = Curve(
-            slope=float(slope @ found),
-            intercept=float(intercept @ found),
-            sign=float(_LOOSE * found[2]) if with_sign else 0.0,
-        )
-        errors[key] = float(np.sqrt(slope @ covariance @ slope))
-    return curves, errors
+        parts = [_combination(key, place, which, design.shape[1]) for which in range(3)]
+        own = members[key]
+        _, mean_x, mean_sign = np.average(terms[own], axis=0)
+        yes, no = (terms[[n for n in own if sign[n] == said]] for said in (1, -1))
+        gain = 0.0
+        if len(yes) and len(no):
+            apart = yes.mean(axis=0) - no.mean(axis=0)
+            vector = apart @ np.array(parts)
+            gain = float(vector @ found / np.sqrt(vector @ covariance @ vector + 1e-12))
+        intercept, slope, worth = (float(part @ found) for part in parts)
+        left_out = without.get(key, ())
+        if 1 in left_out:
+            intercept, slope = intercept + slope * mean_x, 0.0
+        if 2 in left_out:
+            intercept, worth = intercept + worth * mean_sign, 0.0
+        curve = Curve(slope=slope, intercept=float(intercept), sign=worth)
+        fitted[key] = _Fitted(curve, gain)
+    return fitted
 
 
 def _combination(key: Key, place: dict[Key, int], which: int, columns: int) -> NDArray[np.float64]:
-    """What of the coefficients makes up the intercept (0) or slope (1) of a group."""
+    """What of the coefficients makes up the intercept (0), slope (1) or sign (2) of a group."""
     vector = np.zeros(columns)
     vector[which] = _LOOSE
     for part in {(key[0], None), key} & set(place):
-        vector[3 + 2 * place[part] + which] = (INTERCEPT, SLOPE)[which]
+        vector[3 + 3 * place[part] + which] = APART[which]
     return vector
 
 

@@ -17,6 +17,7 @@ from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultRules, Rates, fault_model
 from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
 from tpvqa.belief.trust import Trust
+from tpvqa.episodes.events import Limits
 from tpvqa.errors import PlannerError, PluginError
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import because, deciding
@@ -50,7 +51,7 @@ class BeliefMonitor:
         rates: What is believed about faults beforehand.
         experience: What was learned in earlier trials; goes before `rates`.
         without: One of `belief.ablations.PARTS`, to be left out.
-        most_actions: Actions after which the trial ends; None for any number.
+        limits: When the trial is ended without success; None for never.
         noise_model: Whether answers do not depend on the picture, but on the look.
 
     Example:
@@ -70,7 +71,7 @@ class BeliefMonitor:
         experience: Experience | None = None,
         without: str | None = None,
         noise_model: bool = False,
-        most_actions: int | None = None,
+        limits: Limits | None = None,
         name: str = "belief",
     ):
         self.task, self.costs, self.name = task, costs or Costs(), name
@@ -87,7 +88,9 @@ class BeliefMonitor:
         self._trials = 0 if experience is None else experience.trials
         self.evidence = Evidence(self.belief, calibration, self.trust)
         self._chooser = Chooser(self.belief.model, self.costs)
-        self._chooser.left = most_actions
+        self._repeats = None if limits is None else limits.repeats
+        if limits is not None:
+            self._chooser.left, self._chooser.changes_left = limits.actions, limits.replans
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
         self._view = self._views[0] if self._views else None
@@ -112,7 +115,7 @@ class BeliefMonitor:
         views: Sequence[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
-        most_actions: int | None = None,
+        limits: Limits | None = None,
     ) -> "BeliefMonitor":
         """Make it from `belief`, or `belief:question=0.05:failure=200` with other costs.
 
@@ -157,7 +160,7 @@ class BeliefMonitor:
             experience=experience,
             without=without,
             noise_model=noise_model,
-            most_actions=most_actions,
+            limits=limits,
             name=f"belief:{arguments}" if arguments else "belief",
         )
 
@@ -185,7 +188,8 @@ class BeliefMonitor:
         if step is not self._stepped:  # a check that is done again predicts nothing again
             self._stepped = step
             self._acted(step)
-        choice = yield from self._choose(step)
+        worn = self._repeats is not None and step.attempt >= self._repeats
+        choice = yield from self._choose(step, barred=step.action if worn else None)
         return self._verdict(step, choice, acted=True)
 
     def _know(self, step: Step) -> None:
@@ -218,7 +222,7 @@ class BeliefMonitor:
         self._told.clear()
         self._asked_about.clear()
 
-    def _choose(self, step: Step) -> Generator[Request, Any, Choice]:
+    def _choose(self, step: Step, barred: Action | None = None) -> Generator[Request, Any, Choice]:
         while True:
             while (state := self._chooser.unplanned(self.belief)) is not None:
                 result = yield PlanFrom(state)
@@ -228,7 +232,7 @@ class BeliefMonitor:
                     self._chooser.give_up_on(state)
                 else:
                     self._chooser.postpone(state)
-            table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions)
+            table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
             inquiry = self._inquire(step, table)
             if inquiry is None:
                 return table.best
@@ -329,6 +333,8 @@ class BeliefMonitor:
                 number for number, each in enumerate(step.plan.actions) if same(each, action, state)
             ]
             decision = Decision.GO_ON if places else Decision.REPLAN
+            if not places and self._chooser.changes_left is not None:
+                self._chooser.changes_left -= 1
             place = min(places, key=lambda each: abs(each - step.index), default=None)
         plan = self._annotated(step)
         reason = "; ".join(

@@ -6,10 +6,14 @@ from pathlib import Path
 
 from tpvqa.belief.calibration import Calibration, Group
 from tpvqa.belief.fitting import fit
+from tpvqa.belief.labelled_answer import LabelledAnswer
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
+from tpvqa.bench.labelled_recordings import label_recordings
 from tpvqa.bench.paper import looks
+from tpvqa.bench.stage import stage
 from tpvqa.trial import TrialConfig
+from tpvqa.vlm.recorded.vlm import told_by
 
 SURVEY = "survey"
 """Who asks noise models: it asks regardless of the answers, so that all of them count."""
@@ -82,9 +86,25 @@ def calibrations(
         cell = Cell(source.task, LOOKING if looking else SURVEY, source.vlm, source.world)
         rows = gather(cell, away, range(episodes))
         found[source] = fit(rows, source.vlm, chosen_looks=looking)
+        if source.vlm.startswith("recorded:"):
+            found[source] = _of_recordings(source, rows, found[source])
         found[source].save(path)
     done(len(found), len(sources))
     return found
+
+
+def _of_recordings(
+    source: Source, rows: Collection[LabelledAnswer], drawn: Calibration
+) -> Calibration:
+    """What recorded answers teach, each once; trials only tell how far a look repeats the last."""
+    told = told_by(source.vlm.removeprefix("recorded:"), stage(source.task).task)
+    recordings = label_recordings(told, {(row.way, row.predicate) for row in rows})
+    return fit(recordings, source.vlm, chosen_looks=False).model_copy(
+        update={
+            "repeat_same_view": drawn.repeat_same_view,
+            "repeat_other_view": drawn.repeat_other_view,
+        }
+    )
 
 
 def by_replies(calibration: Calibration) -> Calibration:

@@ -6,7 +6,7 @@ without chain of thought; made compact by `tools/compact_answers.py`.
 
 import gzip
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -14,7 +14,8 @@ from importlib import resources
 from tpvqa.errors import AnswerError, UnknownNameError
 
 ENOUGH = 30
-"""Answers of one predicate from which it is drawn by itself."""
+"""Answers of one predicate from which it is drawn by itself; for a half, so many in both halves
+together and at least half as many in each, so that both halves answer by the same rule."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +39,7 @@ class Recordings:
         model: Its name.
         environment: "blocksworld" or "igibson", never both: the same model is right in .965 of
             the one and in .362 of the other.
-        by_kind: Its answers.
+        by_kind: Its answers; of a predicate by itself only where there are `ENOUGH`.
     """
 
     model: str
@@ -48,10 +49,8 @@ class Recordings:
     def of(self, kind: str, predicate: str, *, truth: bool) -> tuple[Recording, ...]:
         """The answers to a kind of question: of the predicate where there are enough, else of
         all."""
-        own = self.by_kind.get((kind, predicate, truth), ())
-        if sum(recording.count for recording in own) >= ENOUGH:
-            return own
-        return self.by_kind.get((kind, "", truth), ())
+        own = self.by_kind.get((kind, predicate, truth))
+        return self.by_kind.get((kind, "", truth), ()) if own is None else own
 
 
 @cache
@@ -81,19 +80,28 @@ def recordings(model: str, environment: str, half: int | None = None) -> Recordi
     if environment not in known[model]:
         raise UnknownNameError(f"environment recorded of {model}", environment, known[model])
     counts: dict[Key, dict[tuple[bool, float], int]] = {}
+    sizes: dict[Key, list[int]] = {}
     for name, where, kind, predicate, truth, part, answer, p_yes, n in _rows():
-        if (name, where) == (model, environment) and half in (None, part):
+        if (name, where) == (model, environment):
             for group in (predicate, ""):
-                told = counts.setdefault((kind, group, bool(truth)), {})
-                told[answer == "yes", p_yes] = told.get((answer == "yes", p_yes), 0) + n
+                key = (kind, group, bool(truth))
+                sizes.setdefault(key, [0, 0])[part] += n
+                if half in (None, part):
+                    told = counts.setdefault(key, {})
+                    told[answer == "yes", p_yes] = told.get((answer == "yes", p_yes), 0) + n
     return Recordings(
         model,
         environment,
         {
             key: tuple(Recording(yes, p, n) for (yes, p), n in sorted(told.items()))
             for key, told in counts.items()
+            if key[1] == "" or _enough(sizes[key], half)
         },
     )
+
+
+def _enough(sizes: Sequence[int], half: int | None) -> bool:
+    return sum(sizes) >= ENOUGH and (half is None or min(sizes) >= ENOUGH / 2)
 
 
 Row = tuple[str, str, str, str, int, int, str, float, int]

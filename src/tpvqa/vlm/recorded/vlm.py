@@ -11,7 +11,7 @@ from tpvqa.pddl import Task
 from tpvqa.questions.question import Question, Way
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.protocol import TruthSource
-from tpvqa.vlm.recorded.answers import Recordings, models, recordings
+from tpvqa.vlm.recorded.answers import Recording, Recordings, models, recordings
 
 COUNTERPART: Mapping[str, str] = {
     "near": "reachable",
@@ -35,8 +35,8 @@ class Recorded:
     """Draws answers from those that a model gave to questions of the same kind.
 
     A noise model, not a VLM. An answer with its P(yes) is drawn from the model's recorded answers
-    of the same kind (precondition or effect), of the same predicate where it has 30 of them, and
-    of the same truth. Within one look the same question gets the same answer.
+    of the same kind (precondition or effect), of the same predicate where it has 30 of them (in
+    each half 15), and of the same truth. Within one look the same question gets the same answer.
 
     What is assumed: that errors depend on nothing else, so that answers at different looks are
     independent; that questions about where else a thing is are answered as preconditions are; and
@@ -72,14 +72,7 @@ class Recorded:
             UnknownNameError: No such model was recorded, or not in that environment.
             PluginError: The arguments are others.
         """
-        model, _, half = arguments.partition(":")
-        if not model or half not in ("", "0", "1"):
-            raise PluginError(
-                f"'recorded:{arguments}' is not understood. Write recorded:MODEL or "
-                f"recorded:MODEL:HALF (0 or 1), with a model of {', '.join(models())}."
-            )
-        environment = "blocksworld" if task.domain_name == "blocksworld" else "igibson"
-        told = recordings(model, environment, int(half) if half else None)
+        told = told_by(arguments, task)
         return cls(truth, told, spec=f"recorded:{arguments}", seed=seed, episode=episode)
 
     @property
@@ -92,14 +85,10 @@ class Recorded:
         return [self._answer(observation.look, question) for question in questions]
 
     def _answer(self, look: int, question: Question) -> Answer:
-        kind = _KIND.get(question.way)
-        if kind is None or question.atom is None:
+        if question.way not in _KIND or question.atom is None:
             return _silent(question, "No answers to questions about whole actions were recorded.")
-        predicate = question.atom.predicate
-        if self._told.environment == "igibson":
-            predicate = COUNTERPART.get(predicate, "")
         truth = bool(question.true_in(self._truth.holds))
-        choice = self._told.of(kind, predicate, truth=truth)
+        choice = drawn_from(self._told, question.way, question.atom.predicate, truth=truth)
         if not choice:
             return _silent(question, "No answers to questions of this kind were recorded.")
         draw = chance(self._seed, self._episode, "recorded answer", question.text, truth, look)
@@ -112,6 +101,32 @@ class Recorded:
             source="recorded",
             text="yes" if told.yes else "no",
         )
+
+
+def told_by(arguments: str, task: Task) -> Recordings:
+    """The answers that MODEL[:HALF] stands for in the environment of a task.
+
+    Raises:
+        UnknownNameError: No such model was recorded, or not in that environment.
+        PluginError: The arguments are others.
+    """
+    model, _, half = arguments.partition(":")
+    if not model or half not in ("", "0", "1"):
+        raise PluginError(
+            f"'recorded:{arguments}' is not understood. Write recorded:MODEL or "
+            f"recorded:MODEL:HALF (0 or 1), with a model of {', '.join(models())}."
+        )
+    environment = "blocksworld" if task.domain_name == "blocksworld" else "igibson"
+    return recordings(model, environment, int(half) if half else None)
+
+
+def drawn_from(told: Recordings, way: Way, predicate: str, *, truth: bool) -> tuple[Recording, ...]:
+    """The recorded answers that one is drawn from; none where nothing was recorded."""
+    if way not in _KIND:
+        return ()
+    if told.environment == "igibson":
+        predicate = COUNTERPART.get(predicate, "")
+    return told.of(_KIND[way], predicate, truth=truth)
 
 
 def _silent(question: Question, why: str) -> Answer:
