@@ -8,7 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.information import Floats, Reliability, answers_to_be_sure, gain, joint_gain
+from tpvqa.belief.information import Floats, Reliability, answers_to_be_sure, gains, joint_gains
+
+
+def gain(if_true: Floats, if_false: Floats, reliability: Reliability, times: int) -> float:
+    return float(gains(if_true, if_false, reliability, (2, times, 1))[1])
+
+
+def joint_gain(weighted: Floats, truths: Floats, each: list[Reliability], times: int) -> float:
+    return float(joint_gains(weighted, truths, each, (3, times))[1])
+
 
 costs = st.lists(st.floats(0, 50), min_size=2, max_size=4)
 rates = st.floats(0.02, 0.98)

@@ -59,7 +59,17 @@ def _counts(probability: float, times: int) -> Floats:
     )
 
 
-def gain(if_true: Floats, if_false: Floats, reliability: Reliability, times: int) -> float:
+@lru_cache(maxsize=4096)
+def _all_counts(probability: float, times: tuple[int, ...]) -> tuple[Floats, NDArray[np.intp]]:
+    """`_counts` of several numbers of answers behind one another, and where each begins."""
+    counts = [_counts(probability, each) for each in times]
+    begins = np.cumsum([0, *(len(each) for each in counts[:-1])])
+    return np.concatenate(counts), begins
+
+
+def gains(
+    if_true: Floats, if_false: Floats, reliability: Reliability, times: tuple[int, ...]
+) -> Floats:
     """How much less the best decision costs when a question is answered some times.
 
     Args:
@@ -67,21 +77,26 @@ def gain(if_true: Floats, if_false: Floats, reliability: Reliability, times: int
             of that; one entry a decision.
         if_false: The same where no is right.
         reliability: Of each answer, independent ones.
-        times: How many answers.
+        times: How many answers; several numbers are compared.
 
     Returns:
-        The expected saving, never negative.
+        The expected saving for each of `times`, never negative.
     """
-    now = float((if_true + if_false).min())
-    true = _counts(round(reliability.yes_if_true, 3), times)
-    false = _counts(round(reliability.yes_if_false, 3), times)
-    then = (np.outer(true, if_true) + np.outer(false, if_false)).min(axis=1).sum()
-    return max(0.0, (1 - reliability.abstains) * (now - float(then)))
+    now = (if_true + if_false).min()
+    true, begins = _all_counts(round(reliability.yes_if_true, 3), times)
+    false, _ = _all_counts(round(reliability.yes_if_false, 3), times)
+    costs = true[:, None] * if_true + false[:, None] * if_false
+    then = np.add.reduceat(costs.min(axis=1), begins)
+    saved: Floats = np.maximum(0.0, (1 - reliability.abstains) * (now - then))
+    return saved
 
 
-def joint_gain(
-    weighted: Floats, truths: Floats, reliabilities: Sequence[Reliability], times: int
-) -> float:
+def joint_gains(
+    weighted: Floats,
+    truths: Floats,
+    reliabilities: Sequence[Reliability],
+    times: tuple[int, ...],
+) -> Floats:
     """How much less the best decision costs when several questions are answered some times each.
 
     Two answers together can change a decision that neither changes alone. An answer repeated is
@@ -92,23 +107,30 @@ def joint_gain(
             (states, choices).
         truths: Where yes is right, ones and zeros, shape (questions, states).
         reliabilities: Of one answer to each question.
-        times: How many answers to each.
+        times: How many answers to each; several numbers are compared.
+
+    Returns:
+        The expected saving for each of `times`, never negative.
     """
-    chances = np.ones((1, weighted.shape[0]))
+    chances = np.ones((len(times), 1, weighted.shape[0]))
     for truth, each in zip(truths, reliabilities, strict=True):
         right = 1 - each.abstains
-        if_true = _majority(round(each.yes_if_true, 3), times)
-        if_false = _majority(round(each.yes_if_false, 3), times)
-        yes = 0.5 + right * (truth * if_true + (1 - truth) * if_false - 0.5)
-        chances = np.concatenate([chances * yes, chances * (1 - yes)])
-    now = float(weighted.sum(axis=0).min())
-    return max(0.0, now - float((chances @ weighted).min(axis=1).sum()))
+        if_true = _majorities(round(each.yes_if_true, 3), times)
+        if_false = _majorities(round(each.yes_if_false, 3), times)
+        yes = 0.5 + right * (if_true * truth + if_false * (1 - truth) - 0.5)
+        chances = np.concatenate([chances * yes, chances * (1 - yes)], axis=1)
+    now = weighted.sum(axis=0).min()
+    saved: Floats = np.maximum(0.0, now - (chances @ weighted).min(axis=2).sum(axis=1))
+    return saved
 
 
 @lru_cache(maxsize=4096)
-def _majority(probability: float, times: int) -> float:
-    """P(most of so many answers are yes); half of it where as many are no."""
-    counts = _counts(probability, times)
-    half = times // 2
-    tie = counts[half] / 2 if times % 2 == 0 else 0.0
-    return float(counts[half + 1 :].sum() + tie)
+def _majorities(probability: float, times: tuple[int, ...]) -> Floats:
+    """P(most of so many answers are yes), half of it where as many are no; shape (times, 1, 1)."""
+
+    def majority(number: int) -> float:
+        counts, half = _counts(probability, number), number // 2
+        tie = counts[half] / 2 if number % 2 == 0 else 0.0
+        return float(counts[half + 1 :].sum() + tie)
+
+    return np.array([majority(each) for each in times])[:, None, None]

@@ -9,7 +9,7 @@ from tpvqa.belief.choices import Table
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import PERSON, Evidence, Picture
 from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.information import TIMES, Floats, Reliability, gain, joint_gain
+from tpvqa.belief.information import TIMES, Floats, Reliability, gains, joint_gains
 from tpvqa.questions.question import Question
 
 DOUBT = 1e-3
@@ -95,9 +95,8 @@ class Inquirer:
             if_false = total - if_true
             most = now - float(if_true.min()) - float(if_false.min())
             if person and self._costs.person is not None:
-                saving = (
-                    gain(if_true, if_false, Reliability(PERSON, 1 - PERSON), 1) - self._costs.person
-                )
+                told = gains(if_true, if_false, Reliability(PERSON, 1 - PERSON), (1,))
+                saving = float(told[0]) - self._costs.person
                 found = _better(found, Inquiry(question, 1, saving, person=True))
             if question.text in self._evidence.silent:
                 continue
@@ -106,12 +105,12 @@ class Inquirer:
             if most <= asking:
                 continue  # even the truth would not be worth a question
             seen = picture is not None and not self._evidence.asked_of(question.text, picture)
-            for times in TIMES:
+            saved = gains(if_true, if_false, reliability, TIMES).tolist()
+            for times, gain in zip(TIMES, saved, strict=True):
                 looks = times - 1 if seen else times
                 if times > budget.questions or looks > budget.looks:
                     break
-                price = times * asking + looks * looking
-                saving = gain(if_true, if_false, reliability, times) - price
+                saving = gain - times * asking - looks * looking
                 found = _better(found, Inquiry(question, max(1, times // 4), saving))
         if len(doubted) > 1 and now > asking:
             doubted.sort(key=lambda each: each[:2])
@@ -130,11 +129,11 @@ class Inquirer:
         """The first of several questions, where their answers together are worth more."""
         truths = np.array([each[3] for each in doubted])
         reliabilities = [each[4] for each in doubted]
-        for times in TIMES:
+        saved = joint_gains(weighted, truths, reliabilities, TIMES).tolist()
+        for times, gain in zip(TIMES, saved, strict=True):
             if times * len(doubted) > budget.questions or times > budget.looks:
                 break
-            price = times * (len(doubted) * asking + looking)
-            saving = joint_gain(weighted, truths, reliabilities, times) - price
+            saving = gain - times * (len(doubted) * asking + looking)
             found = _better(found, Inquiry(doubted[0][2], 1, saving))
         return found
 
