@@ -92,6 +92,7 @@ class Trial:
         vlm: A VLM to share between trials.
         book: The task's questions, where they have been loaded already.
         rules: What the world file says, where it has been loaded already.
+        person: Answers where the monitor asks a person.
     """
 
     def __init__(
@@ -103,11 +104,12 @@ class Trial:
         vlm: VLM | None = None,
         book: QuestionBook | None = None,
         rules: WorldRules | None = None,
+        person: VLM | None = None,
     ):
         self.config, self._run = config, False
         self._closing: list[Callable[[], None]] = []
         try:
-            self._prepare(task, planner, vlm, book, rules)
+            self._prepare(task, planner, vlm, book, rules, person)
         except BaseException:
             self.close()
             raise
@@ -119,6 +121,7 @@ class Trial:
         vlm: VLM | None,
         book: QuestionBook | None,
         rules: WorldRules | None,
+        person: VLM | None,
     ) -> None:
         config = self.config
         files = None if config.task is None else find_task(config.task)
@@ -181,7 +184,7 @@ class Trial:
         _all_taken(config.options, taken | by_monitor | by_vlm, context)
         if vlm is None and hasattr(self.vlm, "close"):
             self._closing.append(self.vlm.close)
-        self.parts = Parts(self.task, self.book, planner, self.world, self.vlm)
+        self.parts = Parts(self.task, self.book, planner, self.world, self.vlm, person)
 
     def started(self) -> Started:
         """The first event of the trial's episode."""
@@ -347,6 +350,7 @@ def resume(
     *,
     listeners: Sequence[Callable[[Event], None]] = (),
     cancel: Flag | None = None,
+    person: VLM | None = None,
 ) -> Ended:
     """Go on with an unfinished episode, with the same random numbers, to the same end.
 
@@ -362,7 +366,7 @@ def resume(
     if isinstance(last, Ended):
         events.pop()
     folder = Path(folder)
-    with Trial(config_of(started)) as trial:
+    with Trial(config_of(started), person=person) as trial:
         _same_files(started, trial.started())
         writer = EpisodeWriter(folder, resume=len(events))
         try:

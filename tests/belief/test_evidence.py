@@ -128,9 +128,10 @@ def test_unknown_answers_change_nothing(reply: Reply) -> None:
     before = dict(belief.weights)
     assert evidence.take(told(reply), 0, None) == 1.0
     assert belief.weights == before
-    assert QUESTION.text in evidence.silent
+    assert evidence.silent(QUESTION.text, None)
+    assert evidence.unseen
     evidence.acted()
-    assert not evidence.silent
+    assert not evidence.unseen
 
 
 def test_a_surprising_answer_opens_what_the_model_does_not_explain() -> None:

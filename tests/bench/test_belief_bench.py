@@ -40,6 +40,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import batches
 from tpvqa.bench.stage import run_batch
 from tpvqa.errors import BenchError, CalibrationError
+from tpvqa.questions import Way
 from tpvqa.trial import TrialConfig
 from tpvqa.vlm import Reply
 
@@ -47,6 +48,17 @@ CELL = Cell("clean_dishes", "belief", "oracle:0.8", "symbolic")
 SMALL = Extent(
     tasks=("clean_dishes",), accuracies=(0.9,), rhos=(0.0,), prices=(10.0,), episodes=2, curve=2
 )
+
+
+def test_recorded_answers_count_once_however_often_trials_draw_them(tmp_path: Path) -> None:
+    source = Source("clean_dishes", "recorded:gpt-4.1-nano:0", "symbolic")
+    few, many = (
+        calibrations(tmp_path / str(n), [source], TrialConfig(seed=0), n)[source] for n in (3, 12)
+    )
+    near = few.group_of(Way.EFFECT, "near")
+    assert near.rows == 85 + 31  # what half 0 of the problems has of "reachable"
+    assert near == many.group_of(Way.EFFECT, "near")
+    assert few.rows == many.rows
 
 
 def rows(

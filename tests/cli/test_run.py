@@ -47,7 +47,7 @@ def test_json_has_the_promised_fields(tpvqa: Run) -> None:
 def test_exit_code_one_where_the_goal_is_not_reached(tpvqa: Run) -> None:
     code, out, _ = tpvqa("run", "clean_dishes", *SYMBOLIC, "--failure", 1, "--json")
     assert code == 1
-    assert json.loads(out)["ended_because"] == "limit of repeats"
+    assert json.loads(out)["ended_because"] == "gave up"
 
 
 def test_ones_own_domain_against_a_scripted_world(tpvqa: Run) -> None:

@@ -1,22 +1,27 @@
 """The belief monitor, at the seam a user touches: whole trials."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import pytest
 
 from tpvqa.belief import Calibration, Group, Rates
 from tpvqa.belief.calibration import Curve
-from tpvqa.episodes import Ended, MemoryWriter
-from tpvqa.episodes.events import Asked, Decided, Event, PlanMade
+from tpvqa.episodes import Ended, Limits, MemoryWriter
+from tpvqa.episodes.events import Acting, Asked, Decided, Event, PlanMade
 from tpvqa.errors import PluginError
 from tpvqa.monitors.belief import BeliefMonitor
+from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Literal, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
+from tpvqa.questions import Question
 from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import Answer, Reply
+from tpvqa.vlm.protocol import TruthSource
+from tpvqa.worlds.symbolic import SymbolicWorld
 
 
 @pytest.fixture(scope="module")
@@ -186,6 +191,103 @@ def test_only_what_the_plan_needs_is_asked_about(planner: Planner) -> None:
 def test_a_person_who_is_not_there_is_asked_once(planner: Planner) -> None:
     _, events, _ = run(planner, "belief:person=0.01", accuracy=0.6)
     assert sum(isinstance(event, Asked) and event.person for event in events) == 1
+
+
+class Bystander:
+    """A person who sees what is true."""
+
+    name = "bystander"
+
+    def __init__(self) -> None:
+        self.truth: TruthSource
+
+    def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
+        return [
+            Answer(question, Reply.YES if question.true_in(self.truth.holds) else Reply.NO)
+            for question in questions
+        ]
+
+
+def test_a_person_who_answers_is_asked_instead_of_a_poor_vlm(planner: Planner) -> None:
+    def ended(person: float) -> tuple[Ended, int]:
+        bystander, writer = Bystander(), MemoryWriter()
+        config = TrialConfig(
+            task="serve_breakfast",
+            world="symbolic",
+            vlm="oracle:0.6",
+            calibration=right_in(0.6),
+            monitor=f"belief:person={person}",
+        )
+        with Trial(config, planner=planner, task=TASK, person=bystander) as trial:
+            bystander.truth = trial.world.truth  # type: ignore[attr-defined]
+            end = trial.run(writer)
+        asked = sum(isinstance(event, Asked) and event.person for event in writer.events)
+        return end, asked
+
+    cheap, often = ended(0.02)
+    dear, never = ended(1000)
+    assert cheap.completed
+    assert often > 3
+    assert never == 0
+    assert cheap.questions < 0.2 * dear.questions
+
+
+class TwoViews(SymbolicWorld):
+    """A world that can be looked at from the side, too."""
+
+    def views(self) -> tuple[str, ...]:
+        return ("front", "side")
+
+    def observe(self, view: str | None = None) -> Observation:
+        look = super().observe()
+        frame = Frame(f"{look.look}", view or "front", f"picture {look.look}".encode())
+        return Observation(look.look, look.time, {frame.view: frame})
+
+
+class FromTheSide:
+    """Sees what is true from the side, and nothing from the front."""
+
+    name = "from-the-side"
+
+    def __init__(self, truth: TruthSource):
+        self.truth = truth
+
+    def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
+        if "side" not in observation.frames:
+            return [Answer(question, Reply.CANNOT_SEE) for question in questions]
+        return [
+            Answer(question, Reply.YES if question.true_in(self.truth.holds) else Reply.NO)
+            for question in questions
+        ]
+
+
+def test_what_cannot_be_seen_from_one_view_is_asked_from_another(planner: Planner) -> None:
+    made: list[Trial] = []
+    config = TrialConfig(
+        task="serve_breakfast", world="symbolic", vlm="oracle", calibration=right_in(0.95)
+    )
+    for views in (1, 2):
+        simulation = Trial(config, planner=planner, task=TASK).simulation
+        world = TwoViews(simulation)
+        seen = world.views()[:views]
+        monitor = BeliefMonitor(TASK, calibration=right_in(0.95), views=seen)
+        trial = Trial(config, planner=planner, task=TASK)
+        trial.monitor, trial.world = monitor, world
+        trial.parts = replace(trial.parts, world=world, vlm=FromTheSide(world.truth))
+        made.append(trial)
+    blind, seeing = (trial.run(MemoryWriter(resumable=False)) for trial in made)
+    assert seeing.completed
+    assert 5 < seeing.questions < blind.questions
+
+
+def test_the_limits_of_the_trial_are_known(planner: Planner) -> None:
+    """Nothing ever succeeds: the robot gives up rather than run into a limit."""
+    limits = Limits(repeats=2, replans=1, actions=40)
+    ended, events, _ = run(planner, accuracy=0.95, failure=1.0, limits=limits)
+    assert ended.because == "gave up"
+    assert ended.replans <= 1
+    attempts = [event.attempt for event in events if isinstance(event, Acting)]
+    assert max(attempts) == 2
 
 
 @pytest.mark.parametrize(

@@ -73,7 +73,7 @@ class Evidence:
         self._unexplained = unexplained
         self._last: dict[str, _Last] = {}
         self._opened: set[tuple[Atom, ...]] = set()
-        self.silent: set[str] = set()
+        self._silent: set[tuple[str, str | None]] = set()
 
     def acted(self, *, troubled: bool = False) -> None:
         """Note that an action was executed: facts may have changed, other things are in view.
@@ -88,13 +88,26 @@ class Evidence:
             last.pictures.clear()
             last.yes = last.no = 0
         self._opened.clear()
-        self.silent.clear()
+        self._silent.clear()
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action: once more is worth
         nothing."""
         last = self._last.get(text)
         return last is not None and picture in last.pictures
+
+    def silence(self, text: str, view: str | None) -> None:
+        """Note that a question finds no answer from a view before the next action."""
+        self._silent.add((text, view))
+
+    def silent(self, text: str, view: str | None) -> bool:
+        """Whether that was noted."""
+        return (text, view) in self._silent
+
+    @property
+    def unseen(self) -> bool:
+        """Whether any question found no answer since the last action."""
+        return bool(self._silent)
 
     def answers_to_be_sure(self) -> float:
         """How many answers of this VLM it takes to notice a mistake."""
@@ -132,7 +145,7 @@ class Evidence:
         question = answer.question
         assert question.atom is not None
         if answer.reply not in (Reply.YES, Reply.NO):
-            self.silent.add(question.text)
+            self.silence(question.text, view)
             return 1.0
         atoms = (question.atom, *question.alike)
         last = self._last.get(question.text)

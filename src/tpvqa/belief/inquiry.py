@@ -1,6 +1,6 @@
 """What to ask next, if anything: the questions whose answers save more than they cost."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +63,7 @@ class Inquirer:
         budget: Budget,
         *,
         picture: Picture | None,
-        view: str | None,
+        views: Callable[[Question], Sequence[str | None]],
         person: bool = False,
     ) -> Inquiry | None:
         """What to ask next; None where no answer is worth its price.
@@ -73,7 +73,7 @@ class Inquirer:
             table: What can be done, and what it costs.
             budget: What may still be asked.
             picture: The latest one since the last action; None where there was none.
-            view: From which view the next one is.
+            views: From where a question may find an answer, the next one first.
             person: Whether a person can be asked.
         """
         if budget.questions <= 0:
@@ -96,11 +96,12 @@ class Inquirer:
             most = now - float(if_true.min()) - float(if_false.min())
             if person and self._costs.person is not None:
                 told = gains(if_true, if_false, Reliability(PERSON, 1 - PERSON), (1,))
-                saving = float(told[0]) - self._costs.person
+                saving = float(told[0]) - self._costs.person / late
                 found = _better(found, Inquiry(question, 1, saving, person=True))
-            if question.text in self._evidence.silent:
+            open_views = views(question)
+            if not open_views:
                 continue
-            reliability = self._evidence.expect(question, view)
+            reliability = self._evidence.expect(question, open_views[0])
             doubted.append((-round(most, 6), abs(true - 0.5), question, truth, reliability))
             if most <= asking:
                 continue  # even the truth would not be worth a question

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from tpvqa.cli.person import TerminalPerson
+    from tpvqa.cli.terminal import EpisodeView
     from tpvqa.episodes import Ended
     from tpvqa.questions import QuestionBook
 
@@ -41,7 +43,7 @@ def run(
         typer.Option(
             help="belief (the default), belief:COST=VALUE (question, look, action, person, "
             "failure), tpvqa (the paper's; the default with --majority), tpvqa:LOOKS, effectvqa, "
-            "palmevqa, successvqa, tp or none."
+            "palmevqa, successvqa, tp or none. With a cost of person you are asked, too."
         ),
     ] = None,
     vlm: Annotated[
@@ -147,7 +149,8 @@ def run(
         experience=None if experience is None else Experience.load(experience),
         options={name: value for name, value in options.items() if value is not None},
     )
-    with Trial(config) as trial:
+    views: list[EpisodeView] = []
+    with Trial(config, person=_person(views, as_json=as_json)) as trial:
         if (calibration or experience) and trial.calibration is None:
             raise TpvqaError(
                 f"The monitor {monitor} weighs no answers: leave out --calibration and "
@@ -159,6 +162,7 @@ def run(
         writer = EpisodeWriter(folder)
         try:
             with _view(as_json=as_json, book=trial.book) as view:
+                views.append(view)
                 ended = trial.run(writer, folder=folder, listeners=[view])
         finally:
             writer.close()
@@ -178,8 +182,10 @@ def resume(
     from tpvqa.trial import resume as go_on
 
     episode = episode_folder(episode)
+    views: list[EpisodeView] = []
     with _view(as_json=as_json) as view:
-        ended = go_on(episode, listeners=[view])
+        views.append(view)
+        ended = go_on(episode, listeners=[view], person=_person(views, as_json=as_json))
     _finish(ended, episode, as_json=as_json)
 
 
@@ -235,6 +241,18 @@ def _view(*, as_json: bool, book: "QuestionBook | None" = None):  # type: ignore
         if as_json and not console.is_terminal
         else EpisodeView(console, book=book)
     )
+
+
+def _person(views: "list[EpisodeView]", *, as_json: bool) -> "TerminalPerson | None":
+    """Whoever sits at the terminal, if anybody does."""
+    from rich.console import Console
+
+    from tpvqa.cli.person import TerminalPerson
+
+    console = Console()
+    if as_json or not (sys.stdin.isatty() and console.is_terminal):
+        return None
+    return TerminalPerson(console, lambda: views[0].aside())
 
 
 def _silent(_event: object) -> None:

@@ -61,13 +61,18 @@ class Lost(Exception):  # noqa: N818
 
 @dataclass
 class Parts:
-    """What a trial is made of."""
+    """What a trial is made of.
+
+    Attributes:
+        person: Answers where a monitor asks a person; None where nobody is there.
+    """
 
     task: Task
     book: QuestionBook
     planner: Planner
     world: World
     vlm: VLM
+    person: VLM | None = None
 
 
 class Recorder:
@@ -189,15 +194,15 @@ class Recorder:
         self._find()
         record = self._next(Answered)
         if record is None:
-            answers = (
-                [Answer(question, Reply.UNKNOWN, text="nobody is there") for question in questions]
-                if person
-                else self.parts.vlm.ask(self._observation, questions)
-            )
-            if len(answers) != len(questions):
+            asked = self.parts.person if person else self.parts.vlm
+            if asked is None:
+                text = "nobody is there"
+                answers = [Answer(question, Reply.UNKNOWN, text=text) for question in questions]
+            else:
+                answers = asked.ask(self._observation, questions)
+            if asked is not None and len(answers) != len(questions):
                 raise EpisodeError(
-                    f"the VLM {self.parts.vlm.name} gave {len(answers)} answers "
-                    f"to {len(questions)} questions"
+                    f"{asked.name} gave {len(answers)} answers to {len(questions)} questions"
                 )
             record = records.answered_record(answers).model_copy(
                 update={"snapshot": self._snapshot(self.parts.vlm)}

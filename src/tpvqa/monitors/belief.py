@@ -238,7 +238,7 @@ class BeliefMonitor:
                 return table.best
             for _ in range(inquiry.times):
                 yield from self._ask(inquiry.question, person=inquiry.person)
-                if inquiry.question.text in self.evidence.silent:
+                if not inquiry.person and not self._open_views(inquiry.question):
                     break
 
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
@@ -254,7 +254,7 @@ class BeliefMonitor:
             table,
             budget,
             picture=self._picture,
-            view=self._next_view(),
+            views=self._open_views,
             person=self._person,
         )
 
@@ -289,8 +289,14 @@ class BeliefMonitor:
             self._asked_about[atoms] = list(questions.values())
         return self._asked_about[atoms]
 
-    def _next_view(self) -> str | None:
-        return self._views[self._looks_here % len(self._views)] if self._views else None
+    def _open_views(self, question: Question) -> list[str | None]:
+        """From where a question may still find an answer, the next one first.
+
+        They go round: another view repeats the last answer less than the same one does.
+        """
+        turn = self._looks_here % len(self._views) if self._views else 0
+        views: list[str | None] = [*self._views[turn:], *self._views[:turn]]
+        return [view for view in views or [None] if not self.evidence.silent(question.text, view)]
 
     def _ask(self, question: Question, *, person: bool) -> Generator[Request, Any, None]:
         assert question.atom is not None
@@ -299,19 +305,20 @@ class BeliefMonitor:
             self._person = answer.reply in (Reply.YES, Reply.NO)
             self.evidence.take_from_person(answer)
         else:
-            for again in range(1 + SAME):
-                if self._picture is not None and not self.evidence.asked_of(
-                    question.text, self._picture
-                ):
-                    break
-                if again == SAME:  # there is no other picture of it to be had
-                    self.evidence.silent.add(question.text)
+            looks = 0
+            while not self._shows_something_new(question):
+                if looks == SAME:  # there is no other picture of it to be had
+                    self.evidence.silence(question.text, self._view)
+                    looks = 0
+                open_views = self._open_views(question)
+                if not open_views:
                     return
-                self._view = self._next_view()
+                self._view = open_views[0]
                 observation: Observation = yield Look(self._view)
                 self._picture = observation.look if self._blind else _picture(observation)
                 self._looks += 1
                 self._looks_here += 1
+                looks += 1
             answers: list[Answer] = yield Ask((question,))
             answer = answers[0]
             self._questions += 1
@@ -319,6 +326,14 @@ class BeliefMonitor:
             self.evidence.take(answer, self._picture, self._view)
         if answer.reply in (Reply.YES, Reply.NO):
             self._told.setdefault(question.atom, []).append(answer.reply)
+
+    def _shows_something_new(self, question: Question) -> bool:
+        """Whether the latest picture may tell more than what a question was answered before."""
+        return (
+            self._picture is not None
+            and not self.evidence.asked_of(question.text, self._picture)
+            and not self.evidence.silent(question.text, self._view)
+        )
 
     def _verdict(self, step: Step, choice: Choice, *, acted: bool) -> Verdict:
         state, action, place = choice.state, choice.action, None
@@ -344,7 +359,7 @@ class BeliefMonitor:
                     self.belief,
                     self._told,
                     plan,
-                    unseen=bool(self.evidence.silent),
+                    unseen=self.evidence.unseen,
                     spent=self._budget().questions <= 0,
                 ),
                 deciding(step, self.belief, decision, action, state, place),

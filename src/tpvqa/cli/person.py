@@ -1,0 +1,61 @@
+"""A person at the terminal, who is asked where an answer is worth their time."""
+
+import select
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from typing import TextIO
+
+from rich.console import Console
+from rich.markup import escape
+
+from tpvqa.observation import Observation
+from tpvqa.questions import Question
+from tpvqa.vlm import Answer, Reply
+
+WAIT = 60.0
+"""Seconds to wait for an answer. A late one is *unknown*."""
+_REPLIES = {"y": Reply.YES, "yes": Reply.YES, "n": Reply.NO, "no": Reply.NO}
+
+
+class TerminalPerson:
+    """Asks whoever sits at the terminal.
+
+    Args:
+        console: Where to print the question.
+        aside: Called for every question; what it gives clears the terminal meanwhile.
+        wait: Seconds to wait for an answer.
+        source: Where answers are typed; standard input by default.
+    """
+
+    name = "person"
+
+    def __init__(
+        self,
+        console: Console,
+        aside: Callable[[], AbstractContextManager[object]],
+        *,
+        wait: float = WAIT,
+        source: TextIO | None = None,
+    ):
+        self._console, self._aside, self._wait = console, aside, wait
+        self._source = sys.stdin if source is None else source
+
+    def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
+        """Answer every question, in order; anything but yes and no is *unknown*."""
+        with self._aside():
+            return [self._ask(question) for question in questions]
+
+    def _ask(self, question: Question) -> Answer:
+        self._console.print(
+            f"\a  [bold]{escape(question.text)}[/] [dim]y, n, or Enter if you cannot tell "
+            f"({self._wait:g} s):[/] ",
+            end="",
+        )
+        ready, _, _ = select.select([self._source], [], [], self._wait)
+        if not ready:
+            self._console.print("[dim]nobody answered[/]")
+            return Answer(question, Reply.UNKNOWN, source="person", text="nobody answered")
+        typed = self._source.readline().strip()
+        reply = _REPLIES.get(typed.lower(), Reply.UNKNOWN)
+        return Answer(question, reply, source="person", text=typed)
