@@ -57,6 +57,7 @@ class TrialConfig:
         calibration: What the VLM's answers are worth, for monitors that weigh them; None for the
             shipped one of this VLM, or a cautious default.
         experience: What such a monitor learned in earlier trials.
+        experience_file: Where that is kept, for whoever goes on with the trial.
         options: Further keyword arguments for the plug-ins (`base_url`, `majority`, …).
     """
 
@@ -79,6 +80,7 @@ class TrialConfig:
     action_deadline: float | None = None
     calibration: Calibration | None = None
     experience: Experience | None = None
+    experience_file: str | None = None
     options: dict[str, Any] = field(default_factory=dict)
 
 
@@ -165,15 +167,20 @@ class Trial:
         context["views"] = tuple(self.world.views())
         pictures = getattr(self.world, "has_pictures", True)
         self.vlm_spec = config.vlm or ("embedded" if pictures else "oracle")
-        context["calibration"] = config.calibration or shipped_calibration(self.vlm_spec)
-        context["experience"] = config.experience
+        calibration = config.calibration or shipped_calibration(self.vlm_spec)
+        context["calibration"] = calibration
+        context["experience"] = (
+            None
+            if config.experience is None
+            else config.experience.with_vlm(self.vlm_spec, calibration)
+        )
         context["limits"] = config.limits
         answering = vlm or load(Kind.VLM, self.vlm_spec.partition(":")[0].strip())
         context["noise_model"] = bool(getattr(answering, "noise_model", False))
         self.monitor: Monitor
         self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor, context)
-        weighs = "calibration" in by_monitor
-        self.calibration: Calibration | None = context["calibration"] if weighs else None
+        self.weighs_answers = "calibration" in by_monitor
+        self.calibration: Calibration | None = calibration if self.weighs_answers else None
         made, by_vlm = make_from(Kind.VLM, self.vlm_spec, context) if vlm is None else (vlm, set())
         self.vlm: VLM = made
         if not pictures and getattr(self.vlm, "needs_pictures", False):
@@ -222,6 +229,7 @@ class Trial:
                 "action_deadline": config.action_deadline,
                 "calibration": _plain(self.calibration),
                 "experience": _plain(config.experience),
+                "experience_file": config.experience_file,
                 "options": config.options,
             },
         )
@@ -256,6 +264,15 @@ class Trial:
             action_deadline=self.config.action_deadline,
             cancel=cancel,
         )
+
+    @property
+    def experience(self) -> Experience | None:
+        """What the monitor has learned, for the next trial; None where it learns nothing."""
+        learned: Experience | None = getattr(self.monitor, "experience", None)
+        if learned is None:
+            return None
+        answers = 0 if self.calibration is None else self.calibration.rows
+        return learned.model_copy(update={"vlm": self.vlm_spec, "answers": answers})
 
     def _goal_literals(self) -> list[Any]:
         from tpvqa.pddl import literals
@@ -328,6 +345,7 @@ def config_of(started: Started) -> TrialConfig:
         action_deadline=settings["action_deadline"],
         calibration=_read(Calibration, settings.get("calibration")),
         experience=_read(Experience, settings.get("experience")),
+        experience_file=settings.get("experience_file"),
         options=settings["options"],
     )
 
@@ -351,8 +369,16 @@ def resume(
     listeners: Sequence[Callable[[Event], None]] = (),
     cancel: Flag | None = None,
     person: VLM | None = None,
+    then: Callable[[Trial, Ended], None] = lambda trial, ended: None,
 ) -> Ended:
     """Go on with an unfinished episode, with the same random numbers, to the same end.
+
+    Args:
+        folder: The episode's.
+        listeners: Told of every event, recorded ones too.
+        cancel: Ends it early.
+        person: Answers where the monitor asks a person.
+        then: Told the trial and how it ended.
 
     Raises:
         EpisodeError: There is nothing to go on with, it has ended already, or a file that it
@@ -370,7 +396,7 @@ def resume(
         _same_files(started, trial.started())
         writer = EpisodeWriter(folder, resume=len(events))
         try:
-            return trial.run(
+            ended = trial.run(
                 writer,
                 started=started,
                 recorded=events,
@@ -378,5 +404,7 @@ def resume(
                 listeners=listeners,
                 cancel=cancel,
             )
+            then(trial, ended)
+            return ended
         finally:
             writer.close()

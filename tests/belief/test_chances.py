@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Beta, Chances
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import Rates
@@ -56,3 +57,17 @@ def test_the_rate_is_found_from_probable_cases() -> None:
 def test_a_rate_that_was_believed_for_certain_can_be_kept(rate: float) -> None:
     known = Experience.of(Chances(Rates(rate, rate, 0.0)), Trust(), 1)
     assert isclose(known.chances().rates.failure, rate, abs_tol=1e-3)
+
+
+def test_how_far_a_vlm_is_trusted_is_not_taken_over_for_another() -> None:
+    trust = Trust()
+    for _ in range(20):
+        trust.learn(0.95, -2.0)
+    calibration = Calibration.default("a")
+    known = Experience.of(Chances(Rates()), trust, 3).with_vlm("a", calibration)
+    again = Experience.of(Chances(Rates()), trust, 3).model_copy(update={"vlm": "a"})
+    assert known.trust is None  # learned of nobody in particular
+    assert again.with_vlm("a", calibration).trust == trust.weights
+    assert again.with_vlm("b", calibration).trust is None
+    other = calibration.model_copy(update={"rows": 50})
+    assert again.with_vlm("a", other).trust is None

@@ -224,7 +224,10 @@ def test_a_run_of_episodes_is_one_batch_and_is_begun_anew(tmp_path: Path) -> Non
 def test_what_is_wrongly_believed_is_another_vlms_calibration_without_how_sure_it_is() -> None:
     cell = replace(CELL, vlm="oracle:0.7", condition="believed=oracle:0.9,carried=30")
     assert source_of(cell).vlm == "oracle:0.9"
-    blind = by_replies(Calibration.default())
+    default = Calibration.default()
+    assert default.group_of(Way.EFFECT, "on").curve is not None
+    blind = by_replies(default)
+    assert blind.group_of(Way.EFFECT, "on").curve is None
     assert blind.whole.log_ratio(Reply.YES, 0.99) == blind.whole.log_ratio(Reply.YES, 0.51) > 1
 
 

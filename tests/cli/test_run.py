@@ -16,6 +16,7 @@ import pytest
 from tests.cli.conftest import Run
 from tests.planning.test_processes import eventually
 from tpvqa import __version__
+from tpvqa.belief.experience import Experience
 from tpvqa.episodes import Ended, read_episode
 from tpvqa.tasks import find_task
 
@@ -85,6 +86,32 @@ def test_files_that_a_monitor_cannot_use_are_refused(tpvqa: Run) -> None:
     assert code == 2
     assert "broken.json" in err
     assert not Path("episodes").exists()
+
+
+def test_experience_is_kept_for_one_vlm_and_by_whoever_goes_on(tpvqa: Run) -> None:
+    words = ["--world", "symbolic", "--experience", "known.json", "--seed", 3]
+    assert tpvqa("run", "serve_breakfast", *words, "--vlm", "oracle:0.7", "--out", "one")[0] == 0
+    one = Experience.load(Path("known.json"))
+    assert one is not None
+    assert (one.vlm, one.trials) == ("oracle:0.7", 1)
+
+    log = Path("one/episode.jsonl")
+    log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:40]))
+    Path("known.json").unlink()
+    assert tpvqa("resume", "one")[0] == 0
+    assert Experience.load(Path("known.json")) == one
+
+    log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:40]))
+    code, _, err = tpvqa("resume", "one")
+    assert code == 0
+    assert "was written by other trials" in err
+    assert Experience.load(Path("known.json")) == one
+
+    assert tpvqa("run", "serve_breakfast", *words, "--vlm", "oracle:0.9", "--out", "two")[0] == 0
+    two = Experience.load(Path("known.json"))
+    assert two is not None
+    assert (two.vlm, two.trials) == ("oracle:0.9", 2)
+    assert sum(two.failure) > sum(one.failure)
 
 
 def test_without_a_questions_file_the_fallbacks_are_reported_once(tpvqa: Run) -> None:

@@ -166,8 +166,7 @@ def test_with_a_right_calibration_trust_stays_where_it_is_though_answers_repeat(
             experience=experience,
             episode=episode,
         )
-        assert isinstance(trial.monitor, BeliefMonitor)
-        experience = trial.monitor.experience
+        experience = trial.experience
     assert isinstance(trial.monitor, BeliefMonitor)
     assert trial.monitor.trust is not None
     assert 0.7 < trial.monitor.trust.mean < 1.6
@@ -328,7 +327,7 @@ def test_it_learns_from_trial_to_trial_that_the_vlm_is_worse_than_it_was_told(
             episode=episode,
         )
         assert isinstance(trial.monitor, BeliefMonitor)
-        experience = trial.monitor.experience
+        experience = trial.experience
         assert trial.monitor.trust is not None
         means.append(trial.monitor.trust.mean)
     assert experience is not None

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -157,6 +157,14 @@ class Calibration(_Model):
                 own = (group for group in self.groups if group.way is each)
                 found[way].update({group.predicate: group for group in own if group.predicate})
         return found
+
+    def model_copy(
+        self, *, update: Mapping[str, Any] | None = None, deep: bool = False
+    ) -> "Calibration":
+        """A copy with some fields changed, which keeps nothing that was worked out from them."""
+        copy = super().model_copy(update=update, deep=deep)
+        copy.__dict__.pop("_nearest", None)
+        return copy
 
     @classmethod
     def default(cls, vlm: str = "") -> "Calibration":

@@ -8,6 +8,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Beta, Chances
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.trust import GRID, Trust
@@ -24,7 +25,9 @@ class Experience(BaseModel):
         failure: Cases for and against an action failing, prior ones included.
         disturbance: Cases for and against a failure disturbing something.
         trust: Probabilities of the factors by which the VLM's answers are worth more or less than
-            its calibration says (`trust.GRID`).
+            its calibration says (`trust.GRID`); None where nothing was learned of them.
+        vlm: Which VLM that was.
+        answers: How many labelled answers its calibration was learnt from.
         trials: How many trials that is from.
     """
 
@@ -32,25 +35,31 @@ class Experience(BaseModel):
 
     failure: Cases
     disturbance: Cases
-    trust: tuple[Annotated[float, Field(ge=0)], ...] = Field(
-        min_length=len(GRID), max_length=len(GRID)
-    )
+    trust: (
+        Annotated[
+            tuple[Annotated[float, Field(ge=0)], ...],
+            Field(min_length=len(GRID), max_length=len(GRID)),
+        ]
+        | None
+    ) = None
+    vlm: str = ""
+    answers: int = Field(default=0, ge=0)
     trials: int = Field(default=0, ge=0)
 
     @field_validator("trust")
     @classmethod
-    def _some(cls, weights: tuple[float, ...]) -> tuple[float, ...]:
-        if sum(weights) <= 0:
+    def _some(cls, weights: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        if weights is not None and sum(weights) <= 0:
             raise ValueError("the probabilities add up to nothing")
         return weights
 
     @staticmethod
-    def of(chances: Chances, trust: Trust, trials: int) -> "Experience":
+    def of(chances: Chances, trust: Trust | None, trials: int) -> "Experience":
         """What a monitor has learned by the end of a trial."""
         return Experience(
             failure=_cases(chances.failure),
             disturbance=_cases(chances.disturbance),
-            trust=trust.weights,
+            trust=None if trust is None else trust.weights,
             trials=trials,
         )
 
@@ -65,11 +74,20 @@ class Experience(BaseModel):
         chances.disturbance = Beta(*self.disturbance)
         return chances
 
-    def trusting(self) -> Trust:
-        """How far to trust the VLM in the next trial."""
+    def trusting(self) -> Trust | None:
+        """How far to trust the VLM in the next trial; None where nothing was learned of it."""
+        if self.trust is None:
+            return None
         trust = Trust()
         trust.weights = self.trust
         return trust
+
+    def with_vlm(self, vlm: str, calibration: Calibration | None) -> "Experience":
+        """What it says of a robot with this VLM: of another one, or with another calibration, how
+        far to trust it has to be learned anew."""
+        known = {"vlm": vlm, "answers": 0 if calibration is None else calibration.rows}
+        same = self.trust is None or (self.vlm, self.answers) == (vlm, known["answers"])
+        return self.model_copy(update=known if same else {**known, "trust": None})
 
     @classmethod
     def load(cls, path: Path) -> "Experience | None":

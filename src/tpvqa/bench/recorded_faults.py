@@ -5,7 +5,6 @@ from pathlib import Path
 
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.experience import Experience
-from tpvqa.belief.trust import Trust
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.events import Acted
 from tpvqa.errors import CalibrationError
@@ -46,4 +45,4 @@ def experience_from(folders: Iterable[Path | str]) -> Experience:
             "No episode says what truly came of its actions, as in a simulated world it would. "
             "Leave --experience out: `tpvqa run --experience FILE` learns while it runs"
         )
-    return Experience.of(chances, Trust(), trials)
+    return Experience.of(chances, None, trials)

@@ -95,9 +95,8 @@ class Stage:
         with self.trial(config) as trial:
             judge = Judge(true_simulation(trial), self.actions)
             ended = self.play(trial, judge)
-            learned = getattr(trial.monitor, "experience", None)
-        if not isinstance(learned, Experience):
-            learned = None
+            learned = trial.experience
+            trust = None if learned is None else learned.trusting()
         figures = {
             "completed": bool(ended.completed),
             "because": ended.because,
@@ -113,7 +112,7 @@ class Stage:
             "first_plan": judge.first_plan or 0,
             "answers": dict(judge.answers),
             "decisions": dict(judge.decisions),
-            "trust": None if learned is None else round(learned.trusting().mean, 4),
+            "trust": None if trust is None else round(trust.mean, 4),
         }
         return figures, learned
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tpvqa.cli.terminal import EpisodeView
     from tpvqa.episodes import Ended
     from tpvqa.questions import QuestionBook
+    from tpvqa.trial import Trial
 
 _EXIT = "Exit codes: 0 goal reached, 1 not reached, 2 bad input, 130 interrupted."
 
@@ -147,11 +148,12 @@ def run(
         action_deadline=action_deadline,
         calibration=None if calibration is None else Calibration.load(calibration),
         experience=None if experience is None else Experience.load(experience),
+        experience_file=None if experience is None else str(experience.resolve()),
         options={name: value for name, value in options.items() if value is not None},
     )
     views: list[EpisodeView] = []
     with Trial(config, person=_person(views, as_json=as_json)) as trial:
-        if (calibration or experience) and trial.calibration is None:
+        if (calibration or experience) and not trial.weighs_answers:
             raise TpvqaError(
                 f"The monitor {monitor} weighs no answers: leave out --calibration and "
                 "--experience, or take --monitor belief."
@@ -166,9 +168,7 @@ def run(
                 ended = trial.run(writer, folder=folder, listeners=[view])
         finally:
             writer.close()
-        learned = getattr(trial.monitor, "experience", None)
-    if experience is not None and learned is not None:
-        learned.save(experience)
+        _keep_experience(trial, ended)
     _finish(ended, folder, as_json=as_json)
 
 
@@ -185,7 +185,12 @@ def resume(
     views: list[EpisodeView] = []
     with _view(as_json=as_json) as view:
         views.append(view)
-        ended = go_on(episode, listeners=[view], person=_person(views, as_json=as_json))
+        ended = go_on(
+            episode,
+            listeners=[view],
+            person=_person(views, as_json=as_json),
+            then=_keep_experience,
+        )
     _finish(ended, episode, as_json=as_json)
 
 
@@ -241,6 +246,25 @@ def _view(*, as_json: bool, book: "QuestionBook | None" = None):  # type: ignore
         if as_json and not console.is_terminal
         else EpisodeView(console, book=book)
     )
+
+
+def _keep_experience(trial: "Trial", ended: "Ended") -> None:
+    """Write what was learned where the user keeps it, unless other trials wrote there since."""
+    from tpvqa.belief.experience import Experience
+
+    learned, config = trial.experience, trial.config
+    if learned is None or config.experience_file is None or ended.because == "cancelled":
+        return
+    path = Path(config.experience_file)
+    before = 0 if config.experience is None else config.experience.trials
+    there = Experience.load(path)
+    if (0 if there is None else there.trials) != before:
+        print(
+            f"note: {path} was written by other trials since this one began, and is left as it is",
+            file=sys.stderr,
+        )
+        return
+    learned.save(path)
 
 
 def _person(views: "list[EpisodeView]", *, as_json: bool) -> "TerminalPerson | None":

@@ -83,8 +83,8 @@ class BeliefMonitor:
         self._all_facts = without == "relevance"
         self.trust: Trust | None = None
         if self._learn and without != "calibration":
-            known = Trust.after(calibration.rows)
-            self.trust = known if experience is None else experience.trusting()
+            learned = None if experience is None else experience.trusting()
+            self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
         self.evidence = Evidence(self.belief, calibration, self.trust)
         self._chooser = Chooser(self.belief.model, self.costs)
