@@ -90,6 +90,8 @@ class Chooser:
         self._found: dict[int, tuple[int, AnnotatedPlan] | None] = {}
         self._goals: dict[int, bool] = {}
         self._cost_of: dict[str, dict[int, float]] = {}
+        self._rest: dict[int, float] = {}
+        self._lost: float | None = None
         self._rates = Rates()
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
@@ -103,12 +105,12 @@ class Chooser:
             self.plans.remove(plan)
         self.plans.insert(0, plan)
         self._found.clear()
-        self._cost_of.clear()
+        self._forget()
 
     def give_up_on(self, state: State) -> None:
         """Note that no plan exists from a state."""
         self.hopeless.add(state)
-        self._cost_of.clear()
+        self._forget()
 
     def postpone(self, state: State) -> None:
         """Note that the planner found no plan in time; it may be asked after the next action."""
@@ -119,7 +121,7 @@ class Chooser:
         self._postponed.clear()
         if self.left is not None:
             self.left -= 1
-            self._cost_of.clear()
+            self._forget()
 
     def shortest(self, number: int) -> tuple[int, AnnotatedPlan] | None:
         """The fewest actions to the goal by a known plan, and that plan."""
@@ -162,7 +164,7 @@ class Chooser:
         """
         if rates != self._rates:
             self._rates = rates
-            self._cost_of.clear()
+            self._forget()
         ranked = belief.ranked()
         choices = [
             each
@@ -212,6 +214,12 @@ class Chooser:
 
     def _to_go(self, number: int) -> float:
         """What the rest of the shortest plan costs: repeated where checks say so, or unchecked."""
+        known = self._rest.get(number)
+        if known is None:
+            known = self._rest[number] = self._worked_out(number)
+        return known
+
+    def _worked_out(self, number: int) -> float:
         found = self.shortest(number)
         if found is not None:
             steps: float = found[0]
@@ -236,8 +244,16 @@ class Chooser:
     def _failure(self) -> float:
         """What a failed task costs: at least twice what it takes to do it, so that long plans
         are worth their while."""
-        acting = self._longest() * self._costs.action / max(1 - self._rates.failure, 0.05)
-        return max(self._costs.failure, 2 * acting)
+        if self._lost is None:
+            acting = self._longest() * self._costs.action / max(1 - self._rates.failure, 0.05)
+            self._lost = max(self._costs.failure, 2 * acting)
+        return self._lost
+
+    def _forget(self) -> None:
+        """What was worked out holds for other plans, rates or limits."""
+        self._cost_of.clear()
+        self._rest.clear()
+        self._lost = None
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[str | None, Choice] = {}
