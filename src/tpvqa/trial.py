@@ -271,8 +271,8 @@ class Trial:
         learned: Experience | None = getattr(self.monitor, "experience", None)
         if learned is None:
             return None
-        answers = 0 if self.calibration is None else self.calibration.rows
-        return learned.model_copy(update={"vlm": self.vlm_spec, "answers": answers})
+        known = "" if self.calibration is None else self.calibration.fingerprint
+        return learned.model_copy(update={"vlm": self.vlm_spec, "calibration": known})
 
     def _goal_literals(self) -> list[Any]:
         from tpvqa.pddl import literals

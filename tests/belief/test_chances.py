@@ -65,9 +65,11 @@ def test_how_far_a_vlm_is_trusted_is_not_taken_over_for_another() -> None:
         trust.learn(0.95, -2.0)
     calibration = Calibration.default("a")
     known = Experience.of(Chances(Rates()), trust, 3).with_vlm("a", calibration)
-    again = Experience.of(Chances(Rates()), trust, 3).model_copy(update={"vlm": "a"})
+    again = Experience.of(Chances(Rates()), trust, 3).model_copy(
+        update={"vlm": "a", "calibration": calibration.fingerprint}
+    )
     assert known.trust is None  # learned of nobody in particular
     assert again.with_vlm("a", calibration).trust == trust.weights
     assert again.with_vlm("b", calibration).trust is None
-    other = calibration.model_copy(update={"rows": 50})
+    other = calibration.model_copy(update={"repeat_same_view": 0.1})
     assert again.with_vlm("a", other).trust is None

@@ -10,17 +10,20 @@ from contextlib import nullcontext
 from io import StringIO
 from itertools import pairwise
 from pathlib import Path
+from threading import Timer
 
 import pytest
 from rich.console import Console
 
 from tpvqa.cli.person import TerminalPerson
-from tpvqa.episodes import Ended, read_episode
-from tpvqa.episodes.events import Answered, Asked
+from tpvqa.cli.terminal import EpisodeView
+from tpvqa.episodes import Ended, MemoryWriter, read_episode
+from tpvqa.episodes.events import Answered, Asked, Resumed
 from tpvqa.observation import Observation
 from tpvqa.pddl import Literal, load_task
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
+from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import Reply
 
 LOOK = Observation(0, 0.0)
@@ -40,9 +43,11 @@ def typing() -> Iterator[tuple[int, TerminalPerson]]:
     [
         ("y\n", Reply.YES),
         (" No \n", Reply.NO),
-        ("\n", Reply.UNKNOWN),
-        ("perhaps\n", Reply.UNKNOWN),
+        ("\n", Reply.CANNOT_SEE),
+        ("perhaps\n", Reply.CANNOT_SEE),
+        ("\udcff\n", Reply.CANNOT_SEE),
         ("", Reply.UNKNOWN),
+        ("\x04", Reply.UNKNOWN),
     ],
 )
 def test_what_is_typed_counts_and_what_is_late_is_unknown(
@@ -52,7 +57,9 @@ def test_what_is_typed_counts_and_what_is_late_is_unknown(
     task = load_task("clean_dishes")
     book = QuestionBook.load(find_task("clean_dishes").questions, task)
     question = book.fact(Literal(next(iter(task.init))))
-    os.write(keyboard, typed.encode())
+    os.write(keyboard, b"n\nn\n")  # before the question: no answer to it
+    typist = Timer(0.1, os.write, (keyboard, typed.encode(errors="surrogateescape")))
+    typist.start()
     assert [answer.reply for answer in person.ask(LOOK, [question])] == [reply]
 
 
@@ -89,3 +96,23 @@ def test_a_user_at_a_terminal_is_asked(tmp_path: Path) -> None:
     assert told
     assert all(answer.reply is Reply.YES for answer in told)
     assert b"y, n, or Enter" in shown
+
+
+def test_what_was_said_before_stays_on_the_screen() -> None:
+    out = StringIO()
+    view = EpisodeView(Console(file=out, force_terminal=True, width=80), live=True)
+    with view:
+        trial_of("clean_dishes").run(MemoryWriter(resumable=False), listeners=[view])
+        before = len(out.getvalue())
+        with view.aside():
+            out.write("Is it? y\n")
+            asked = len(out.getvalue())
+        view(Resumed())
+    after = out.getvalue()[asked:]
+    assert out.getvalue()[before:asked].endswith("Is it? y\n")
+    first = after[: after.index("gone on")]
+    assert "\x1b[1A" not in first  # the cursor does not go up over the answer
+
+
+def trial_of(task: str) -> Trial:
+    return Trial(TrialConfig(task=task, world="symbolic", vlm="oracle"))

@@ -88,6 +88,12 @@ def test_files_that_a_monitor_cannot_use_are_refused(tpvqa: Run) -> None:
     assert not Path("episodes").exists()
 
 
+def test_without_standard_input(tmp_path: Path) -> None:
+    command = f"{sys.executable} -m tpvqa run clean_dishes --world symbolic <&-"
+    done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_experience_is_kept_for_one_vlm_and_by_whoever_goes_on(tpvqa: Run) -> None:
     words = ["--world", "symbolic", "--experience", "known.json", "--seed", 3]
     assert tpvqa("run", "serve_breakfast", *words, "--vlm", "oracle:0.7", "--out", "one")[0] == 0

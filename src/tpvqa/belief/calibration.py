@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from hashlib import sha256
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -165,6 +166,11 @@ class Calibration(_Model):
         copy = super().model_copy(update=update, deep=deep)
         copy.__dict__.pop("_nearest", None)
         return copy
+
+    @property
+    def fingerprint(self) -> str:
+        """Tells it from other calibrations."""
+        return sha256(self.model_dump_json().encode()).hexdigest()[:12]
 
     @classmethod
     def default(cls, vlm: str = "") -> "Calibration":

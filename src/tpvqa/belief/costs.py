@@ -14,7 +14,7 @@ class Costs(BaseModel):
         person: One question to a person; None where nobody is there.
         failure: A trial that ends without its goal, or believing wrongly that it is reached.
         questions_per_step: Most questions between two actions.
-        questions_per_trial: Most questions in a trial.
+        questions_per_trial: Most questions in a trial; by default what a failed task costs.
         looks_per_step: Most looks between two actions.
         looks_per_trial: Most looks in a trial.
     """
@@ -28,6 +28,6 @@ class Costs(BaseModel):
     person: float | None = Field(default=None, ge=0)
     failure: float = Field(default=50.0, gt=0)
     questions_per_step: int = Field(default=1000, ge=0)
-    questions_per_trial: int = Field(default=10000, ge=0)
+    questions_per_trial: int = Field(default=5000, ge=0)
     looks_per_step: int = Field(default=1000, ge=0)
     looks_per_trial: int = Field(default=10000, ge=0)

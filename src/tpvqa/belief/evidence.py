@@ -6,6 +6,7 @@ from math import exp, log
 
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.calibration import Apart, Calibration
+from tpvqa.belief.chances import Beta
 from tpvqa.belief.counts import PSEUDO
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.trust import Trust
@@ -19,8 +20,12 @@ SURPRISING = 0.25
 """An answer less probable than this makes that chance be taken in."""
 PERSON = 0.99
 """How often a person's answer is right."""
+PERSONS_VIEW = "a person's"
 SKILL = 0.9
 """How far a skill is believed that says that it failed."""
+PAIRS, ROWS_A_PAIR = 4.0, 8.0
+"""What a calibration's ρ counts for, in pairs of answers: without data so many, and one more for so
+many labelled answers."""
 
 Picture = Hashable
 """What tells one picture from another: what it shows, or else the number of the look."""
@@ -52,7 +57,8 @@ class Evidence:
     """Takes answers into a belief.
 
     With probability ρ a further look at an unchanged fact only repeats the last answer. Whether
-    it is unchanged is known as well as the fact was after that answer.
+    it is unchanged is known as well as the fact was after that answer. ρ has a Beta prior around
+    the calibration's and is learned from every further answer, where trust is.
 
     Args:
         belief: What is believed.
@@ -71,6 +77,11 @@ class Evidence:
     ):
         self._belief, self._calibration, self._trust = belief, calibration, trust
         self._unexplained = unexplained
+        pairs = PAIRS + calibration.rows / ROWS_A_PAIR
+        self._repeats = {
+            apart: Beta(pairs * calibration.repeat(apart), pairs * (1 - calibration.repeat(apart)))
+            for apart in Apart
+        }
         self._last: dict[str, _Last] = {}
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
@@ -115,7 +126,7 @@ class Evidence:
         right = (rates.yes_if_true + 1 - rates.yes_if_false) / 2
         if self._trust is not None:
             right = 0.5 + _share(self._trust, rates.yes_if_true, rates.yes_if_false) * (right - 0.5)
-        return answers_to_be_sure(right, self._calibration.repeat_same_view)
+        return answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
 
     def expect(self, question: Question, view: str | None) -> Reliability:
         """What the next answer to a question, at a new look from a view, is worth."""
@@ -129,7 +140,7 @@ class Evidence:
         last = self._last.get(question.text)
         if last is not None:
             true, false = self._with_history(question, last, true, false)
-            rho = self._calibration.repeat(_apart(last, view))
+            rho = self._repeats[_apart(last, view)].mean
             before = 1.0 if last.reply is Reply.YES else 0.0
             if_true, if_false = _unchanged(last)
             true = rho * if_true * before + (1 - rho * if_true) * true
@@ -164,9 +175,16 @@ class Evidence:
             else:
                 yes_true, yes_false = self._with_history(question, last, 1 - if_true, 1 - if_false)
                 if_true, if_false = 1 - yes_true, 1 - yes_false
-            rho = self._calibration.repeat(_apart(last, view))
+            repeats = self._repeats[_apart(last, view)]
             same = 1.0 if last.reply is answer.reply else 0.0
-            again_true, again_false = (rho * unchanged for unchanged in _unchanged(last))
+            unchanged = _unchanged(last)
+            again_true, again_false = (repeats.mean * share for share in unchanged)
+            if self._trust is not None:
+                fresh = true * unchanged[0] * if_true + (1 - true) * unchanged[1] * if_false
+                old = same * (true * unchanged[0] + (1 - true) * unchanged[1])
+                other = true * (1 - unchanged[0]) * if_true
+                other += (1 - true) * (1 - unchanged[1]) * if_false
+                _learn_repeats(repeats, fresh, old, other)
             if_true = again_true * same + (1 - again_true) * if_true
             if_false = again_false * same + (1 - again_false) * if_false
         probable = true * if_true + (1 - true) * if_false
@@ -201,6 +219,8 @@ class Evidence:
     def take_from_person(self, answer: Answer) -> None:
         """Weigh the belief by a person's answer."""
         atom = answer.question.atom
+        if answer.reply is Reply.CANNOT_SEE:
+            self.silence(answer.question.text, PERSONS_VIEW)
         if atom is not None and answer.reply in (Reply.YES, Reply.NO):
             right = PERSON if answer.reply is Reply.YES else 1 - PERSON
             self._belief.open((atom, *answer.question.alike), self._unexplained)
@@ -210,6 +230,21 @@ class Evidence:
 def _unchanged(last: _Last) -> tuple[float, float]:
     """Probability that yes (no) was right at the last answer already, where it is right now."""
     return (1.0, 1.0) if last.settled else (last.true, 1 - last.true)
+
+
+def _learn_repeats(repeats: Beta, fresh: float, again: float, changed: float) -> None:
+    """Learn from one more answer how often answers repeat.
+
+    Args:
+        repeats: What is known of ρ.
+        fresh: Probability of the answer where nothing has changed and it is drawn afresh.
+        again: The same where it repeats the last one.
+        changed: Probability of the answer where the fact has changed since.
+    """
+    yes, no = repeats.mean * again, (1 - repeats.mean) * fresh
+    total = yes + no + changed
+    if total > 0:
+        repeats.learn(yes / total, no / total)
 
 
 def _apart(last: _Last, view: str | None) -> Apart:

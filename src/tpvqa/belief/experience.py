@@ -27,7 +27,7 @@ class Experience(BaseModel):
         trust: Probabilities of the factors by which the VLM's answers are worth more or less than
             its calibration says (`trust.GRID`); None where nothing was learned of them.
         vlm: Which VLM that was.
-        answers: How many labelled answers its calibration was learnt from.
+        calibration: Which calibration (`Calibration.fingerprint`).
         trials: How many trials that is from.
     """
 
@@ -43,7 +43,7 @@ class Experience(BaseModel):
         | None
     ) = None
     vlm: str = ""
-    answers: int = Field(default=0, ge=0)
+    calibration: str = ""
     trials: int = Field(default=0, ge=0)
 
     @field_validator("trust")
@@ -85,8 +85,8 @@ class Experience(BaseModel):
     def with_vlm(self, vlm: str, calibration: Calibration | None) -> "Experience":
         """What it says of a robot with this VLM: of another one, or with another calibration, how
         far to trust it has to be learned anew."""
-        known = {"vlm": vlm, "answers": 0 if calibration is None else calibration.rows}
-        same = self.trust is None or (self.vlm, self.answers) == (vlm, known["answers"])
+        known = {"vlm": vlm, "calibration": "" if calibration is None else calibration.fingerprint}
+        same = self.trust is None or (self.vlm, self.calibration) == tuple(known.values())
         return self.model_copy(update=known if same else {**known, "trust": None})
 
     @classmethod

@@ -7,7 +7,7 @@ import numpy as np
 
 from tpvqa.belief.choices import Table
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import PERSON, Evidence, Picture
+from tpvqa.belief.evidence import PERSON, PERSONS_VIEW, Evidence, Picture
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import TIMES, Floats, Reliability, gains, joint_gains
 from tpvqa.questions.question import Question
@@ -94,9 +94,10 @@ class Inquirer:
             if_true = truth @ weighted
             if_false = total - if_true
             most = now - float(if_true.min()) - float(if_false.min())
-            if person and self._costs.person is not None:
+            unable = self._evidence.silent(question.text, PERSONS_VIEW)
+            if person and self._costs.person is not None and not unable:
                 told = gains(if_true, if_false, Reliability(PERSON, 1 - PERSON), (1,))
-                saving = float(told[0]) - self._costs.person / late
+                saving = float(told[0]) - self._costs.person
                 found = _better(found, Inquiry(question, 1, saving, person=True))
             open_views = views(question)
             if not open_views:

@@ -51,7 +51,7 @@ def fit_curves(answers: Sequence[LabelledAnswer]) -> Curves:
     one of the two ever was right tells none, and follows the others. `Calibration.default` counts
     as `PSEUDO` answers. A slope or a sign that points the wrong way is left out, and the rest
     fitted again: of dozens of groups one or two do so by chance, and hardly any VLM means no by
-    yes.
+    yes. The curve of a way, and that of all, is the mean of its groups'.
 
     Args:
         answers: Yes and no with their P(yes).
@@ -68,10 +68,26 @@ def fit_curves(answers: Sequence[LabelledAnswer]) -> Curves:
         fitted = _fit(answers, place, without)
         if notices is None:
             notices = [_swapped(key) for key, each in fitted.items() if each.gain < -SURE]
-        astray = {key: each.astray() for key, each in fitted.items()}
-        if not any(astray.values()):
-            return Curves({key: each.curve for key, each in fitted.items()}, tuple(notices))
-        without = {key: without.get(key, set()) | astray[key] for key in fitted}
+        astray = {key: found for key in groups if (found := fitted[key].astray())}
+        if not astray:
+            break
+        without = {key: without.get(key, set()) | astray.get(key, set()) for key in groups}
+    curves = {key: fitted[key].curve for key in groups}
+    count: Counter[Key] = Counter((row.way, row.predicate) for row in answers)
+    for wider in (*ways, WHOLE):
+        within = {key: count[key] for key in groups if wider[0] in (None, key[0])}
+        curves[wider] = _mean(curves, within)
+    return Curves(curves, tuple(notices))
+
+
+def _mean(curves: Mapping[Key, Curve], rows: Mapping[Key, int]) -> Curve:
+    """What an answer of a group that is not known is worth: as much as in those that are."""
+    total = sum(rows.values())
+    slope, intercept, sign = (
+        sum(n * getattr(curves[key], name) for key, n in rows.items()) / total
+        for name in ("slope", "intercept", "sign")
+    )
+    return Curve(slope=slope, intercept=intercept, sign=sign)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +110,8 @@ class _Fitted:
 def _swapped(key: Key) -> str:
     said = " ".join(str(part) for part in key if part is not None) or "all answers"
     return (
-        f"{said}: yes is said more often, or more surely, where no is right. Such answers count as "
-        "worth nothing; see that the question is not worded the other way round."
+        f"{said}: yes is said more often, or more surely, where no is right. What points the wrong "
+        "way is not counted; see that the question is not worded the other way round."
     )
 
 
@@ -109,7 +125,7 @@ def _fit(
     Args:
         answers: What they are fitted to.
         place: Numbers of the ways and groups.
-        without: What is left out of a group's answers; of the whole, of all answers.
+        without: What is left out of a group's answers: slope (1), sign (2).
     """
     told, tells, weights = _default_answers()
     x = np.array([*tells, *(_logit(row.p_yes) for row in answers)])
@@ -117,7 +133,6 @@ def _fit(
     truth = np.array([*told, *(row.truth for row in answers)], bool)
     weight = np.array([*weights, *_balance(answers)])
     terms = np.stack([np.ones(len(x)), x, sign], axis=1)
-    terms[:, list(without.get(WHOLE, ()))] = 0
     for n, row in enumerate(answers, len(tells)):
         terms[n, list(without.get((row.way, row.predicate), ()))] = 0
     design = np.zeros((len(x), 3 + 3 * len(place)))
@@ -136,7 +151,6 @@ def _fit(
     for key in (WHOLE, *place):
         parts = [_combination(key, place, which, design.shape[1]) for which in range(3)]
         own = members[key]
-        _, mean_x, mean_sign = np.average(terms[own], axis=0)
         yes, no = (terms[[n for n in own if sign[n] == said]] for said in (1, -1))
         gain = 0.0
         if len(yes) and len(no):
@@ -144,12 +158,14 @@ def _fit(
             vector = apart @ np.array(parts)
             gain = float(vector @ found / np.sqrt(vector @ covariance @ vector + 1e-12))
         intercept, slope, worth = (float(part @ found) for part in parts)
-        left_out = without.get(key, ())
-        if 1 in left_out:
-            intercept, slope = intercept + slope * mean_x, 0.0
-        if 2 in left_out:
-            intercept, worth = intercept + worth * mean_sign, 0.0
-        curve = Curve(slope=slope, intercept=float(intercept), sign=worth)
+        left_out = without.get(key, set())
+        if left_out == {1, 2}:  # neither the word nor P(yes) tells anything
+            intercept = 0.0
+        curve = Curve(
+            slope=0.0 if 1 in left_out else slope,
+            intercept=intercept,
+            sign=0.0 if 2 in left_out else worth,
+        )
         fitted[key] = _Fitted(curve, gain)
     return fitted
 

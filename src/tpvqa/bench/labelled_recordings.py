@@ -1,4 +1,4 @@
-"""The recorded answers of a VLM beside the truth, each once."""
+"""The recorded answers of a VLM beside the truth, each once in a group."""
 
 from collections.abc import Collection
 

@@ -2,8 +2,9 @@
 
 import select
 import sys
+import termios
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from typing import TextIO
 
 from rich.console import Console
@@ -42,20 +43,26 @@ class TerminalPerson:
         self._source = sys.stdin if source is None else source
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
-        """Answer every question, in order; anything but yes and no is *unknown*."""
+        """Answer every question, in order: *cannot see* where they cannot tell, *unknown* where
+        nobody answers in time."""
         with self._aside():
             return [self._ask(question) for question in questions]
 
     def _ask(self, question: Question) -> Answer:
+        with suppress(termios.error):  # what was typed before is no answer to this
+            termios.tcflush(self._source, termios.TCIFLUSH)
         self._console.print(
             f"\a  [bold]{escape(question.text)}[/] [dim]y, n, or Enter if you cannot tell "
             f"({self._wait:g} s):[/] ",
             end="",
         )
         ready, _, _ = select.select([self._source], [], [], self._wait)
-        if not ready:
+        try:
+            typed = self._source.readline() if ready else ""
+        except UnicodeDecodeError:
+            typed = "\n"
+        if not typed:
             self._console.print("[dim]nobody answered[/]")
             return Answer(question, Reply.UNKNOWN, source="person", text="nobody answered")
-        typed = self._source.readline().strip()
-        reply = _REPLIES.get(typed.lower(), Reply.UNKNOWN)
-        return Answer(question, reply, source="person", text=typed)
+        reply = _REPLIES.get(typed.strip().lower(), Reply.CANNOT_SEE)
+        return Answer(question, reply, source="person", text=typed.strip())

@@ -258,7 +258,7 @@ def _keep_experience(trial: "Trial", ended: "Ended") -> None:
     path = Path(config.experience_file)
     before = 0 if config.experience is None else config.experience.trials
     there = Experience.load(path)
-    if (0 if there is None else there.trials) != before:
+    if there is not None and there.trials != before:
         print(
             f"note: {path} was written by other trials since this one began, and is left as it is",
             file=sys.stderr,
@@ -274,7 +274,8 @@ def _person(views: "list[EpisodeView]", *, as_json: bool) -> "TerminalPerson | N
     from tpvqa.cli.person import TerminalPerson
 
     console = Console()
-    if as_json or not (sys.stdin.isatty() and console.is_terminal):
+    there = sys.stdin is not None and sys.stdin.isatty() and console.is_terminal
+    if as_json or not there:
         return None
     return TerminalPerson(console, lambda: views[0].aside())
 

@@ -93,7 +93,8 @@ class EpisodeView:
         try:
             yield
         finally:
-            if self._live is not None:
+            if self._live is not None:  # a new one: the old one would clear what was typed
+                self._live = Live(console=self._console, auto_refresh=False, transient=True)
                 self._live.start()
 
     def __call__(self, event: Event) -> None:

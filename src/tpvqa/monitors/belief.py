@@ -245,7 +245,7 @@ class BeliefMonitor:
         budget = self._budget()
         questions = self._about_needs(step.book)
         if self._all_facts and budget.questions > 0:
-            fresh = [each for each in questions if each.atom not in self._told and each.atom]
+            fresh = [q for q in questions if q.atom not in self._told and self._open_views(q)]
             doubted = [each for each in fresh if 1e-3 < self._likely(each) < 1 - 1e-3]
             if doubted:
                 return Inquiry(doubted[0], 1, 0.0)
@@ -302,7 +302,7 @@ class BeliefMonitor:
         assert question.atom is not None
         if person:
             answer: Answer = yield AskPerson(question)
-            self._person = answer.reply in (Reply.YES, Reply.NO)
+            self._person = answer.reply is not Reply.UNKNOWN
             self.evidence.take_from_person(answer)
         else:
             looks = 0

@@ -25,6 +25,8 @@ from tpvqa.trial import TrialConfig
 
 Told = Callable[[int, int], None]
 SPEED_FILE = "speed.json"
+METHOD = 2
+"""Changes with how calibrations are learnt, so that a bench does not go on with others."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,6 +84,7 @@ class BeliefBench:
         return {
             **common_settings(self.common),
             "trials of a calibration": self.calibration_episodes,
+            "how calibrations are learnt": METHOD,
             "the embedded network is calibrated in": self.embedded_world,
         }
 

@@ -96,11 +96,14 @@ def calibrations(
 def _of_recordings(
     source: Source, rows: Collection[LabelledAnswer], drawn: Calibration
 ) -> Calibration:
-    """What recorded answers teach, each once; trials only tell how far a look repeats the last."""
+    """What recorded answers teach, each once in a group. Trials only tell how looks repeat."""
     told = told_by(source.vlm.removeprefix("recorded:"), stage(source.task).task)
     recordings = label_recordings(told, {(row.way, row.predicate) for row in rows})
+    kinds = {(way, truth) for way in ("precondition", "effect") for truth in (True, False)}
+    distinct = sum(each.count for way, truth in kinds for each in told.of(way, "", truth=truth))
     return fit(recordings, source.vlm, chosen_looks=False).model_copy(
         update={
+            "rows": distinct,
             "repeat_same_view": drawn.repeat_same_view,
             "repeat_other_view": drawn.repeat_other_view,
         }
