@@ -21,7 +21,8 @@ from tpvqa.loop import run_episode
 from tpvqa.monitors.tpvqa import TPVQA
 from tpvqa.planning import Crashed, Planner, TimedOut
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.trial import Trial, TrialConfig, config_of, resume
+from tpvqa.resuming import config_of, resume
+from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import Reply
 
 

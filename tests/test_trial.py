@@ -12,8 +12,8 @@ from tpvqa.episodes.log import LOG
 from tpvqa.errors import EpisodeError, TpvqaError, UnknownNameError
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.resuming import config_of, resume
 from tpvqa.tasks import find_task
-from tpvqa.trial import config_of, resume
 
 
 @pytest.fixture(scope="module")

@@ -179,7 +179,7 @@ def resume(
 ) -> None:
     """Go on with an episode that was interrupted or killed, to the end it would have had."""
     from tpvqa.episodes.log import episode_folder
-    from tpvqa.trial import resume as go_on
+    from tpvqa.resuming import resume as go_on
 
     episode = episode_folder(episode)
     views: list[EpisodeView] = []

@@ -17,9 +17,8 @@ from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultRules, Rates, fault_model
 from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
 from tpvqa.belief.trust import Trust
-from tpvqa.episodes.events import Limits
 from tpvqa.errors import PlannerError, PluginError
-from tpvqa.monitors.protocol import Check, Step
+from tpvqa.monitors.protocol import Check, Limits, Step
 from tpvqa.monitors.reasons import because, deciding
 from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
 from tpvqa.monitors.verdict import Decision, Verdict

@@ -42,6 +42,22 @@ class Step:
         return self.plan.actions[self.index]
 
 
+class Limits(Protocol):
+    """When a trial is ended without success; see `episodes.Limits`."""
+
+    @property
+    def repeats(self) -> int:
+        """Repeats of one step's action in a row."""
+
+    @property
+    def replans(self) -> int:
+        """Replans in the trial."""
+
+    @property
+    def actions(self) -> int:
+        """Actions in the trial."""
+
+
 @runtime_checkable
 class Monitor(Protocol):
     """Decides, before and after every action, whether to go on, repeat or replan.
