@@ -134,6 +134,8 @@ class Calibration(_Model):
         whole: Of all answers.
         repeat_same_view: ρ between two pictures of one view.
         repeat_other_view: ρ between pictures of two views.
+        pairs_same_view: Pairs of answers that ρ was learnt from; of the same view.
+        pairs_other_view: The same of two views.
         notices: What a user should know of it: P(yes) that points the wrong way.
     """
 
@@ -145,6 +147,8 @@ class Calibration(_Model):
     whole: Group
     repeat_same_view: Probability
     repeat_other_view: Probability
+    pairs_same_view: int = Field(default=0, ge=0)
+    pairs_other_view: int = Field(default=0, ge=0)
     notices: tuple[str, ...] = ()
 
     @cached_property
@@ -215,6 +219,10 @@ class Calibration(_Model):
     def repeat(self, apart: Apart) -> float:
         """ρ: the probability that a further answer only repeats the last one."""
         return self.repeat_same_view if apart is Apart.SAME_VIEW else self.repeat_other_view
+
+    def pairs(self, apart: Apart) -> int:
+        """How many pairs of answers ρ was learnt from."""
+        return self.pairs_same_view if apart is Apart.SAME_VIEW else self.pairs_other_view
 
     @classmethod
     def load(cls, path: Path) -> "Calibration":

@@ -91,6 +91,7 @@ class Chooser:
         self._goals: dict[int, bool] = {}
         self._cost_of: dict[str, dict[int, float]] = {}
         self._rest: dict[int, float] = {}
+        self._ahead_of: dict[int, float] = {}
         self._lost: float | None = None
         self._rates = Rates()
         checks = CHECKS * (costs.question + costs.look)
@@ -199,6 +200,8 @@ class Chooser:
         f, d, s = self._rates.failure, self._rates.disturbance, self._rates.spontaneous
         outcomes = self._model.outcomes(number, action)
         failed = self._to_go(number)
+        if outcomes.achieved or outcomes.intended is None:
+            failed = self._going_on(number)
         if outcomes.achieved:
             return self._step + failed
         if outcomes.undone:
@@ -211,6 +214,23 @@ class Chooser:
             falls = sum(share * self._to_go(other) for share, other in outcomes.undone_after)
             done = (1 - s) * done + s * falls
         return self._step + (1 - f) * done + f * failed
+
+    def _going_on(self, number: int) -> float:
+        """What is left after an action that could do nothing: the next one with its risks.
+
+        `_to_go` knows no disturbances. If it were taken here, an action that changes nothing would
+        look better than one that may go wrong.
+        """
+        known = self._ahead_of.get(number)
+        if known is None:
+            known, found = self._to_go(number), self.shortest(number)
+            if found is not None and found[0]:
+                action = found[1].actions[len(found[1].actions) - found[0]]
+                outcomes = self._model.outcomes(number, action)
+                if outcomes.intended is not None and not outcomes.achieved:
+                    known = max(known, self._cost(action, number))
+            self._ahead_of[number] = known
+        return known
 
     def _to_go(self, number: int) -> float:
         """What the rest of the shortest plan costs: repeated where checks say so, or unchecked."""
@@ -253,6 +273,7 @@ class Chooser:
         """What was worked out holds for other plans, rates or limits."""
         self._cost_of.clear()
         self._rest.clear()
+        self._ahead_of.clear()
         self._lost = None
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:

@@ -23,10 +23,10 @@ PERSON = 0.99
 PERSONS_VIEW = "a person's"
 SKILL = 0.9
 """How far a skill is believed that says that it failed."""
-PAIRS, ROWS_A_PAIR = 4.0, 8.0
-"""What a calibration's ρ counts for, in pairs of answers: without data so many, and one more for so
-many labelled answers."""
+PAIRS = 4.0
+"""Pairs of answers that ρ counts for without any data."""
 
+Pair = tuple[float, float]
 Picture = Hashable
 """What tells one picture from another: what it shows, or else the number of the look."""
 
@@ -77,9 +77,8 @@ class Evidence:
     ):
         self._belief, self._calibration, self._trust = belief, calibration, trust
         self._unexplained = unexplained
-        pairs = PAIRS + calibration.rows / ROWS_A_PAIR
         self._repeats = {
-            apart: Beta(pairs * calibration.repeat(apart), pairs * (1 - calibration.repeat(apart)))
+            apart: _cases(calibration.repeat(apart), PAIRS + calibration.pairs(apart))
             for apart in Apart
         }
         self._last: dict[str, _Last] = {}
@@ -126,7 +125,7 @@ class Evidence:
         right = (rates.yes_if_true + 1 - rates.yes_if_false) / 2
         if self._trust is not None:
             right = 0.5 + _share(self._trust, rates.yes_if_true, rates.yes_if_false) * (right - 0.5)
-        return answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
+        return answers_to_be_sure(right, self._calibration.repeat_same_view)
 
     def expect(self, question: Question, view: str | None) -> Reliability:
         """What the next answer to a question, at a new look from a view, is worth."""
@@ -180,11 +179,10 @@ class Evidence:
             unchanged = _unchanged(last)
             again_true, again_false = (repeats.mean * share for share in unchanged)
             if self._trust is not None:
-                fresh = true * unchanged[0] * if_true + (1 - true) * unchanged[1] * if_false
-                old = same * (true * unchanged[0] + (1 - true) * unchanged[1])
-                other = true * (1 - unchanged[0]) * if_true
-                other += (1 - true) * (1 - unchanged[1]) * if_false
-                _learn_repeats(repeats, fresh, old, other)
+                # How often this word is said, not how much this P(yes) is worth.
+                rates = self._calibration.rates(question)
+                said = (rates.yes_if_true, rates.yes_if_false)
+                _learn_repeats(repeats, true, said if yes else _others(said), unchanged, same)
             if_true = again_true * same + (1 - again_true) * if_true
             if_false = again_false * same + (1 - again_false) * if_false
         probable = true * if_true + (1 - true) * if_false
@@ -232,19 +230,31 @@ def _unchanged(last: _Last) -> tuple[float, float]:
     return (1.0, 1.0) if last.settled else (last.true, 1 - last.true)
 
 
-def _learn_repeats(repeats: Beta, fresh: float, again: float, changed: float) -> None:
+def _cases(mean: float, cases: float) -> Beta:
+    return Beta(cases * mean, cases * (1 - mean))
+
+
+def _learn_repeats(repeats: Beta, true: float, said: Pair, unchanged: Pair, same: float) -> None:
     """Learn from one more answer how often answers repeat.
 
     Args:
         repeats: What is known of ρ.
-        fresh: Probability of the answer where nothing has changed and it is drawn afresh.
-        again: The same where it repeats the last one.
-        changed: Probability of the answer where the fact has changed since.
+        true: Probability, before the answer, that yes is right.
+        said: Probability of this reply, drawn afresh, where yes is right and where no is.
+        unchanged: Probability that the fact was the same at the last answer, likewise.
+        same: 1 where it is the last reply again, else 0.
     """
-    yes, no = repeats.mean * again, (1 - repeats.mean) * fresh
-    total = yes + no + changed
+    still = (true * unchanged[0], (1 - true) * unchanged[1])
+    changed = (true * (1 - unchanged[0]), (1 - true) * (1 - unchanged[1]))
+    yes = repeats.mean * same * sum(still)
+    no = (1 - repeats.mean) * (still[0] * said[0] + still[1] * said[1])
+    total = yes + no + changed[0] * said[0] + changed[1] * said[1]
     if total > 0:
         repeats.learn(yes / total, no / total)
+
+
+def _others(said: Pair) -> Pair:
+    return 1 - said[0], 1 - said[1]
 
 
 def _apart(last: _Last, view: str | None) -> Apart:

@@ -77,7 +77,14 @@ def fit(rows: Iterable[LabelledAnswer], vlm: str, *, chosen_looks: bool = True) 
         same_view=default.repeat_same_view,
         other_view=default.repeat_other_view,
     )
-    return found.model_copy(update={"repeat_same_view": same, "repeat_other_view": other})
+    return found.model_copy(
+        update={
+            "repeat_same_view": same.rho,
+            "repeat_other_view": other.rho,
+            "pairs_same_view": same.pairs,
+            "pairs_other_view": other.pairs,
+        }
+    )
 
 
 def telling(

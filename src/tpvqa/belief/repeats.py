@@ -1,6 +1,7 @@
 """How often a further look only repeats the last answer, from answers at repeated looks."""
 
 from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,13 +14,20 @@ STRENGTH = 4
 """Pairs that the default counts for: weak, as a few dozen pairs come together in a few trials."""
 
 
+class Repeats(NamedTuple):
+    """ρ, and how many pairs of answers it was learnt from."""
+
+    rho: float
+    pairs: int
+
+
 def fit_repeats(
     placed: Iterable[Placed],
     rates: Callable[[LabelledAnswer], Rates],
     *,
     same_view: float,
     other_view: float,
-) -> tuple[float, float]:
+) -> tuple[Repeats, Repeats]:
     """ρ of the same and of another view, by maximum likelihood under a Beta prior.
 
     P(the last answer again) = ρ + (1 - ρ) P(answer | truth), P(the other one) = (1 - ρ) P(answer |
@@ -39,7 +47,10 @@ def fit_repeats(
         row, last = each.row, each.last
         if last is not None:
             pairs[last.view == row.view].append((last.reply is row.reply, _fresh(row, rates(row))))
-    return _mode(pairs[True], same_view), _mode(pairs[False], other_view)
+    return (
+        Repeats(_mode(pairs[True], same_view), len(pairs[True])),
+        Repeats(_mode(pairs[False], other_view), len(pairs[False])),
+    )
 
 
 def _fresh(row: LabelledAnswer, rates: Rates) -> float:

@@ -106,6 +106,8 @@ def _of_recordings(
             "rows": distinct,
             "repeat_same_view": drawn.repeat_same_view,
             "repeat_other_view": drawn.repeat_other_view,
+            "pairs_same_view": drawn.pairs_same_view,
+            "pairs_other_view": drawn.pairs_other_view,
         }
     )
 
