@@ -5,9 +5,9 @@ its latest step whose needs hold, however the state came about. Needs are regres
 rest of the plan (Fritz and McIlraith 2007).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from tpvqa.pddl import Action, Atom, Literal, State, Task
+from tpvqa.pddl import Action, Atom, Literal, State, Task, literals
 
 Needs = frozenset[Literal]
 
@@ -66,14 +66,15 @@ class AnnotatedPlan:
         return frozenset(each.atom for need in self.needs[first:] for each in need)
 
     def needing(self, atom: Atom, first: int = 0) -> int | None:
-        """The first step from a given one that itself rests on a fact; None for none.
+        """The first step from a given one whose action itself rests on a fact.
 
-        The plan's length stands for the goal.
+        The plan's length stands for the goal; None where the rest of the plan does not need it.
         """
-        last: int | None = None
         for index in range(first, len(self.needs)):
-            if any(each.atom == atom for each in self.needs[index]):
-                last = index
-            elif last is not None:
-                break
-        return last
+            if index == len(self.actions):
+                resting: Iterable[Literal] = self.needs[index]
+            else:
+                resting = literals(self.actions[index].precondition)
+            if any(each.atom == atom for each in resting):
+                return index
+        return None

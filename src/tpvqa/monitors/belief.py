@@ -19,7 +19,7 @@ from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
 from tpvqa.belief.trust import Trust
 from tpvqa.errors import PlannerError, PluginError
 from tpvqa.monitors.protocol import Check, Limits, Step
-from tpvqa.monitors.reasons import because, deciding
+from tpvqa.monitors.reasons import Moment, Told, reason
 from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
 from tpvqa.monitors.verdict import Decision, Verdict
 from tpvqa.observation import Observation
@@ -95,7 +95,7 @@ class BeliefMonitor:
         self._view = self._views[0] if self._views else None
         self._picture: Picture | None = None
         self._looks = self._questions = self._looks_here = self._questions_here = 0
-        self._told: dict[Atom, list[Reply]] = {}
+        self._told: dict[str, Told] = {}
         self._person = self.costs.person is not None
         self._action: Action | None = None
         self._effects: frozenset[Atom] = frozenset()
@@ -244,7 +244,7 @@ class BeliefMonitor:
         budget = self._budget()
         questions = self._about_needs(step.book)
         if self._all_facts and budget.questions > 0:
-            fresh = [q for q in questions if q.atom not in self._told and self._open_views(q)]
+            fresh = [q for q in questions if q.text not in self._told and self._open_views(q)]
             doubted = [each for each in fresh if 1e-3 < self._likely(each) < 1 - 1e-3]
             if doubted:
                 return Inquiry(doubted[0], 1, 0.0)
@@ -299,6 +299,7 @@ class BeliefMonitor:
 
     def _ask(self, question: Question, *, person: bool) -> Generator[Request, Any, None]:
         assert question.atom is not None
+        before = self._likely(question)
         if person:
             answer: Answer = yield AskPerson(question)
             self._person = answer.reply is not Reply.UNKNOWN
@@ -324,7 +325,8 @@ class BeliefMonitor:
             self._questions_here += 1
             self.evidence.take(answer, self._picture, self._view)
         if answer.reply in (Reply.YES, Reply.NO):
-            self._told.setdefault(question.atom, []).append(answer.reply)
+            told = Told((question.atom, *question.alike), before)
+            self._told.setdefault(question.text, told).replies.append(answer.reply)
 
     def _shows_something_new(self, question: Question) -> bool:
         """Whether the latest picture may tell more than what a question was answered before."""
@@ -350,25 +352,22 @@ class BeliefMonitor:
             if not places and self._chooser.changes_left is not None:
                 self._chooser.changes_left -= 1
             place = min(places, key=lambda each: abs(each - step.index), default=None)
-        plan = self._annotated(step)
-        reason = "; ".join(
-            (
-                because(
-                    step,
-                    self.belief,
-                    self._told,
-                    plan,
-                    unseen=self.evidence.unseen,
-                    spent=self._budget().questions <= 0,
-                ),
-                deciding(step, self.belief, decision, action, state, place),
-            )
+        moment = Moment(
+            step,
+            self.belief,
+            self._told,
+            self._annotated(step),
+            acted,
+            unseen=self.evidence.unseen,
+            questions_left=self._budget().questions > 0,
+            actions_left=self._chooser.left,
         )
+        why = reason(moment, decision, action, state, place)
         if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
             acted or place != step.index
         ):
             self._settled = action
-        return Verdict(decision, reason, state, step=place, belief=self._marginals())
+        return Verdict(decision, why, state, step=place, belief=self._marginals())
 
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
