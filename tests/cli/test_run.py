@@ -16,6 +16,7 @@ import pytest
 from tests.cli.conftest import Run
 from tests.planning.test_processes import eventually
 from tpvqa import __version__
+from tpvqa.belief import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.episodes import Ended, read_episode
 from tpvqa.tasks import find_task
@@ -86,6 +87,18 @@ def test_files_that_a_monitor_cannot_use_are_refused(tpvqa: Run) -> None:
     assert code == 2
     assert "broken.json" in err
     assert not Path("episodes").exists()
+
+
+def test_what_answers_are_taken_to_be_worth_is_said(tpvqa: Run) -> None:
+    words = ["run", "clean_dishes", "--world", "symbolic", "--vlm", "oracle:0.9"]
+    assert "there is no calibration of oracle:0.9" in tpvqa(*words)[2]
+    Calibration.default("somebody").save(Path("c.json"))
+    _, _, err = tpvqa(*words, "--calibration", "c.json")
+    assert "learnt of somebody" in err
+    code, _, err = tpvqa("run", "build_tower")
+    assert code == 2
+    assert "--world symbolic" in err
+    assert not Path("episodes/build_tower-seed0").exists()
 
 
 def test_without_standard_input(tmp_path: Path) -> None:

@@ -235,8 +235,8 @@ class Calibration(_Model):
             text = path.read_bytes()
         except OSError as error:
             raise CalibrationError(
-                f"{path}: cannot be read ({error.strerror}). `tpvqa calibrate --out {path}` makes "
-                "it, or name the file that holds the calibration"
+                f"{path}: cannot be read ({error.strerror}). Name the file that `tpvqa calibrate "
+                "--out FILE` wrote"
             ) from error
         try:
             return cls.model_validate_json(text)
@@ -246,9 +246,10 @@ class Calibration(_Model):
             if place == "version":
                 message = "it is of another version; this tpvqa reads version 1"
             else:
-                message = f"{place or 'the file'}: {first['msg']}"
+                message = f"it is no calibration, or a damaged one ({place or 'file'}: "
+                message += f"{first['msg']})"
             raise CalibrationError(
-                f"{path}: {message}. Make it again with `tpvqa calibrate --out {path}`"
+                f"{path}: {message}. Name what `tpvqa calibrate --out FILE` wrote, or make another"
             ) from error
 
     def save(self, path: Path) -> None:

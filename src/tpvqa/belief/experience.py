@@ -106,7 +106,8 @@ class Experience(BaseModel):
             first = error.errors()[0]
             place = ".".join(map(str, first["loc"])) or "the file"
             raise CalibrationError(
-                f"{path}: {place}: {first['msg']}. Remove the file to learn anew"
+                f"{path}: it is no experience, or a damaged one ({place}: {first['msg']}). Name "
+                "another file to learn anew"
             ) from error
 
     def save(self, path: Path) -> None:

@@ -46,23 +46,32 @@ class TerminalPerson:
         """Answer every question, in order: *cannot see* where they cannot tell, *unknown* where
         nobody answers in time."""
         with self._aside():
-            return [self._ask(question) for question in questions]
+            names = ", ".join(frame.id for frame in observation.frames.values())
+            return [self._ask(question, names) for question in questions]
 
-    def _ask(self, question: Question) -> Answer:
+    def _ask(self, question: Question, picture: str) -> Answer:
         with suppress(termios.error):  # what was typed before is no answer to this
             termios.tcflush(self._source, termios.TCIFLUSH)
         self._console.print(
-            f"\a  [bold]{escape(question.text)}[/] [dim]y, n, or Enter if you cannot tell "
-            f"({self._wait:g} s):[/] ",
-            end="",
+            f"\a  [bold]{escape(question.text)}[/] "
+            + (f"[dim](picture {escape(picture)})[/]" if picture else "")
         )
-        ready, _, _ = select.select([self._source], [], [], self._wait)
-        try:
-            typed = self._source.readline() if ready else ""
-        except UnicodeDecodeError:
-            typed = "\n"
+        typed = self._typed()
+        if typed.strip() and typed.strip().lower() not in _REPLIES:
+            typed = self._typed()  # once more
         if not typed:
             self._console.print("[dim]nobody answered[/]")
             return Answer(question, Reply.UNKNOWN, source="person", text="nobody answered")
         reply = _REPLIES.get(typed.strip().lower(), Reply.CANNOT_SEE)
         return Answer(question, reply, source="person", text=typed.strip())
+
+    def _typed(self) -> str:
+        """A line; empty where none comes in time, or none can come any more."""
+        self._console.print(
+            f"  [dim]y, n, or Enter if you cannot tell ({self._wait:g} s):[/] ", end=""
+        )
+        ready, _, _ = select.select([self._source], [], [], self._wait)
+        try:
+            return self._source.readline() if ready else ""
+        except UnicodeDecodeError:
+            return "\n"

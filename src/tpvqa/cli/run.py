@@ -158,7 +158,7 @@ def run(
                 f"The monitor {monitor} weighs no answers: leave out --calibration and "
                 "--experience, or take --monitor belief."
             )
-        for notice in trial.book.notices:
+        for notice in (*trial.book.notices, *_about_calibration(trial)):
             print(f"note: {notice}", file=sys.stderr)
         folder = out or _new_folder(trial.task.name, seed, episode)
         writer = EpisodeWriter(folder)
@@ -246,6 +246,21 @@ def _view(*, as_json: bool, book: "QuestionBook | None" = None):  # type: ignore
         if as_json and not console.is_terminal
         else EpisodeView(console, book=book)
     )
+
+
+def _about_calibration(trial: "Trial") -> list[str]:
+    """What a user should know of what the VLM's answers are taken to be worth."""
+    vlm, calibration = trial.vlm_spec, trial.calibration
+    if not trial.weighs_answers or vlm == "oracle":  # the last one is always right
+        return []
+    if calibration is None:
+        return [
+            f"there is no calibration of {vlm}: its answers are taken to be right in 0.85. "
+            f"Calibrated, it is asked less: `tpvqa calibrate --vlm {vlm} …`"
+        ]
+    if calibration.vlm and calibration.vlm != vlm:
+        return [f"the calibration was learnt of {calibration.vlm}, and this VLM is {vlm}"]
+    return []
 
 
 def _keep_experience(trial: "Trial", ended: "Ended") -> None:

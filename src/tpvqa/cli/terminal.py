@@ -113,8 +113,9 @@ class EpisodeView:
                     self._show_plan(event)
             case Observed():
                 self._head()
-                names = ", ".join(frame.file for frame in event.frames) or "no picture"
-                self._line(f"  [dim]look {event.look}: {escape(names)}[/]")
+                names = ", ".join(frame.file for frame in event.frames)
+                if names:
+                    self._line(f"  [dim]look {event.look}: {escape(names)}[/]")
             case Asked():
                 self._head()
                 self._asked, self._told = event.questions, True
@@ -246,4 +247,6 @@ def _answer_line(question: QuestionRecord, answer: AnswerRecord) -> str:
         filled = round(answer.p_yes * _BAR)
         chance = f" [{style}]{'▰' * filled}[/][dim]{'▱' * (_BAR - filled)}[/] {answer.p_yes:.2f}"
     why = f" [dim]{escape(answer.text)}[/]" if answer.reply is Reply.UNKNOWN else ""
+    if answer.source == "person":
+        why = f"{why} [dim](you)[/]"
     return f"  {mark} {escape(question.text)} [{style}]{answer.reply}[/]{chance}{why}"

@@ -127,6 +127,8 @@ class BeliefMonitor:
         given: dict[str, Any] = {}
         for part in arguments.split(":") if arguments else []:
             key, _, value = part.partition("=")
+            if key.strip() in given:
+                raise PluginError(f"'belief:{arguments}': {key.strip()} is given twice")
             given[key.strip()] = value.strip()
         without = given.pop("without", None)
         if without is not None and without not in PARTS:
@@ -143,9 +145,13 @@ class BeliefMonitor:
         except ValidationError as error:
             first = error.errors()[0]
             where = ".".join(map(str, first["loc"]))
+            what = (
+                f"there is no cost {where!r}" if where not in Costs.model_fields else first["msg"]
+            )
             raise PluginError(
-                f"'belief:{arguments}' is not understood: {where}: {first['msg']}. Costs are "
-                f"{', '.join(Costs.model_fields)}; write belief:question=0.05, say."
+                f"'belief:{arguments}' is not understood: {where}: {what}. Costs are "
+                f"{', '.join(Costs.model_fields)}; write belief:question=0.05:look=0.01, say, "
+                f"or without={'|'.join(PARTS)}."
             ) from None
         except ValueError as error:
             raise PluginError(f"'belief:{arguments}' is not understood: {error}") from None

@@ -13,6 +13,7 @@ from tpvqa.pddl import Action, Atom, State
 from tpvqa.worlds.images.manifest import Meshes, Picture, PictureSet, load_pictures
 from tpvqa.worlds.images.paper import PaperSimulation
 from tpvqa.worlds.images.visible import describe, mirrored, visible_state
+from tpvqa.worlds.kitchen.household import Household
 from tpvqa.worlds.protocol import Execution, Report
 from tpvqa.worlds.simulation import Outcome, SimulatedTruth, Simulation
 
@@ -77,6 +78,7 @@ class ImageWorld:
                 )
         if simulator not in ("state", "paper"):
             raise PluginError(f"There is no simulator {simulator!r}: write state or paper.")
+        Household.read(simulation.state)  # a task that has no pictures is refused at once
         return cls(
             PaperSimulation.like(simulation) if simulator == "paper" else simulation,
             folder=None if pictures is None else Path(pictures),

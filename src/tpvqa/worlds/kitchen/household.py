@@ -94,7 +94,8 @@ class Household:
                 case _:
                     raise WorldError(
                         f"The kitchen cannot show {atom}. It has the objects {', '.join(ITEMS)}, "
-                        f"{', '.join(FIXTURES)} and the hands {' and '.join(HANDS)}."
+                        f"{', '.join(FIXTURES)} and the hands {' and '.join(HANDS)}. Run other "
+                        "domains with --world symbolic, or with a world of your own."
                     )
         if len(near) != 1:
             raise WorldError(
