@@ -17,7 +17,7 @@ SURE = 0.9
 """What is surer than this and was not asked about needs no words."""
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Told:
     """What was answered to a question since the last action.
 
@@ -117,12 +117,26 @@ def _why_on(moment: Moment, said: str, missing: Collection[Literal]) -> list[str
     needs = [need for need in _needs(moment) if need not in missing]
     doubted = [n for n in needs if moment.answers(n.atom) or moment.probability(n) < SURE]
     parts = [_fact(moment, each) for each in doubted[:SAID]]
-    if not parts and needs:
+    if not parts:
+        parts = _most_telling(moment)
+    if not doubted and needs:
         together = moment.belief.where(lambda state: all(n.holds(state) for n in needs))
-        parts = [f"all that {said} needs holds with {_figure(together)}"]
+        parts.append(f"all that {said} needs holds with {_figure(together)}")
     for need in list(missing)[:1]:
         parts.append(f"{need} {_figure(moment.probability(need))} is for later")
     return parts or ["nothing speaks against it"]
+
+
+def _most_telling(moment: Moment) -> list[str]:
+    """The fact that was asked about, though not needed next, whose probability changed most."""
+    changes = {
+        told: abs(moment.belief.probability(told.atoms[0], told.atoms[1:]) - told.before)
+        for told in moment.told.values()
+    }
+    if not changes:
+        return []
+    told = max(changes, key=lambda each: (changes[each], each.atoms))
+    return [_fact(moment, Literal(told.atoms[0]), needing=False)]
 
 
 def _of_goal(moment: Moment) -> list[str]:
