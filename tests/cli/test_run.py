@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -31,7 +32,7 @@ def test_a_trial_prints_its_plan_questions_decisions_and_end(tpvqa: Run) -> None
     code, out, _ = tpvqa("run", "clean_dishes", *SYMBOLIC, "--seed", 4)
     assert code == 0
     assert "plan find the plate · pick up the plate · find the sink · wash the plate" in out
-    assert "Is the plate clean? yes" in out
+    assert re.search(r"Is the plate clean\? (\d+ )?yes", out)
     assert "goal reached" in out
     assert Path("episodes/clean_dishes-seed4/episode.jsonl").exists()
 

@@ -45,6 +45,8 @@ _DECISION_STYLE = {
     Decision.GIVE_UP: "red",
 }
 _BAR = 10
+_MARKS = 40
+_MARK = {Reply.YES: "y", Reply.NO: "n"}
 
 
 class EpisodeView:
@@ -73,6 +75,8 @@ class EpisodeView:
         self._step, self._attempt, self._done = 0, 0, False
         self._headed, self._told = False, False
         self._asked: tuple[QuestionRecord, ...] = ()
+        self._pictures = False
+        self._gathered: dict[str, list[tuple[QuestionRecord, AnswerRecord]]] = {}
         wanted = console.is_terminal if live is None else live
         self._live = Live(console=console, auto_refresh=False, transient=True) if wanted else None
 
@@ -99,6 +103,9 @@ class EpisodeView:
 
     def __call__(self, event: Event) -> None:
         """Show an event."""
+        thinking = isinstance(event, PlanMade) and event.considered
+        if not (thinking or isinstance(event, Observed | Asked | Answered)):
+            self._show_gathered()
         match event:
             case Started():
                 self._started = event
@@ -114,6 +121,7 @@ class EpisodeView:
             case Observed():
                 self._head()
                 names = ", ".join(frame.file for frame in event.frames)
+                self._pictures = bool(names)
                 if names:
                     self._line(f"  [dim]look {event.look}: {escape(names)}[/]")
             case Asked():
@@ -121,7 +129,10 @@ class EpisodeView:
                 self._asked, self._told = event.questions, True
             case Answered():
                 for question, answer in zip(self._asked, event.answers, strict=True):
-                    self._line(_answer_line(question, answer))
+                    if self._pictures:
+                        self._line(_answer_line(question, answer))
+                    else:
+                        self._gathered.setdefault(question.text, []).append((question, answer))
             case Believed():
                 gone = " ".join(event.removed) or "nothing"
                 new = " ".join(event.added) or "nothing"
@@ -144,6 +155,15 @@ class EpisodeView:
                 self._show_end(event)
         if self._live is not None:
             self._live.update(self._plan_panel(), refresh=True)
+
+    def _show_gathered(self) -> None:
+        """Of looks without pictures, one line for all answers to a question."""
+        for told in self._gathered.values():
+            if len(told) == 1:
+                self._line(_answer_line(*told[0]))
+            else:
+                self._line(_answers_line(told[0][0], [answer for _, answer in told]))
+        self._gathered.clear()
 
     def _line(self, text: str) -> None:
         self._console.print(text, highlight=False, soft_wrap=True)
@@ -233,6 +253,19 @@ class EpisodeView:
                 mark, style = " ", "dim"
             table.add_row(Text(mark, style), Text(f"{number + 1}. {action.said}", style))
         return Group(Text("─" * min(40, self._console.width), "dim"), table)
+
+
+def _answers_line(question: QuestionRecord, answers: list[AnswerRecord]) -> str:
+    """Many answers to one question, counted, in the order in which they came."""
+    replies = [answer.reply for answer in answers]
+    counts = ", ".join(
+        f"[{_REPLY_STYLE[reply]}]{count} {reply}[/]"
+        for reply in Reply
+        if (count := replies.count(reply))
+    )
+    marks = "".join(_MARK.get(reply, "·") for reply in replies[:_MARKS])
+    more = "…" if len(replies) > _MARKS else ""
+    return f"  · {escape(question.text)} {counts}  [dim]{marks}{more}[/]"
 
 
 def _answer_line(question: QuestionRecord, answer: AnswerRecord) -> str:
