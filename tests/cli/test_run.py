@@ -127,7 +127,9 @@ def test_experience_is_kept_for_one_vlm_and_by_whoever_goes_on(tpvqa: Run) -> No
     assert "was written by other trials" in err
     assert Experience.load(Path("known.json")) == one
 
-    assert tpvqa("run", "serve_breakfast", *words, "--vlm", "oracle:0.9", "--out", "two")[0] == 0
+    code, _, err = tpvqa("run", "serve_breakfast", *words, "--vlm", "oracle:0.9", "--out", "two")
+    assert code == 0
+    assert "how far to trust oracle:0.7" in err
     two = Experience.load(Path("known.json"))
     assert two is not None
     assert (two.vlm, two.trials) == ("oracle:0.9", 2)

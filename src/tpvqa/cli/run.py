@@ -250,17 +250,23 @@ def _view(*, as_json: bool, book: "QuestionBook | None" = None):  # type: ignore
 
 def _about_calibration(trial: "Trial") -> list[str]:
     """What a user should know of what the VLM's answers are taken to be worth."""
-    vlm, calibration = trial.vlm_spec, trial.calibration
-    if not trial.weighs_answers or vlm == "oracle":  # the last one is always right
+    vlm, calibration, notices = trial.vlm_spec, trial.calibration, []
+    if not trial.weighs_answers:
         return []
-    if calibration is None:
-        return [
+    known = trial.config.experience
+    if known is not None and known.trust and known.with_vlm(vlm, calibration).trust is None:
+        notices.append(
+            f"how far to trust {known.vlm} was learned with another VLM or calibration, and is "
+            "learned anew; how often actions fail is taken over"
+        )
+    if calibration is None and vlm != "oracle":  # which is always right
+        notices += [
             f"there is no calibration of {vlm}: its answers are taken to be right in 0.85. "
             f"Calibrated, it is asked less: `tpvqa calibrate --vlm {vlm} …`"
         ]
-    if calibration.vlm and calibration.vlm != vlm:
-        return [f"the calibration was learnt of {calibration.vlm}, and this VLM is {vlm}"]
-    return []
+    if calibration is not None and calibration.vlm not in ("", vlm):
+        notices.append(f"the calibration was learnt of {calibration.vlm}, and this VLM is {vlm}")
+    return notices
 
 
 def _keep_experience(trial: "Trial", ended: "Ended") -> None:
