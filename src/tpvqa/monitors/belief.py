@@ -81,7 +81,7 @@ class BeliefMonitor:
         self._learn = without != "learning"
         self._all_facts = without == "relevance"
         self.trust: Trust | None = None
-        if self._learn and without != "calibration":
+        if self._learn:
             learned = None if experience is None else experience.trusting()
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
