@@ -21,6 +21,7 @@ SURPRISING = 0.25
 PERSON = 0.99
 """How often a person's answer is right."""
 PERSONS_VIEW = "a person's"
+"""Stands for the view from which a person could not tell; no world's view is called so."""
 SKILL = 0.9
 """How far a skill is believed that says that it failed."""
 PAIRS = 4.0

@@ -1,6 +1,6 @@
 """A decision in one sentence, from the numbers that it was made of."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tpvqa.belief.annotated import AnnotatedPlan
@@ -85,7 +85,7 @@ def reason(
     """
     if action is None:
         return "; ".join((*_of_goal(moment), _end(moment, decision)))
-    missing = [each for each in _needs(moment) if (each.atom in state) is not each.positive]
+    missing = [each for each in _needs(moment) if not each.holds(state)]
     said = moment.step.book.say(action)
     number = "" if place is None else f" (step {place + 1})"
     if decision is Decision.GO_ON and place == moment.next:
@@ -112,7 +112,7 @@ def _needs(moment: Moment) -> list[Literal]:
     return sorted(moment.plan.needs[moment.next], key=lambda n: (moment.probability(n), n.atom))
 
 
-def _why_on(moment: Moment, said: str, missing: Collection[Literal]) -> list[str]:
+def _why_on(moment: Moment, said: str, missing: Sequence[Literal]) -> list[str]:
     """What speaks for the next step: what it rests on that was asked about, or is in doubt."""
     needs = [need for need in _needs(moment) if need not in missing]
     doubted = [n for n in needs if moment.answers(n.atom) or moment.probability(n) < SURE]
@@ -122,7 +122,7 @@ def _why_on(moment: Moment, said: str, missing: Collection[Literal]) -> list[str
     if not doubted and needs:
         together = moment.belief.where(lambda state: all(n.holds(state) for n in needs))
         parts.append(f"all that {said} needs holds with {_figure(together)}")
-    for need in list(missing)[:1]:
+    for need in missing[:1]:
         parts.append(f"{need} {_figure(moment.probability(need))} is for later")
     return parts or ["nothing speaks against it"]
 
