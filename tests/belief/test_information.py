@@ -12,7 +12,15 @@ from tpvqa.belief.information import Floats, Reliability, answers_to_be_sure, ga
 
 
 def gain(if_true: Floats, if_false: Floats, reliability: Reliability, times: int) -> float:
-    return float(gains(if_true, if_false, reliability, (2, times, 1))[1])
+    # Among other questions and numbers of answers, which must not matter.
+    others = Reliability(0.7, 0.4)
+    both = gains(
+        np.stack([if_false, if_true]),
+        np.stack([if_true, if_false]),
+        [others, reliability],
+        (2, times, 1),
+    )
+    return float(both[1, 1])
 
 
 def joint_gain(weighted: Floats, truths: Floats, each: list[Reliability], times: int) -> float:

@@ -25,6 +25,7 @@ class AnnotatedPlan:
     def __init__(self, task: Task, actions: Sequence[Action], needs: Sequence[Needs]):
         self.task, self.actions, self.needs = task, tuple(actions), tuple(needs)
         self._places: dict[State, int | None] = {}
+        self._atoms = frozenset(each.atom for need in needs for each in need)
         self._wanted = [
             (
                 frozenset(each.atom for each in need if each.positive),
@@ -63,6 +64,8 @@ class AnnotatedPlan:
 
     def atoms(self, first: int = 0) -> frozenset[Atom]:
         """The facts that the plan needs from a step on, goal included."""
+        if not first:
+            return self._atoms
         return frozenset(each.atom for need in self.needs[first:] for each in need)
 
     def needing(self, atom: Atom, first: int = 0) -> int | None:

@@ -6,7 +6,7 @@ what that can have changed. What the action model cannot explain is taken in whe
 for it (`open`).
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf, log
 
@@ -56,15 +56,18 @@ class Belief:
         self.came: Came | None = None
         self._predicted: dict[int, float] = {}
         self._marginals: dict[Atom, float] = {}
+        self._ranked: list[tuple[int, float]] | None = None
 
     def states(self) -> list[tuple[State, float]]:
         """The joint states with their probabilities, the most probable first."""
         return [(self.model.state(number), weight) for number, weight in self.ranked()]
 
-    def ranked(self) -> list[tuple[int, float]]:
+    def ranked(self) -> Sequence[tuple[int, float]]:
         """The numbers of the joint states with their probabilities, the most probable first."""
-        keys = self.model.keys
-        return sorted(self.weights.items(), key=lambda each: (-each[1], keys[each[0]]))
+        if self._ranked is None:
+            keys = self.model.keys
+            self._ranked = sorted(self.weights.items(), key=lambda each: (-each[1], keys[each[0]]))
+        return self._ranked
 
     def most_probable(self) -> tuple[State, float]:
         """The most probable joint state. It is consistent: every joint state is."""
@@ -77,11 +80,8 @@ class Belief:
             known = self._marginals.get(atom)
             if known is not None:
                 return known
-        atoms = (atom, *alike)
-        state = self.model.state
-        total = sum(
-            weight for number, weight in self.weights.items() if not state(number).isdisjoint(atoms)
-        )
+        truth = self.model.truth((atom, *alike))
+        total = sum(weight for number, weight in self.weights.items() if truth[number])
         total = min(total, 1.0)
         if not alike:
             self._marginals[atom] = total
@@ -107,8 +107,9 @@ class Belief:
                 kind[number] = kind.get(number, 0.0) + weight
 
         f, d, s = rates.failure, rates.disturbance, rates.spontaneous
+        leads_to = self.model.outcomes(action)
         for number, weight in self.weights.items():
-            outcomes = self.model.outcomes(number, action)
+            outcomes = leads_to[number]
             if outcomes.achieved:
                 add(number, weight, came.achieved)
                 continue
@@ -144,11 +145,13 @@ class Belief:
             How probable it was, before it was seen. Where it is impossible in every joint
             state, nothing changes.
         """
-        weighed = {n: weight * likelihood(n) for n, weight in self.weights.items()}
-        total = sum(weighed.values())
+        return self._weighed({n: weight * likelihood(n) for n, weight in self.weights.items()})
+
+    def _weighed(self, weights: dict[int, float]) -> float:
+        total = sum(weights.values())
         if total <= 0.0:
             return 0.0
-        self._become(weighed)
+        self._become(weights)
         return total
 
     def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
@@ -159,8 +162,10 @@ class Belief:
             if_true: Probability of the answer where yes is right; only the ratio matters.
             if_false: Where no is right.
         """
-        states = self.model
-        return self.weigh(lambda n: if_true if not states.state(n).isdisjoint(atoms) else if_false)
+        truth = self.model.truth(atoms)
+        return self._weighed(
+            {n: weight * (if_true if truth[n] else if_false) for n, weight in self.weights.items()}
+        )
 
     def weigh_outcome(self, *, succeeded: float, failed: float) -> None:
         """Weigh by how probable something is where the last action succeeded, and where not."""
@@ -250,3 +255,4 @@ class Belief:
         self.lost += 1 - share
         self.weights = {n: w / share for n, w in kept.items()}
         self._marginals.clear()
+        self._ranked = None

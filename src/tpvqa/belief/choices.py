@@ -89,7 +89,7 @@ class Chooser:
         self.hopeless: set[State] = set()
         self._found: dict[int, tuple[int, AnnotatedPlan] | None] = {}
         self._goals: dict[int, bool] = {}
-        self._cost_of: dict[str, dict[int, float]] = {}
+        self._cost_of: dict[Action | None, dict[int, float]] = {}
         self._rest: dict[int, float] = {}
         self._ahead_of: dict[int, float] = {}
         self._lost: float | None = None
@@ -172,33 +172,33 @@ class Chooser:
             for each in self._choices(ranked)
             if self._allowed(each, current, barred) and not self._idle(each, ranked)
         ]
-        columns = []
-        for choice in choices:
-            key = "" if choice.action is None else choice.action.pddl()
-            change = 0.0
-            if choice.action is not None and not self._in(choice, current):
-                change = self._costs.replan
-            known = self._cost_of.setdefault(key, {})
-            column = []
-            for number, _ in ranked:
-                cost = known.get(number)
-                if cost is None:
-                    cost = known[number] = self._cost(choice.action, number)
-                column.append(cost + change)
-            columns.append(column)
+        numbers = tuple(number for number, _ in ranked)
+        changes = [
+            self._costs.replan if each.action is not None and not self._in(each, current) else 0.0
+            for each in choices
+        ]
+        columns = [self._column(each.action, numbers) for each in choices]
         return Table(
             tuple(choices),
-            tuple(number for number, _ in ranked),
+            numbers,
             np.array([weight for _, weight in ranked]),
-            np.array(columns).T.reshape(len(ranked), len(choices)),
+            np.array(columns).reshape(len(choices), len(ranked)).T + changes,
         )
+
+    def _column(self, action: Action | None, numbers: Sequence[int]) -> list[float]:
+        """The expected costs of a choice in some joint states."""
+        known = self._cost_of.setdefault(action, {})
+        for number in numbers:
+            if number not in known:
+                known[number] = self._cost(action, number)
+        return [known[number] for number in numbers]
 
     def _cost(self, action: Action | None, number: int) -> float:
         """The expected cost of a choice in one joint state."""
         if action is None:
             return 0.0 if self._is_goal(number) else self._failure()
         f, d, s = self._rates.failure, self._rates.disturbance, self._rates.spontaneous
-        outcomes = self._model.outcomes(number, action)
+        outcomes = self._model.outcomes(action)[number]
         failed = self._to_go(number)
         if outcomes.achieved or outcomes.intended is None:
             failed = self._going_on(number)
@@ -226,7 +226,7 @@ class Chooser:
             known, found = self._to_go(number), self.shortest(number)
             if found is not None and found[0]:
                 action = found[1].actions[len(found[1].actions) - found[0]]
-                outcomes = self._model.outcomes(number, action)
+                outcomes = self._model.outcomes(action)[number]
                 if outcomes.intended is not None and not outcomes.achieved:
                     known = max(known, self._cost(action, number))
             self._ahead_of[number] = known
@@ -277,7 +277,7 @@ class Chooser:
         self._lost = None
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
-        found: dict[str | None, Choice] = {}
+        found: dict[Action | None, Choice] = {}
         least = 0.1 * self._costs.action / self._costs.failure
         for number, weight in ranked:
             known = self.shortest(number)
@@ -288,8 +288,8 @@ class Chooser:
             remaining, plan = known
             place = len(plan.actions) - remaining
             action = plan.actions[place] if remaining else None
-            key = None if action is None else action.pddl()
-            found.setdefault(key, Choice(action, self._model.state(number), plan, place))
+            if action not in found:
+                found[action] = Choice(action, self._model.state(number), plan, place)
         if None not in found:
             found[None] = Choice(None, self._model.state(ranked[0][0]))
         return list(found.values())
@@ -314,10 +314,13 @@ class Chooser:
         action = choice.action
         if action is None:
             return False
-        idle = sum(
-            weight for number, weight in ranked if self._model.outcomes(number, action).achieved
-        )
-        return idle > IDLE
+        leads_to, at_work = self._model.outcomes(action), 0.0
+        for number, weight in ranked:
+            if not leads_to[number].achieved:
+                at_work += weight
+                if at_work >= 1 - IDLE:
+                    return False
+        return True
 
     def _is_goal(self, number: int) -> bool:
         if number not in self._goals:

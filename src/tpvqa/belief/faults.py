@@ -1,8 +1,8 @@
 """What an action can lead to: the action model with failures and disturbances."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from hashlib import blake2b
 from typing import Any, Protocol
 
@@ -84,6 +84,31 @@ class Outcomes:
     undone_after: tuple[tuple[float, int], ...]
 
 
+class Truth(dict[int, bool]):
+    """In which joint states any of some facts holds, by number; worked out as they are met."""
+
+    def __init__(self, atoms: Iterable[Atom], hypotheses: Sequence[Hypothesis]):
+        super().__init__()
+        self._atoms, self._hypotheses = frozenset(atoms), hypotheses
+
+    def __missing__(self, number: int) -> bool:
+        holds = not self._atoms.isdisjoint(self._hypotheses[number].state)
+        self[number] = holds
+        return holds
+
+
+class _OutcomesOf(dict[int, Outcomes]):
+    """What one action can lead to, by number; worked out as they are met."""
+
+    def __init__(self, work_out: Callable[[int], Outcomes]):
+        super().__init__()
+        self._work_out = work_out
+
+    def __missing__(self, number: int) -> Outcomes:
+        found = self[number] = self._work_out(number)
+        return found
+
+
 class FaultModel:
     """The transitions of a task, worked out once for every joint state that is met.
 
@@ -106,7 +131,9 @@ class FaultModel:
         self.hypotheses: list[Hypothesis] = []
         self.keys: list[bytes] = []
         self._numbers: dict[Hypothesis, int] = {}
-        self._outcomes: dict[tuple[int, str], Outcomes] = {}
+        self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
+        self._truths: dict[tuple[Atom, ...], Truth] = {}
+        self._bound: dict[tuple[Action, State], Action] = {}
         self._undone: dict[int, tuple[tuple[float, int], ...]] = {}
 
     def number(self, hypothesis: Hypothesis) -> int:
@@ -122,21 +149,26 @@ class FaultModel:
         """The joint state of a hypothesis."""
         return self.hypotheses[number].state
 
-    def outcomes(self, number: int, action: Action) -> Outcomes:
-        """What an action can lead to."""
-        key = (number, action.pddl())
-        found = self._outcomes.get(key)
+    def truth(self, atoms: tuple[Atom, ...]) -> Truth:
+        """In which joint states any of some facts holds, by number."""
+        found = self._truths.get(atoms)
         if found is None:
-            found = self._outcomes[key] = self._work_out(number, action)
+            found = self._truths[atoms] = Truth(atoms, self.hypotheses)
         return found
 
-    def _work_out(self, number: int, action: Action) -> Outcomes:
+    def outcomes(self, action: Action) -> Mapping[int, Outcomes]:
+        """What an action can lead to, by the number of the hypothesis."""
+        found = self._outcomes.get(action)
+        if found is None:
+            found = _OutcomesOf(partial(self._work_out, action))
+            self._outcomes[action] = found
+        return found
+
+    def _work_out(self, action: Action, number: int) -> Outcomes:
         state = self.state(number)
         if self.task.apply(state, action) == state:
             return Outcomes(number, True, (), ())
-        truly = action
-        for rebinding in self._rebind:
-            truly = rebinding.apply(truly, state, self.task)
+        truly = self._truly(action, state)
         undone = self.undone(number)
         if not self.task.applicable(state, truly):
             return Outcomes(None, False, undone, ())
@@ -149,10 +181,19 @@ class FaultModel:
             return True
         if action.name != other.name:
             return False
-        for rebinding in self._rebind:
-            action = rebinding.apply(action, state, self.task)
-            other = rebinding.apply(other, state, self.task)
-        return action == other
+        return self._truly(action, state) == self._truly(other, state)
+
+    def _truly(self, action: Action, state: State) -> Action:
+        """What an action is where skills do not take all its arguments."""
+        if not self._rebind:
+            return action
+        found = self._bound.get((action, state))
+        if found is None:
+            found = action
+            for rebinding in self._rebind:
+                found = rebinding.apply(found, state, self.task)
+            self._bound[action, state] = found
+        return found
 
     def become(self, number: int, after: State) -> int:
         """The hypothesis after a change of its state."""

@@ -60,34 +60,42 @@ def _counts(probability: float, times: int) -> Floats:
 
 
 @lru_cache(maxsize=4096)
-def _all_counts(probability: float, times: tuple[int, ...]) -> tuple[Floats, NDArray[np.intp]]:
-    """`_counts` of several numbers of answers behind one another, and where each begins."""
-    counts = [_counts(probability, each) for each in times]
-    begins = np.cumsum([0, *(len(each) for each in counts[:-1])])
-    return np.concatenate(counts), begins
+def _all_counts(probability: float, times: tuple[int, ...]) -> Floats:
+    """`_counts` of several numbers of answers behind one another."""
+    return np.concatenate([_counts(probability, each) for each in times])
+
+
+@lru_cache(maxsize=64)
+def _begins(times: tuple[int, ...]) -> NDArray[np.intp]:
+    """Where each of them begins there."""
+    return np.cumsum([0, *(each + 1 for each in times[:-1])])
 
 
 def gains(
-    if_true: Floats, if_false: Floats, reliability: Reliability, times: tuple[int, ...]
+    if_true: Floats,
+    if_false: Floats,
+    reliabilities: Sequence[Reliability],
+    times: tuple[int, ...],
 ) -> Floats:
-    """How much less the best decision costs when a question is answered some times.
+    """How much less the best decision costs when one of some questions is answered some times.
 
     Args:
         if_true: Of every decision its expected cost where yes is right, times the probability
-            of that; one entry a decision.
+            of that; shape (questions, decisions).
         if_false: The same where no is right.
-        reliability: Of each answer, independent ones.
+        reliabilities: Of each answer to each question; answers are independent.
         times: How many answers; several numbers are compared.
 
     Returns:
-        The expected saving for each of `times`, never negative.
+        The expected saving, shape (questions, times), never negative.
     """
-    now = (if_true + if_false).min()
-    true, begins = _all_counts(round(reliability.yes_if_true, 3), times)
-    false, _ = _all_counts(round(reliability.yes_if_false, 3), times)
-    costs = true[:, None] * if_true + false[:, None] * if_false
-    then = np.add.reduceat(costs.min(axis=1), begins)
-    saved: Floats = np.maximum(0.0, (1 - reliability.abstains) * (now - then))
+    now = (if_true + if_false).min(axis=1)
+    true = np.array([_all_counts(round(each.yes_if_true, 3), times) for each in reliabilities])
+    false = np.array([_all_counts(round(each.yes_if_false, 3), times) for each in reliabilities])
+    answers = np.array([1 - each.abstains for each in reliabilities])
+    costs = true[:, :, None] * if_true[:, None] + false[:, :, None] * if_false[:, None]
+    then = np.add.reduceat(costs.min(axis=2), _begins(times), axis=1)
+    saved: Floats = np.maximum(0.0, answers[:, None] * (now[:, None] - then))
     return saved
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,8 @@ DOUBT = 1e-3
 """Facts that are surer than this are not asked about."""
 TOGETHER = 4
 """Questions that are thought to be asked together, at most."""
+EQUAL = 1e-9
+"""Savings that differ by less are equal: the last bits of a sum are the processor's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +57,6 @@ class Inquirer:
 
     def __init__(self, model: FaultModel, evidence: Evidence, costs: Costs):
         self._model, self._evidence, self._costs = model, evidence, costs
-        self._truths: dict[str, dict[int, float]] = {}
 
     def best(
         self,
@@ -84,44 +86,59 @@ class Inquirer:
         # Q-MDP takes a mistake to be noticed at once; it is noticed so many answers later.
         late = self._evidence.answers_to_be_sure()
         asking, looking = self._costs.question / late, self._costs.look / late
+        truths = self._truths_of(questions, table)
+        likely = (truths @ table.weights).tolist()
+        if_true = truths @ weighted
+        if_false = total - if_true
+        most = (now - if_true.min(axis=1) - if_false.min(axis=1)).tolist()
         found: Inquiry | None = None
-        doubted: list[tuple[float, float, Question, Floats, Reliability]] = []
-        for question in questions:
-            truth = self._truth(question, table)
-            true = float(truth @ table.weights)
-            if not DOUBT < true < 1 - DOUBT:
+        doubted: list[_Doubted] = []
+        worth: list[_Doubted] = []
+        for place, question in enumerate(questions):
+            if not DOUBT < likely[place] < 1 - DOUBT:
                 continue
-            if_true = truth @ weighted
-            if_false = total - if_true
-            most = now - float(if_true.min()) - float(if_false.min())
             unable = self._evidence.silent(question.text, PERSONS_VIEW)
             if person and self._costs.person is not None and not unable:
-                told = gains(if_true, if_false, Reliability(PERSON, 1 - PERSON), (1,))
-                saving = float(told[0]) - self._costs.person
+                one = slice(place, place + 1)
+                told = gains(if_true[one], if_false[one], _PERSONS, (1,))
+                saving = float(told[0, 0]) - self._costs.person
                 found = _better(found, Inquiry(question, 1, saving, person=True))
             open_views = views(question)
             if not open_views:
                 continue
-            reliability = self._evidence.expect(question, open_views[0])
-            doubted.append((-round(most, 6), abs(true - 0.5), question, truth, reliability))
-            if most <= asking:
-                continue  # even the truth would not be worth a question
-            seen = picture is not None and not self._evidence.asked_of(question.text, picture)
-            saved = gains(if_true, if_false, reliability, TIMES).tolist()
-            for times, gain in zip(TIMES, saved, strict=True):
-                looks = times - 1 if seen else times
-                if times > budget.questions or looks > budget.looks:
-                    break
-                saving = gain - times * asking - looks * looking
-                found = _better(found, Inquiry(question, max(1, times // 4), saving))
+            doubt = _Doubted(
+                (-round(most[place], 6), round(abs(likely[place] - 0.5), 6)),
+                place,
+                question,
+                self._evidence.expect(question, open_views[0]),
+            )
+            doubted.append(doubt)
+            if most[place] > asking:  # else even the truth would not be worth a question
+                worth.append(doubt)
+        if worth:
+            places = [each.place for each in worth]
+            reliabilities = [each.reliability for each in worth]
+            saved = gains(if_true[places], if_false[places], reliabilities, TIMES).tolist()
+            for each, own in zip(worth, saved, strict=True):
+                text = each.question.text
+                seen = picture is not None and not self._evidence.asked_of(text, picture)
+                for times, gain in zip(TIMES, own, strict=True):
+                    looks = times - 1 if seen else times
+                    if times > budget.questions or looks > budget.looks:
+                        break
+                    saving = gain - times * asking - looks * looking
+                    found = _better(found, Inquiry(each.question, max(1, times // 4), saving))
         if len(doubted) > 1 and now > asking:
-            doubted.sort(key=lambda each: each[:2])
-            found = self._together(doubted[:TOGETHER], weighted, budget, asking, looking, found)
+            doubted.sort(key=lambda each: each.urgent)
+            first = doubted[:TOGETHER]
+            own_truths = truths[[each.place for each in first]]
+            found = self._together(first, own_truths, weighted, budget, asking, looking, found)
         return found
 
     def _together(
         self,
-        doubted: Sequence[tuple[float, float, Question, Floats, Reliability]],
+        doubted: "Sequence[_Doubted]",
+        truths: Floats,
         weighted: Floats,
         budget: Budget,
         asking: float,
@@ -129,28 +146,42 @@ class Inquirer:
         found: Inquiry | None,
     ) -> Inquiry | None:
         """The first of several questions, where their answers together are worth more."""
-        truths = np.array([each[3] for each in doubted])
-        reliabilities = [each[4] for each in doubted]
+        reliabilities = [each.reliability for each in doubted]
         saved = joint_gains(weighted, truths, reliabilities, TIMES).tolist()
         for times, gain in zip(TIMES, saved, strict=True):
             if times * len(doubted) > budget.questions or times > budget.looks:
                 break
             saving = gain - times * (len(doubted) * asking + looking)
-            found = _better(found, Inquiry(doubted[0][2], 1, saving))
+            found = _better(found, Inquiry(doubted[0].question, 1, saving))
         return found
 
-    def _truth(self, question: Question, table: Table) -> Floats:
-        """In which joint states yes is right: ones and zeros."""
-        assert question.atom is not None
-        known = self._truths.setdefault(question.text, {})
-        atoms = (question.atom, *question.alike)
-        for number in table.numbers:
-            if number not in known:
-                known[number] = float(not self._model.state(number).isdisjoint(atoms))
-        return np.array([known[number] for number in table.numbers])
+    def _truths_of(self, questions: Sequence[Question], table: Table) -> Floats:
+        """In which joint states yes is right: ones and zeros, shape (questions, states)."""
+        found = np.empty((len(questions), len(table.numbers)))
+        for place, question in enumerate(questions):
+            assert question.atom is not None
+            truth = self._model.truth((question.atom, *question.alike))
+            found[place] = [truth[number] for number in table.numbers]
+        return found
+
+
+class _Doubted(NamedTuple):
+    """A question whose answer is not known.
+
+    Attributes:
+        urgent: Orders them: what matters most first, then what is least known.
+    """
+
+    urgent: tuple[float, float]
+    place: int
+    question: Question
+    reliability: Reliability
+
+
+_PERSONS = (Reliability(PERSON, 1 - PERSON),)
 
 
 def _better(found: Inquiry | None, other: Inquiry) -> Inquiry | None:
-    if other.saving <= 1e-9 or (found is not None and found.saving >= other.saving):
+    if other.saving <= (0.0 if found is None else found.saving) + EQUAL:
         return found
     return other

@@ -1,6 +1,8 @@
 """Whether the VLM is as good as its calibration says, learned from its own answers."""
 
+from functools import lru_cache
 from math import exp, log
+from operator import mul
 
 GRID = (0.05, 0.15, 0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.7, 2.2)
 """Factors by which log likelihood ratios may have to be multiplied."""
@@ -28,7 +30,7 @@ class Trust:
         if ratio == 0.0:
             return 0.0
         size = abs(ratio)
-        right = sum(w * _sigmoid(g * size) for g, w in zip(GRID, self._weights, strict=True))
+        right = sum(map(mul, self._weights, _rights(size)))
         trusted = log(right / (1 - right))
         return trusted if ratio > 0 else -trusted
 
@@ -50,8 +52,7 @@ class Trust:
             again_true: Where yes is right, the probability that it only repeats the last one.
             again_false: The same where no is right.
         """
-        for place, factor in enumerate(GRID):
-            right = _sigmoid(factor * ratio)
+        for place, right in enumerate(_rights(ratio)):
             if_true = again_true * same + (1 - again_true) * right
             if_false = again_false * same + (1 - again_false) * (1 - right)
             self._weights[place] *= true * if_true + (1 - true) * if_false
@@ -82,5 +83,7 @@ class Trust:
         self._weights = [max(w / total, 1e-9) for w in self._weights]
 
 
-def _sigmoid(x: float) -> float:
-    return 1 / (1 + exp(-x))
+@lru_cache(maxsize=4096)
+def _rights(ratio: float) -> tuple[float, ...]:
+    """How probable an answer of a log likelihood ratio is to be right, for every factor."""
+    return tuple(1 / (1 + exp(-factor * ratio)) for factor in GRID)

@@ -1,6 +1,7 @@
 """What the right answer to a question is, in a simulated world."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 from tpvqa.episodes.events import QuestionRecord
 from tpvqa.pddl import Action, Atom
@@ -25,12 +26,15 @@ def yes_is_right(
     """
     if question.atom is not None and question.way in OF_FACTS:
         state = simulation.task.extend(simulation.state)
-        return any(Atom.parse(atom) in state for atom in (question.atom, *(question.alike or ())))
+        return any(_atom(text) in state for text in (question.atom, *(question.alike or ())))
     assert question.action is not None
     action = actions[question.action]
     if question.way is Way.POSSIBLE:
         return simulation.possible(action)
     return simulation.achieved(action)
+
+
+_atom = lru_cache(maxsize=4096)(Atom.parse)
 
 
 def subject_of(question: QuestionRecord) -> str:

@@ -100,6 +100,7 @@ class Recorder:
         self._snapshots: dict[str, Mapping[str, Any]] = {}
         self._replaying, self._unsure = bool(recorded), False
         self._observation: Observation | None = None
+        self._questions: dict[Question, records.QuestionRecord] = {}
         self.questions = self.looks = self.actions = 0
 
     @property
@@ -187,7 +188,7 @@ class Recorder:
         self.emit(
             Asked(
                 look=self._observation.look,
-                questions=tuple(map(records.question_record, questions)),
+                questions=tuple(map(self._question, questions)),
                 person=person,
             )
         )
@@ -204,10 +205,9 @@ class Recorder:
                 raise EpisodeError(
                     f"{asked.name} gave {len(answers)} answers to {len(questions)} questions"
                 )
-            record = records.answered_record(answers).model_copy(
-                update={"snapshot": self._snapshot(self.parts.vlm)}
+            record = self._writer.append(  # type: ignore[assignment]
+                records.answered_record(answers, self._snapshot(self.parts.vlm))
             )
-            record = self._writer.append(record)  # type: ignore[assignment]
         self._tell(record)
         return records.answers_from(record, questions)
 
@@ -290,6 +290,13 @@ class Recorder:
                 target = getattr(self.parts, part)
                 if isinstance(target, Restorable):
                     target.restore(snapshot)
+
+    def _question(self, question: Question) -> records.QuestionRecord:
+        """Questions are asked again and again; what is logged of one is worked out once."""
+        record = self._questions.get(question)
+        if record is None:
+            record = self._questions[question] = records.question_record(question)
+        return record
 
     def _snapshot(self, part: object) -> dict[str, Any] | None:
         if self._writer.resumable and isinstance(part, Restorable):

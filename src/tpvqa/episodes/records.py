@@ -1,7 +1,9 @@
 """Between the objects of a trial and the records of its log, both ways."""
 
 from collections.abc import Sequence
+from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from tpvqa.episodes.events import (
     ActionRecord,
@@ -18,6 +20,8 @@ from tpvqa.pddl import Action, State, Task
 from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.vlm import Answer
+
+_OF_ANSWERS = tuple(each.name for each in fields(Answer) if each.name != "question")
 
 
 def atoms(state: State) -> tuple[str, ...]:
@@ -73,14 +77,12 @@ def question_record(question: Question) -> QuestionRecord:
     )
 
 
-def answered_record(answers: Sequence[Answer]) -> Answered:
-    """The answers as they are logged."""
-    names = ("reply", "p_yes", "source", "text", "p_cannot_see", "leftover", "seconds")
-    return Answered(
-        answers=tuple(
-            AnswerRecord(**{name: getattr(answer, name) for name in names}) for answer in answers
-        )
+def answered_record(answers: Sequence[Answer], snapshot: dict[str, Any] | None) -> Answered:
+    """The answers as they are logged, with the state of the VLM that gave them."""
+    said = tuple(
+        AnswerRecord(**{name: getattr(answer, name) for name in _OF_ANSWERS}) for answer in answers
     )
+    return Answered(answers=said, snapshot=snapshot)
 
 
 def answers_from(record: Answered, questions: Sequence[Question]) -> list[Answer]:
@@ -88,7 +90,7 @@ def answers_from(record: Answered, questions: Sequence[Question]) -> list[Answer
     if len(record.answers) != len(questions):
         raise EpisodeError("the recorded answers do not fit the questions: another version's log")
     return [
-        Answer(question, **answer.model_dump())
+        Answer(question, *(getattr(answer, name) for name in _OF_ANSWERS))
         for question, answer in zip(questions, record.answers, strict=True)
     ]
 

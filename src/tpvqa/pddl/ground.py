@@ -24,6 +24,9 @@ class Action:
     effects: tuple[Effect, ...]
     cost: int = 1
 
+    def __hash__(self) -> int:
+        return hash((self.name, self.arguments))  # of a task, these tell it from all others
+
     def __str__(self) -> str:
         return f"{self.name}({', '.join(self.arguments)})"
 

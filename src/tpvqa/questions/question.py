@@ -40,6 +40,9 @@ class Question:
     expected: bool = True
     alike: tuple[Atom, ...] = ()
 
+    def __hash__(self) -> int:
+        return hash((self.text, self.way))
+
     def true_in(self, holds: Callable[[Atom], bool]) -> bool | None:
         """Whether yes is right, by whether facts hold; None for questions about actions."""
         if self.atom is None:

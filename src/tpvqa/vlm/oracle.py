@@ -166,7 +166,7 @@ class Oracle:
         key = (text, truth, look)
         right = chance(self._seed, self._episode, "answer", *key).random() < accuracy
         yes = truth if right else not truth
-        if last is not None and last.truth == truth:
+        if self.rho and last is not None and last.truth == truth:
             again = chance(self._seed, self._episode, "answer again", *key).random()
             yes = last.yes if again < self.rho else yes
         self._last[text] = _Given(look, truth, yes)
