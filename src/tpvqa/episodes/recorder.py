@@ -22,6 +22,7 @@ from tpvqa.episodes.events import (
     FrameRecord,
     Observed,
     PlanMade,
+    QuestionRecord,
     Resumed,
 )
 from tpvqa.errors import EpisodeError
@@ -100,7 +101,7 @@ class Recorder:
         self._snapshots: dict[str, Mapping[str, Any]] = {}
         self._replaying, self._unsure = bool(recorded), False
         self._observation: Observation | None = None
-        self._questions: dict[Question, records.QuestionRecord] = {}
+        self._questions: dict[Question, QuestionRecord] = {}
         self.questions = self.looks = self.actions = 0
 
     @property
@@ -205,9 +206,8 @@ class Recorder:
                 raise EpisodeError(
                     f"{asked.name} gave {len(answers)} answers to {len(questions)} questions"
                 )
-            record = self._writer.append(  # type: ignore[assignment]
-                records.answered_record(answers, self._snapshot(self.parts.vlm))
-            )
+            record = records.answered_record(answers, self._snapshot(self.parts.vlm))
+            record = self._writer.append(record)  # type: ignore[assignment]
         self._tell(record)
         return records.answers_from(record, questions)
 
@@ -291,7 +291,7 @@ class Recorder:
                 if isinstance(target, Restorable):
                     target.restore(snapshot)
 
-    def _question(self, question: Question) -> records.QuestionRecord:
+    def _question(self, question: Question) -> QuestionRecord:
         """Questions are asked again and again; what is logged of one is worked out once."""
         record = self._questions.get(question)
         if record is None:
