@@ -4,12 +4,14 @@ import fcntl
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from tpvqa.bench.cell import Cell
+from tpvqa.bench.published import differences, read_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError
 
@@ -23,13 +25,15 @@ class Ledger:
     Args:
         folder: Where a bench lies. It is made; a bench with other settings must not lie there.
         settings: What decides the figures: seed, rates of faults, limits, version.
+        published: Rows of the same bench that count as finished, see `published`.
 
     Raises:
         BenchError: Another bench lies there, it is being written by another process, it is
             damaged, or the folder cannot be written to.
     """
 
-    def __init__(self, folder: Path, settings: Mapping[str, Any]):
+    def __init__(self, folder: Path, settings: Mapping[str, Any], published: Path | None = None):
+        others = [] if published is None else list(read_published(published, settings))
         self.folder = Path(folder)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -45,25 +49,18 @@ class Ledger:
             raise BenchError(f"{folder}: another bench is at work there; wait for it") from None
         self._agree(dict(settings))
         self.rows: dict[tuple[Cell, int], EpisodeRow] = {}
-        for row in self._read():
+        for row in chain(others, self._read()):
             self.rows[row.cell, row.episode] = row
 
     def _agree(self, settings: dict[str, Any]) -> None:
         path = self.folder / SETTINGS
-        settings = json.loads(json.dumps(settings))
         if path.exists():
             try:
                 there = json.loads(path.read_text(encoding="utf-8"))
             except ValueError:
                 raise BenchError(f"{path}: damaged. Remove the folder, or name another") from None
-            differing = sorted(
-                key for key in {*there, *settings} if there.get(key) != settings.get(key)
-            )
-            if differing:
-                changed = ", ".join(
-                    f"{key} {there.get(key)!r} there, {settings.get(key)!r} here"
-                    for key in differing
-                )
+            changed = differences(there, settings)
+            if changed:
                 raise BenchError(
                     f"{self.folder} holds a bench with other settings ({changed}). "
                     "Name another folder with --out"

@@ -39,7 +39,7 @@ def belief(
     models: Annotated[str, typer.Option(help="Recorded VLMs, with commas. Default: all.")] = "",
     episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 1000,
     curve_episodes: Annotated[
-        int, typer.Option(help="Of every further point of a curve, and of every ablation.", min=1)
+        int, typer.Option(help="Of every further point of a curve.", min=1)
     ] = 300,
     chains: Annotated[
         int,
@@ -66,6 +66,10 @@ def belief(
     only_tables: Annotated[
         bool, typer.Option("--only-tables", help="Run nothing; write tables of what is finished.")
     ] = False,
+    rows: Annotated[
+        Path | None,
+        typer.Option(help="Published rows that count as finished, e.g. docs/data/belief."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
     """Measure the belief monitor against votes over several looks and the paper's baselines."""
@@ -109,6 +113,7 @@ def belief(
                 calibrating=bar,
                 progress=progress,
                 only_tables=only_tables,
+                published=rows,
             )
         except KeyboardInterrupt:
             print(

@@ -98,6 +98,7 @@ def run_belief_bench(
     calibrating: Told = lambda done, total: None,
     progress: Told = lambda done, total: None,
     only_tables: bool = False,
+    published: Path | None = None,
 ) -> tuple[BeliefResults, list[Check]]:
     """Run what is missing, and write tables and figures of all parts that lie in the folder.
 
@@ -109,6 +110,7 @@ def run_belief_bench(
         calibrating: Told how many calibrations are there and how many there will be.
         progress: Told how many episodes are done and how many there are.
         only_tables: Run nothing.
+        published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
 
     Returns:
         What was found, and what of it must be reached.
@@ -117,7 +119,7 @@ def run_belief_bench(
         TpvqaError: Something is not there, or the folder cannot be used.
     """
     bench.check()
-    ledger = Ledger(folder, bench.settings())
+    ledger = Ledger(folder, bench.settings(), published)
     try:
         wanted = {} if only_tables else bench.wanted()
         believing = [

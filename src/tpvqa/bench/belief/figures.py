@@ -9,7 +9,6 @@ from tpvqa.belief.ablations import PARTS
 from tpvqa.bench.belief.comparison import curve_of
 from tpvqa.bench.belief.learning import BLOCK, RIGHT_TRUST, blocks
 from tpvqa.bench.belief.parts import (
-    ABLATED,
     BASELINES,
     BELIEF,
     BELIEVED,
@@ -63,13 +62,10 @@ def draw(results: BeliefResults, extent: Extent) -> dict[str, Figure]:
         found = _curves(results, extent, named, world)
         if found is not None:
             drawn[name] = found
-    for rho in extent.rhos:
-        found = _ablations(results, extent, rho)
+    for name, others in (("ablations", _ablations), ("learning", _learning)):
+        found = others(results, extent)
         if found is not None:
-            drawn[f"ablations_rho_{rho:g}"] = found
-    found = _learning(results, extent)
-    if found is not None:
-        drawn["learning"] = found
+            drawn[name] = found
     return drawn
 
 
@@ -243,15 +239,15 @@ def _learning(results: BeliefResults, extent: Extent) -> Figure | None:
     return figure
 
 
-def _ablations(results: BeliefResults, extent: Extent, rho: float) -> Figure | None:
-    """What leaving a part out does: bars of completion and of questions, by task and accuracy."""
-    accuracies = [each for each in extent.accuracies if each in ABLATED]
+def _ablations(results: BeliefResults, extent: Extent) -> Figure | None:
+    """What leaving a part out does: bars of completion and of questions, by task and VLM."""
+    vlms = extent.ablated
     found = {
-        (task, accuracy, name): results.of(
-            Cell(task, without(name) if name else BELIEF, noise(accuracy, rho), SYMBOLIC)
+        (task, vlm, name): results.of(
+            Cell(task, without(name) if name else BELIEF, noise(*vlm), SYMBOLIC)
         )
         for task in extent.household
-        for accuracy in accuracies
+        for vlm in vlms
         for name in ("", *PARTS)
     }
     if not any(rows for (_, _, name), rows in found.items() if name):
@@ -259,19 +255,19 @@ def _ablations(results: BeliefResults, extent: Extent, rho: float) -> Figure | N
     pyplot = styled_pyplot()
     figure, grid = pyplot.subplots(
         len(extent.household),
-        2 * len(accuracies),
-        figsize=(1.6 + 2.9 * len(accuracies), 0.8 + 1.45 * len(extent.household)),
+        2 * len(vlms),
+        figsize=(1.6 + 2.9 * len(vlms), 0.8 + 1.45 * len(extent.household)),
         sharey=True,
         sharex="col",
         squeeze=False,
     )
     places = range(len(PARTS))
     for line, task in zip(grid, extent.household, strict=True):
-        for k, accuracy in enumerate(accuracies):
+        for k, vlm in enumerate(vlms):
             left, right = line[2 * k], line[2 * k + 1]
-            whole = found[task, accuracy, ""]
+            whole = found[task, vlm, ""]
             for place, name in enumerate(PARTS):
-                rows = found[task, accuracy, name]
+                rows = found[task, vlm, name]
                 if not rows or not whole:
                     continue
                 change = difference(rows, whole)
@@ -283,8 +279,8 @@ def _ablations(results: BeliefResults, extent: Extent, rho: float) -> Figure | N
             right.axvline(1, color="#222222", linewidth=0.8)
         line[0].set_yticks(places, [f"no {name}" for name in PARTS])
         line[0].set_ylabel(task)
-    for k, accuracy in enumerate(accuracies):
-        grid[0][2 * k].set_title(f"p = {accuracy:g}", loc="left")
+    for k, (accuracy, rho) in enumerate(vlms):
+        grid[0][2 * k].set_title(f"p = {accuracy:g}, ρ = {rho:g}", loc="left")
         grid[-1][2 * k].set_xlabel("completion, change")
         grid[-1][2 * k + 1].set_xlabel("questions, ratio")
     grid[0][0].invert_yaxis()

@@ -7,13 +7,13 @@ from tpvqa.belief.costs import Costs
 from tpvqa.bench.belief.comparison import Lies, together, votes_beside_curve
 from tpvqa.bench.belief.learning import BLOCK, blocks
 from tpvqa.bench.belief.parts import (
-    ABLATED,
     BELIEF,
     RIVALS,
     SYMBOLIC,
     Extent,
     Part,
     knowing,
+    noise,
     priced,
     without,
 )
@@ -175,7 +175,7 @@ def _wrong_vlm(results: BeliefResults, extent: Extent) -> str:
 
 def _ablations(results: BeliefResults, extent: Extent) -> str:
     lines = []
-    for vlm in extent.vlms([each for each in extent.accuracies if each in ABLATED]):
+    for vlm in (noise(*each) for each in extent.ablated):
         for task in extent.household:
             whole = results.of(Cell(task, BELIEF, vlm, SYMBOLIC))
             parts = [results.of(Cell(task, without(n), vlm, SYMBOLIC)) for n in PARTS]

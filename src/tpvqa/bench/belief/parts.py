@@ -17,8 +17,9 @@ ACCURACIES = (0.6, 0.7, 0.8, 0.9, 0.95)
 RHOS = (0.0, 0.5)
 PRICES = (10.0, 3.0, 2.0, 1.0, 0.3, 0.1, 0.03, 0.003)
 """Costs of a question along the curve; that of `belief` itself lies between."""
-ABLATED = (0.6, 0.8, 0.95)
-"""Accuracies at which parts are left out."""
+ABLATED = ((0.6, 0.0), (0.8, 0.0), (0.95, 0.0), (0.8, 0.5))
+"""Accuracies, each with the chance that a further look repeats the last answer, at which parts are
+left out: those for which the target table names a completion rate."""
 TRUE_RATES = ("failure=0.1", "failure=0.4", "disturbance=0.5", "spontaneous=0.05")
 """What holds in truth where the action model is wrong; each is believed to be its default."""
 WRONG_MODEL_VLM = "oracle:0.8"
@@ -60,7 +61,7 @@ class Extent:
         prices: Costs of a question along the curve.
         models: Recorded VLMs.
         episodes: Of every cell.
-        curve: Episodes of every further point of the curve, and of every ablation.
+        curve: Episodes of every further point of the curve.
         chains: Robots that learn how good their VLM is, for `CHAIN` episodes each.
     """
 
@@ -105,11 +106,10 @@ class Extent:
                         cell = Cell(task, BELIEF, WRONG_VLM, SYMBOLIC, condition)
                         yield cell, CHAIN * self.chains
             case Part.ABLATIONS:
-                ablated = [each for each in self.accuracies if each in ABLATED]
-                for vlm in self.vlms(ablated):
+                for vlm in (noise(*each) for each in self.ablated):
                     for monitor in (BELIEF, *map(without, PARTS)):
                         for task in self.household:
-                            yield Cell(task, monitor, vlm, SYMBOLIC), self.curve
+                            yield Cell(task, monitor, vlm, SYMBOLIC), self.episodes
 
     @property
     def household(self) -> list[str]:
@@ -119,6 +119,11 @@ class Extent:
     def vlms(self, accuracies: Sequence[float]) -> list[str]:
         """The grid's noise models of some accuracies."""
         return [noise(accuracy, rho) for rho in self.rhos for accuracy in accuracies]
+
+    @property
+    def ablated(self) -> list[tuple[float, float]]:
+        """Accuracies and chances to repeat themselves under which parts are left out."""
+        return [(p, rho) for p, rho in ABLATED if p in self.accuracies and rho in self.rhos]
 
     def _against(self, vlm: str, world: str) -> Iterator[tuple[Cell, int]]:
         for monitor in (BELIEF, *RIVALS):

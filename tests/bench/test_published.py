@@ -1,0 +1,87 @@
+"""Rows for others: the same after reading, of the same bench only, and taken for finished."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.bench.test_statistics import row
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.ledger import Ledger
+from tpvqa.bench.published import LEFT_OUT, read_published, write_published
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.errors import BenchError
+
+SETTINGS = {"seed": 0, "failure": 0.25}
+counts = st.integers(0, 100_000)
+
+
+@st.composite
+def _rows(draw: st.DrawFn) -> list[EpisodeRow]:
+    return [
+        EpisodeRow(
+            task=draw(st.sampled_from(["a", "b"])),
+            monitor=draw(st.sampled_from(["belief", "tpvqa:3"])),
+            vlm="oracle:0.8",
+            world="symbolic",
+            condition=draw(st.sampled_from(["", "failure=0.1"])),
+            seed=0,
+            episode=number,
+            completed=draw(st.booleans()),
+            because=draw(st.text(max_size=9)),
+            questions=draw(counts),
+            actions=draw(counts),
+            trust=draw(st.none() | st.floats(0, 3)),
+            answers={"effect|on|1|yes|": 3},
+            seconds=0.5,
+        )
+        for number in range(draw(st.integers(0, 5)))
+    ]
+
+
+@given(rows=_rows())
+def test_they_come_back_as_they_were(
+    rows: list[EpisodeRow], tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.mktemp("rows") / "some.parquet"
+    assert write_published(rows, SETTINGS, path) == len(rows)
+    back = {each.episode: each for each in read_published(path, SETTINGS)}
+    bare = {each.episode: EpisodeRow(**each.model_dump(exclude=set(LEFT_OUT))) for each in rows}
+    assert back == bare
+
+
+def test_a_bench_goes_on_from_them(tmp_path: Path) -> None:
+    rows = [row(episode=0, completed=True), row(episode=1), row(episode=2, error="broke")]
+    assert write_published(rows, SETTINGS, tmp_path / "data" / "part.parquet") == 2
+    ledger = Ledger(tmp_path / "bench", SETTINGS, tmp_path / "data")
+    cell = Cell("t", "m", "v", "w")
+    assert ledger.missing(cell, 4) == [2, 3]
+    ledger.add([row(episode=2)])
+    ledger.close()
+    assert [each.episode for each in Ledger(tmp_path / "bench", SETTINGS).of(cell, 4)] == [2]
+
+
+def test_those_of_another_bench_are_not_taken(tmp_path: Path) -> None:
+    write_published([row(episode=0)], SETTINGS, tmp_path / "part.parquet")
+    with pytest.raises(BenchError, match=r"part\.parquet .*seed 0 there, 1 here"):
+        Ledger(tmp_path / "bench", {**SETTINGS, "seed": 1}, tmp_path)
+    assert not (tmp_path / "bench").exists()
+
+
+@pytest.mark.parametrize("content", [b"", b"PAR1 and then nothing", b"a,b\n1,2\n"])
+def test_what_is_no_such_file_is_named(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "part.parquet").write_bytes(content)
+    with pytest.raises(BenchError, match=r"part\.parquet"):
+        list(read_published(tmp_path, SETTINGS))
+    with pytest.raises(BenchError, match=r"no \*\.parquet"):
+        list(read_published(Path(__file__).parent, SETTINGS))
+
+
+def test_another_table_is_named(tmp_path: Path) -> None:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    parquet.write_table(pa.table({"a": [1]}), tmp_path / "a.parquet")
+    with pytest.raises(BenchError, match="does not say which bench"):
+        list(read_published(tmp_path / "a.parquet", SETTINGS))
