@@ -111,6 +111,7 @@ def _run(
                 action=action,
                 decision=decision,
                 reason=verdict.reason,
+                onto=verdict.step,
                 belief={atom.pddl(): round(p, 4) for atom, p in verdict.belief.items()},
             )
         )

@@ -2,6 +2,7 @@
 
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
@@ -20,8 +21,8 @@ from tests.episodes.believing import (
     without_belief,
 )
 from tpvqa.episodes import Event
-from tpvqa.episodes.events import Acted
-from tpvqa.episodes.fact_words import FactWords
+from tpvqa.episodes.events import Acted, Decided
+from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.report import render_report, tell
 from tpvqa.episodes.report.belief_chart import BeliefChart, Run, chart
 from tpvqa.monitors import Decision
@@ -192,9 +193,30 @@ def test_going_on_at_another_step_instead_of_acting_begins_a_chapter_of_its_own(
     ],
 )
 def test_facts_are_said_as_they_are_asked_about(fact: str, said: str) -> None:
-    assert FactWords.of(started()).say(fact) == said
+    assert words_of(started()).say(fact) == said
 
 
 def test_without_a_questions_file_facts_are_atoms() -> None:
     unworded = started().model_copy(update={"questions": None})
-    assert FactWords.of(unworded).say(DOUBTED) == DOUBTED
+    assert words_of(unworded).say(DOUBTED) == DOUBTED
+
+
+@pytest.mark.parametrize(
+    ("when", "onto", "course"),
+    [
+        ("before", None, "go on"),
+        ("after", None, "go on"),
+        ("before", 2, "go on"),
+        ("after", 3, "go on"),
+        ("after", 2, "go back"),
+        ("before", 0, "go back"),
+        ("after", 5, "skip ahead"),
+    ],
+)
+def test_going_on_elsewhere_is_shown_as_such(
+    when: Literal["before", "after"], onto: int | None, course: str
+) -> None:
+    event = Decided(when=when, step=2, action="(a)", decision=Decision.GO_ON, reason="", onto=onto)
+    assert event.course == course
+    again = event.model_copy(update={"decision": Decision.REPEAT})
+    assert again.course == "repeat"

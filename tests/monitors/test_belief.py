@@ -116,7 +116,7 @@ def test_every_decision_explains_itself_from_the_numbers(planner: Planner) -> No
     after = [event for event in decided if event.when == "after"]
     assert all(event.reason and event.belief for event in after)
     assert all(0 <= p <= 1 for event in after for p in event.belief.values())
-    figures = r"\) (\d\.\d\d → )?\d\.\d\d after (a|\w+|\d+) (no|yes)"
+    figures = r" (\d\.\d\d → )?\d\.\d\d after (a|\w+|\d+) (no|yes)"
     told = [event for event in after if re.search(figures, event.reason)]
     assert len(told) > len(after) / 2
     assert any("which" in event.reason and "needs" in event.reason for event in told)

@@ -26,9 +26,9 @@ from tpvqa.episodes.events import (
     Resumed,
     Started,
 )
-from tpvqa.episodes.fact_words import FactWords
+from tpvqa.episodes.fact_words import words_of
 from tpvqa.monitors import Decision
-from tpvqa.questions import QuestionBook, Way
+from tpvqa.questions import FactWords, QuestionBook, Way
 from tpvqa.vlm import Reply
 
 _REPLY_STYLE = {
@@ -37,8 +37,10 @@ _REPLY_STYLE = {
     Reply.UNKNOWN: "dim",
     Reply.CANNOT_SEE: "dim",
 }
-_DECISION_STYLE = {
+_COURSE_STYLE = {
     Decision.GO_ON: "green",
+    "skip ahead": "cyan",
+    "go back": "dark_orange",
     Decision.REPEAT: "yellow",
     Decision.REPLAN: "magenta",
     Decision.DONE: "green",
@@ -134,8 +136,8 @@ class EpisodeView:
                     else:
                         self._gathered.setdefault(question.text, []).append((question, answer))
             case Believed():
-                gone = " ".join(event.removed) or "nothing"
-                new = " ".join(event.added) or "nothing"
+                gone = ", ".join(map(self._say, event.removed)) or "nothing"
+                new = ", ".join(map(self._say, event.added)) or "nothing"
                 self._line(f"  [dim]now believed: {escape(new)}; no longer: {escape(gone)}[/]")
             case Decided():
                 self._go_to(event.step)
@@ -184,21 +186,24 @@ class EpisodeView:
     def _show_decision(self, event: Decided) -> None:
         explained = bool(event.belief) and event.when == "after"
         if self._told or explained or event.decision is not Decision.GO_ON:
-            style = _DECISION_STYLE[event.decision]
-            self._line(f"  [{style}]→ {event.decision}:[/] {escape(event.reason)}")
+            style = _COURSE_STYLE[event.course]
+            self._line(f"  [{style}]→ {event.course}:[/] {escape(event.reason)}")
         self._told = False
         if event.decision is Decision.REPEAT:
             self._attempt, self._headed = self._attempt + 1, False
         elif event.when == "after" and event.decision is Decision.GO_ON:
-            self._step, self._attempt, self._headed = event.step + 1, 0, False
+            self._step, self._attempt, self._headed = event.onward, 0, False
 
     def _show_belief(self, event: Decided) -> None:
         if not event.belief:
             return
-        if self._words is None:
-            self._words = FactWords() if self._started is None else FactWords.of(self._started)
-        for line in self._bars.lines(event.belief, self._words.say):
+        for line in self._bars.lines(event.belief, self._say):
             self._line(line)
+
+    def _say(self, fact: str) -> str:
+        if self._words is None:
+            self._words = FactWords() if self._started is None else words_of(self._started)
+        return self._words.say(fact)
 
     def _show_plan(self, event: PlanMade) -> None:
         replanned = self._plan is not None
@@ -220,7 +225,7 @@ class EpisodeView:
             return
         parts = [] if event.truth["succeeded"] else [f"in truth {event.truth['reason']}"]
         if event.truth["undone"]:
-            parts.append(f"{event.truth['undone']} ended: {event.truth['undoing']}")
+            parts.append(f"{self._say(event.truth['undone'])} ended: {event.truth['undoing']}")
         if parts:
             self._line(f"  [dim italic]{escape('; '.join(parts))}[/]")
 

@@ -167,7 +167,13 @@ class Believed(_Event):
 
 
 class Decided(_Event):
-    """A monitor's verdict. `belief` holds the probabilities of facts, as far as it keeps them."""
+    """A monitor's verdict.
+
+    Attributes:
+        onto: The step of the plan to go on with; None for the natural one (the action itself
+            before it, the next one after it).
+        belief: The probabilities of facts, as far as the monitor keeps them.
+    """
 
     kind: Literal["decided"] = "decided"
     when: Literal["before", "after"]
@@ -175,7 +181,23 @@ class Decided(_Event):
     action: str
     decision: Decision
     reason: str
+    onto: int | None = None
     belief: dict[str, float] = Field(default_factory=dict)
+
+    @property
+    def onward(self) -> int:
+        """The step of the plan that comes now, where the trial goes on."""
+        return self.step + (self.when == "after") if self.onto is None else self.onto
+
+    @property
+    def course(self) -> str:
+        """The decision as it is shown: to go on elsewhere in the plan has words of its own."""
+        if self.decision is not Decision.GO_ON:
+            return self.decision
+        natural = self.step + (self.when == "after")
+        if self.onward == natural:
+            return self.decision
+        return "go back" if self.onward < natural else "skip ahead"
 
 
 class Acting(_Event):

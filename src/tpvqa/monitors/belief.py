@@ -26,7 +26,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import needed
-from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.questions import FactWords, Question, QuestionBook, Way
 from tpvqa.vlm import Answer, Reply
 
 SAME = 3
@@ -96,6 +96,7 @@ class BeliefMonitor:
         self._picture: Picture | None = None
         self._looks = self._questions = self._looks_here = self._questions_here = 0
         self._told: dict[str, Told] = {}
+        self._words: FactWords | None = None
         self._person = self.costs.person is not None
         self._action: Action | None = None
         self._effects: frozenset[Atom] = frozenset()
@@ -358,8 +359,11 @@ class BeliefMonitor:
             if not places and self._chooser.changes_left is not None:
                 self._chooser.changes_left -= 1
             place = min(places, key=lambda each: abs(each - step.index), default=None)
+        if self._words is None:
+            self._words = FactWords(step.book)
         moment = Moment(
             step,
+            self._words,
             self.belief,
             self._told,
             self._annotated(step),

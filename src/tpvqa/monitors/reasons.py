@@ -9,6 +9,7 @@ from tpvqa.belief.evidence import words
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.verdict import Decision
 from tpvqa.pddl import Action, Atom, Literal, State
+from tpvqa.questions import FactWords
 from tpvqa.vlm import Reply
 
 SAID = 2
@@ -38,6 +39,7 @@ class Moment:
 
     Attributes:
         step: Where the trial stands.
+        words: Says facts.
         belief: What is believed.
         told: What was answered since the last action, by question.
         plan: The plan that is followed, with its needs.
@@ -48,6 +50,7 @@ class Moment:
     """
 
     step: Step
+    words: FactWords
     belief: Belief
     told: Mapping[str, Told]
     plan: AnnotatedPlan | None
@@ -65,6 +68,11 @@ class Moment:
         """How probable a literal is."""
         p = self.belief.probability(literal.atom)
         return p if literal.positive else 1 - p
+
+    def say(self, literal: Literal) -> str:
+        """A literal in words."""
+        said = self.words.of(literal.atom)
+        return said if literal.positive else f"not {said}"
 
     def answers(self, atom: Atom) -> Told | None:
         """What was answered about a fact, or about those alike."""
@@ -123,7 +131,7 @@ def _why_on(moment: Moment, said: str, missing: Sequence[Literal]) -> list[str]:
         together = moment.belief.where(lambda state: all(n.holds(state) for n in needs))
         parts.append(f"all that {said} needs holds with {_figure(together)}")
     for need in missing[:1]:
-        parts.append(f"{need} {_figure(moment.probability(need))} is for later")
+        parts.append(f"{moment.say(need)} {_figure(moment.probability(need))} is for later")
     return parts or ["nothing speaks against it"]
 
 
@@ -171,11 +179,11 @@ def _too_few(moment: Moment) -> bool:
 def _fact(moment: Moment, need: Literal, *, needing: bool = True) -> str:
     """A fact with how probable it is, since when, and what rests on it."""
     told = moment.answers(need.atom)
-    text = f"{need} {_figure(moment.probability(need))}"
+    text = f"{moment.say(need)} {_figure(moment.probability(need))}"
     if told is not None:
         before = told.before if need.positive else 1 - told.before
         if len(told.atoms) == 1 and _figure(before) != _figure(moment.probability(need)):
-            text = f"{need} {_figure(before)} → {_figure(moment.probability(need))}"
+            text = f"{moment.say(need)} {_figure(before)} → {_figure(moment.probability(need))}"
         text += f" after {words(told.replies)}"
     elif not moment.step.book.asked(Literal(need.atom)):
         pass  # bookkeeping that nothing shows
@@ -221,13 +229,14 @@ def _news(moment: Moment, state: State) -> str:
         return _list(moment, shown)
     lost = [Literal(atom, positive=False) for atom in sorted(moment.step.state - state)]
     if lost:
-        return f"{lost[0]} ({_figure(moment.probability(lost[0]))})"
+        return f"{moment.say(lost[0])} ({_figure(moment.probability(lost[0]))})"
     return "what was believed"
 
 
 def _list(moment: Moment, atoms: Sequence[Atom]) -> str:
     return " and ".join(
-        f"{atom} ({_figure(moment.belief.probability(atom))})" for atom in atoms[:SAID]
+        f"{moment.words.of(atom)} ({_figure(moment.belief.probability(atom))})"
+        for atom in atoms[:SAID]
     )
 
 

@@ -4,8 +4,8 @@ import base64
 from contextlib import suppress
 from pathlib import Path
 
-from tpvqa.episodes.events import Decided, Event, FrameRecord
-from tpvqa.episodes.fact_words import FactWords
+from tpvqa.episodes.events import Event, FrameRecord
+from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.log import episode_folder, read_episode
 from tpvqa.episodes.notable_facts import probability
 from tpvqa.episodes.report.belief_chart import chart
@@ -64,8 +64,7 @@ def render_report(events: list[Event], folder: Path) -> str:
         return f"data:{frame.media_type};base64,{base64.b64encode(data).decode()}"
 
     story = tell(events)
-    believes = any(isinstance(event, Decided) and event.belief for event in events)
-    words = FactWords.of(story.started) if believes else FactWords()
+    words = words_of(story.started)
     return environment.get_template("report.html.j2").render(
         story=story,
         picture=picture,

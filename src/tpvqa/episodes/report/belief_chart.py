@@ -30,7 +30,7 @@ class Column:
     @property
     def title(self) -> str:
         """What a reader who points at it is told."""
-        return f"decision {self.number}, {self.decided.when} “{self.said}”: {self.decided.decision}"
+        return f"decision {self.number}, {self.decided.when} “{self.said}”: {self.decided.course}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +110,10 @@ class Row:
         ]
 
 
+COURSES = ("go on", "skip ahead", "repeat", "go back", "replan", "done", "give up")
+"""What can be decided, in the order of the key."""
+
+
 @dataclass(frozen=True, slots=True)
 class BeliefChart:
     """The rows with what they share: the decisions from left to right."""
@@ -122,6 +126,12 @@ class BeliefChart:
     def width(self) -> int:
         """The number of decisions."""
         return len(self.columns)
+
+    @property
+    def courses(self) -> list[str]:
+        """The kinds of decisions that occur, for the key."""
+        found = {column.decided.course for column in self.columns}
+        return [course for course in COURSES if course in found]
 
     @property
     def acts(self) -> list[int]:
