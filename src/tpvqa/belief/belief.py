@@ -55,7 +55,7 @@ class Belief:
         self.lost = 0.0
         self.came: Came | None = None
         self._predicted: dict[int, float] = {}
-        self._marginals: dict[Atom, float] = {}
+        self._marginals: dict[tuple[Atom, ...], float] = {}
         self._ranked: list[tuple[int, float]] | None = None
 
     def states(self) -> list[tuple[State, float]]:
@@ -76,16 +76,13 @@ class Belief:
 
     def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
         """The probability of a fact, or of it or any fact alike."""
-        if not alike:
-            known = self._marginals.get(atom)
-            if known is not None:
-                return known
-        truth = self.model.truth((atom, *alike))
-        total = sum(weight for number, weight in self.weights.items() if truth[number])
-        total = min(total, 1.0)
-        if not alike:
-            self._marginals[atom] = total
-        return total
+        atoms = (atom, *alike)
+        known = self._marginals.get(atoms)
+        if known is None:
+            truth = self.model.truth(atoms)
+            total = sum(weight for number, weight in self.weights.items() if truth[number])
+            known = self._marginals[atoms] = min(total, 1.0)
+        return known
 
     def where(self, holds: Callable[[State], bool]) -> float:
         """The probability that something holds."""

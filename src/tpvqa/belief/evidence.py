@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import exp, log
 
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.calibration import Apart, Calibration
+from tpvqa.belief.calibration import Apart, Calibration, Group
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.counts import PSEUDO
 from tpvqa.belief.information import Reliability, answers_to_be_sure
@@ -130,7 +130,8 @@ class Evidence:
 
     def expect(self, question: Question, view: str | None) -> Reliability:
         """What the next answer to a question, at a new look from a view, is worth."""
-        rates = self._calibration.rates(question)
+        group = self._calibration.group(question)
+        rates = group.rates
         abstains = (rates.abstain_if_true + rates.abstain_if_false) / 2
         true, false = rates.yes_if_true, rates.yes_if_false
         if self._trust is not None:
@@ -139,7 +140,7 @@ class Evidence:
             true, false = 0.5 + share * (true - 0.5), 0.5 + share * (false - 0.5)
         last = self._last.get(question.text)
         if last is not None:
-            true, false = self._with_history(question, last, true, false)
+            true, false = _with_history(group, last, true, false)
             rho = self._repeats[_apart(last, view)].mean
             before = 1.0 if last.reply is Reply.YES else 0.0
             if_true, if_false = _unchanged(last)
@@ -162,7 +163,8 @@ class Evidence:
         last = self._last.get(question.text)
         if last is not None and picture in last.pictures:
             return 1.0
-        raw = self._calibration.log_ratio(answer)
+        group = self._calibration.group(question)
+        raw = group.log_ratio(answer.reply, answer.p_yes)
         true = self._belief.probability(question.atom, question.alike)
         ratio = raw if self._trust is None else self._trust.ratio(raw)
         if_true = _sigmoid(ratio)
@@ -171,9 +173,9 @@ class Evidence:
         yes = answer.reply is Reply.YES
         if last is not None:
             if yes:
-                if_true, if_false = self._with_history(question, last, if_true, if_false)
+                if_true, if_false = _with_history(group, last, if_true, if_false)
             else:
-                yes_true, yes_false = self._with_history(question, last, 1 - if_true, 1 - if_false)
+                yes_true, yes_false = _with_history(group, last, 1 - if_true, 1 - if_false)
                 if_true, if_false = 1 - yes_true, 1 - yes_false
             repeats = self._repeats[_apart(last, view)]
             same = 1.0 if last.reply is answer.reply else 0.0
@@ -181,8 +183,7 @@ class Evidence:
             again_true, again_false = (repeats.mean * share for share in unchanged)
             if self._trust is not None:
                 # How often this word is said, not how much this P(yes) is worth.
-                rates = self._calibration.rates(question)
-                said = (rates.yes_if_true, rates.yes_if_false)
+                said = (group.rates.yes_if_true, group.rates.yes_if_false)
                 _learn_repeats(repeats, true, said if yes else _others(said), unchanged, same)
             if_true = again_true * same + (1 - again_true) * if_true
             if_false = again_false * same + (1 - again_false) * if_false
@@ -196,24 +197,12 @@ class Evidence:
                 true, raw, same=bool(same), again_true=again_true, again_false=again_false
             )
         after = self._belief.probability(question.atom, question.alike)
-        pictures = {picture} if last is None else last.pictures | {picture}
-        counts = (0, 0) if last is None else (last.yes, last.no)
-        self._last[question.text] = _Last(
-            answer.reply, pictures, view, after, counts[0] + yes, counts[1] + (not yes)
-        )
+        if last is None:
+            last = self._last[question.text] = _Last(answer.reply, set(), view, after)
+        last.reply, last.view, last.true, last.settled = answer.reply, view, after, True
+        last.pictures.add(picture)
+        last.yes, last.no = last.yes + yes, last.no + (not yes)
         return probable
-
-    def _with_history(
-        self, question: Question, last: _Last, if_true: float, if_false: float
-    ) -> tuple[float, float]:
-        """Rates of yes, given the answers to the same question since the last action.
-
-        A rate is known from so many cases only. Answers that go on coming where one of the two
-        says they should not speak against that rate as well as against the fact (Beta-binomial).
-        """
-        cases = PSEUDO + self._calibration.group(question).rows / 2
-        total = cases + last.yes + last.no
-        return (cases * if_true + last.yes) / total, (cases * if_false + last.yes) / total
 
     def take_from_person(self, answer: Answer) -> None:
         """Weigh the belief by a person's answer."""
@@ -224,6 +213,19 @@ class Evidence:
             right = PERSON if answer.reply is Reply.YES else 1 - PERSON
             self._belief.open((atom, *answer.question.alike), self._unexplained)
             self._belief.see((atom, *answer.question.alike), right, 1 - right)
+
+
+def _with_history(
+    group: Group, last: _Last, if_true: float, if_false: float
+) -> tuple[float, float]:
+    """Rates of yes, given the answers to the same question since the last action.
+
+    A rate is known from so many cases only. Answers that go on coming where one of the two says
+    they should not speak against that rate as well as against the fact (Beta-binomial).
+    """
+    cases = PSEUDO + group.rows / 2
+    total = cases + last.yes + last.no
+    return (cases * if_true + last.yes) / total, (cases * if_false + last.yes) / total
 
 
 def _unchanged(last: _Last) -> tuple[float, float]:
