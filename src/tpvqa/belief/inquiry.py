@@ -119,6 +119,7 @@ class Inquirer:
             places = [each.place for each in worth]
             reliabilities = [each.reliability for each in worth]
             saved = gains(if_true[places], if_false[places], reliabilities, TIMES).tolist()
+            most_saved, asked = 0.0 if found is None else found.saving, None
             for each, own in zip(worth, saved, strict=True):
                 text = each.question.text
                 seen = picture is not None and not self._evidence.asked_of(text, picture)
@@ -127,7 +128,10 @@ class Inquirer:
                     if times > budget.questions or looks > budget.looks:
                         break
                     saving = gain - times * asking - looks * looking
-                    found = _better(found, Inquiry(each.question, max(1, times // 4), saving))
+                    if saving > most_saved + EQUAL:
+                        most_saved, asked = saving, (each.question, times)
+            if asked is not None:
+                found = Inquiry(asked[0], max(1, asked[1] // 4), most_saved)
         if len(doubted) > 1 and now > asking:
             doubted.sort(key=lambda each: each.urgent)
             first = doubted[:TOGETHER]

@@ -22,6 +22,7 @@ class Trust:
 
     def __init__(self, spread: float = 0.5):
         self.spread = spread
+        self._trusted: dict[float, float] = {}
         self._weights = [exp(-0.5 * (log(factor) / spread) ** 2) for factor in GRID]
         self._normalise()
 
@@ -30,8 +31,10 @@ class Trust:
         if ratio == 0.0:
             return 0.0
         size = abs(ratio)
-        right = sum(map(mul, self._weights, _rights(size)))
-        trusted = log(right / (1 - right))
+        trusted = self._trusted.get(size)
+        if trusted is None:
+            right = sum(map(mul, self._weights, _rights(size)))
+            trusted = self._trusted[size] = log(right / (1 - right))
         return trusted if ratio > 0 else -trusted
 
     def learn(
@@ -81,6 +84,7 @@ class Trust:
     def _normalise(self) -> None:
         total = sum(self._weights)
         self._weights = [max(w / total, 1e-9) for w in self._weights]
+        self._trusted.clear()
 
 
 @lru_cache(maxsize=4096)
