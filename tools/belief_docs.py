@@ -1,6 +1,6 @@
 """Put what the belief bench has measured into the documentation.
 
-`python tools/belief_docs.py FOLDER`, where FOLDER is where `tpvqa bench belief` has written. Between
+`python tools/belief_docs.py FOLDER`, with the folder that `tpvqa bench belief` has written. Between
 `<!-- NAME -->` and `<!-- end -->`, the tables of `docs/belief.md` are made again;
 `docs/belief-results.md` and the figures are copied.
 """
