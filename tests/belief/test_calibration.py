@@ -82,7 +82,7 @@ def test_without_data_it_trusts_p_yes_half() -> None:
     one = Calibration.default("v")
     assert one.log_ratio(Answer(ON, Reply.YES, 0.9)) == pytest.approx(log(9) / 2)
     assert one.log_ratio(Answer(ON, Reply.YES)) == pytest.approx(log(0.85 / 0.15))
-    assert one.rates(ON) == Rates(0.85, 0.15, 0.05, 0.05)
+    assert one.group(ON).rates == Rates(0.85, 0.15, 0.05, 0.05)
     assert (one.repeat(Apart.SAME_VIEW), one.repeat(Apart.OTHER_VIEW)) == (0.5, 0.25)
 
 
@@ -97,14 +97,14 @@ def test_words_that_are_the_same_stand_in_for_each_other() -> None:
     )
 
     def rate(way: Way, predicate: str) -> float:
-        return one.rates(Question("?", way, atom=Atom(predicate))).yes_if_true
+        return one.group(Question("?", way, atom=Atom(predicate))).rates.yes_if_true
 
     assert rate(Way.PRECONDITION, "on") == rate(Way.ALTERNATIVE, "on") == 0.91
     assert rate(Way.EFFECT, "on") == 0.91
     assert rate(Way.PRECONDITION, "near") == 0.92
     assert rate(Way.EFFECT, "clean") == rate(Way.ALTERNATIVE, "clean") == 0.93
-    assert one.rates(Question("?", Way.SUCCESSFUL)).yes_if_true == 0.94
-    assert one.rates(Question("?", Way.POSSIBLE)).yes_if_true == 0.95
+    assert one.group(Question("?", Way.SUCCESSFUL)).rates.yes_if_true == 0.94
+    assert one.group(Question("?", Way.POSSIBLE)).rates.yes_if_true == 0.95
 
 
 @given(
@@ -127,7 +127,7 @@ def test_the_file_gives_back_what_was_written(
         notices=("look out",),
     )
     path = tmp_path_factory.mktemp("file") / "new" / "c.json"
-    one.rates(ON)  # what is indexed for speed must not be part of it
+    one.group(ON)  # what is indexed for speed must not be part of it
     one.save(path)
     assert Calibration.load(path) == one
     assert [each.name for each in path.parent.iterdir()] == ["c.json"]

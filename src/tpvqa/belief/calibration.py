@@ -203,10 +203,6 @@ class Calibration(_Model):
         known = self._nearest[way]
         return known.get(subject) or known[""]
 
-    def rates(self, question: Question) -> Rates:
-        """What to expect of the answer before asking."""
-        return self.group(question).rates
-
     def log_ratio(self, answer: Answer) -> float:
         """What an answer is worth by itself: positive where it speaks for yes.
 
