@@ -17,7 +17,7 @@ from tpvqa.episodes import Ended, EpisodeWriter, Event, Limits, MemoryWriter, Pa
 from tpvqa.episodes.events import Acted, Acting
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import EpisodeError
-from tpvqa.loop import run_episode
+from tpvqa.loop import Interrupted, run_episode
 from tpvqa.monitors.tpvqa import TPVQA
 from tpvqa.planning import Crashed, Planner, TimedOut
 from tpvqa.planning.fast_downward import FastDownward
@@ -250,3 +250,40 @@ def test_the_command_killed_at_a_bad_moment_resumes_to_the_same_end(tmp_path: Pa
     if "has ended" not in result.stderr:
         assert json.loads(result.stdout)["ended_because"] == read_episode(whole)[-1].because  # type: ignore[union-attr]
     assert story(read_episode(broken)) == story(read_episode(whole))
+
+
+def test_ctrl_c_ends_a_loop_of_trials_and_each_can_be_gone_on_with(
+    tmp_path: Path, planner: Planner
+) -> None:
+    begun: list[Path] = []
+
+    def press(event: Event) -> None:
+        if len(begun) == 2 and isinstance(event, Acting):
+            raise KeyboardInterrupt
+
+    def run_four() -> None:
+        for number in range(4):
+            begun.append(tmp_path / str(number))
+            writer = EpisodeWriter(begun[-1])
+            try:
+                with Trial(symbolic(episode=number), planner=planner) as trial:
+                    trial.run(writer, folder=begun[-1], listeners=[press])
+            finally:
+                writer.close()
+
+    with pytest.raises(Interrupted) as stopped:
+        run_four()
+    assert len(begun) == 2
+    assert stopped.value.ended.because == "cancelled"
+    last = read_episode(begun[1])[-1]
+    assert isinstance(last, Ended)
+    assert last.because == "cancelled"
+    resume(begun[1])
+    ended = read_episode(begun[1])[-1]
+    assert isinstance(ended, Ended)
+    whole = run(symbolic(episode=1), planner)[0]
+    assert (ended.because, ended.actions, ended.questions) == (
+        whole.because,
+        whole.actions,
+        whole.questions,
+    )

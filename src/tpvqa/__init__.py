@@ -17,6 +17,7 @@ _PUBLIC = {
     "Action": "tpvqa.pddl",
     "Answer": "tpvqa.vlm",
     "Atom": "tpvqa.pddl",
+    "Interrupted": "tpvqa.loop",
     "Literal": "tpvqa.pddl",
     "Observation": "tpvqa.observation",
     "Plan": "tpvqa.planning",

@@ -20,6 +20,18 @@ from tpvqa.worlds.truth import goal_holds
 T = TypeVar("T")
 
 
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during an episode, whose log has its end: what runs many ends with it.
+
+    Attributes:
+        ended: The last event.
+    """
+
+    def __init__(self, ended: Ended):
+        super().__init__("interrupted")
+        self.ended = ended
+
+
 @dataclass
 class _Trial:
     """Where a running trial stands."""
@@ -65,19 +77,23 @@ def run_episode(
     Returns:
         The last event. `completed` means that all goals hold in truth and that the trial ended
         believing so.
+
+    Raises:
+        Interrupted: Ctrl-C. The log is ended first, and can be gone on with.
     """
     recorder = Recorder(parts, writer, recorded=recorded, folder=folder, listeners=listeners)
     trial = _Trial(parts.task.init, cancel=cancel or Flag())
     recorder.emit(started)
+    interrupted = False
     try:
         because = _run(recorder, monitor, trial, started.limits, planning_timeout, action_deadline)
     except KeyboardInterrupt:
         if recorder.replaying:  # the log is right as it is
             raise
-        because, trial.message = "cancelled", "interrupted by the user"
+        because, trial.message, interrupted = "cancelled", "interrupted by the user", True
     recorder.settle()
     goal = goal_holds(parts.world, parts.task.goal)
-    return recorder.end(
+    ended = recorder.end(
         Ended(
             because=because,
             message=trial.message,
@@ -91,6 +107,9 @@ def run_episode(
             replans=trial.replans,
         )
     )
+    if interrupted:
+        raise Interrupted(ended)
+    return ended
 
 
 def _run(

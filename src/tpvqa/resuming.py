@@ -79,6 +79,7 @@ def resume(
     Raises:
         EpisodeError: There is nothing to go on with, it has ended already, or a file that it
             was started with is no longer what it was.
+        Interrupted: Ctrl-C. The log is ended first.
     """
     events = read_episode(folder)
     started, last = events[0], events[-1]

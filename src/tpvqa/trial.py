@@ -247,6 +247,7 @@ class Trial:
 
         Raises:
             TpvqaError: It has run already; the world is no longer where a trial begins.
+            Interrupted: Ctrl-C, which also ends a loop of trials. The log is ended first.
         """
         if self._run:
             raise TpvqaError("This trial has run already. Make another Trial to run it again.")

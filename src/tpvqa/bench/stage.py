@@ -84,12 +84,9 @@ class Stage:
         """Run a trial that is kept nowhere; only a listener is told of it.
 
         Raises:
-            KeyboardInterrupt: It was cancelled.
+            KeyboardInterrupt: Ctrl-C ends the bench, and this episode is none of it.
         """
-        ended = trial.run(MemoryWriter(resumable=False, keep=False), listeners=[listener])
-        if ended.because == "cancelled":  # Ctrl-C ends the bench, and this episode is none of it
-            raise KeyboardInterrupt
-        return ended
+        return trial.run(MemoryWriter(resumable=False, keep=False), listeners=[listener])
 
     def _figures(self, config: TrialConfig) -> tuple[dict[str, Any], Experience | None]:
         with self.trial(config) as trial:

@@ -110,6 +110,7 @@ def run(
     from tpvqa.belief.experience import Experience
     from tpvqa.episodes import EpisodeWriter, Limits
     from tpvqa.errors import TpvqaError
+    from tpvqa.loop import Interrupted
     from tpvqa.trial import Trial, TrialConfig
 
     if task is not None and problem_file is not None:
@@ -166,6 +167,8 @@ def run(
             with _view(as_json=as_json, book=trial.book) as view:
                 views.append(view)
                 ended = trial.run(writer, folder=folder, listeners=[view])
+        except Interrupted as stop:
+            ended = stop.ended
         finally:
             writer.close()
         _keep_experience(trial, ended)
@@ -179,18 +182,22 @@ def resume(
 ) -> None:
     """Go on with an episode that was interrupted or killed, to the end it would have had."""
     from tpvqa.episodes.log import episode_folder
+    from tpvqa.loop import Interrupted
     from tpvqa.resuming import resume as go_on
 
     episode = episode_folder(episode)
     views: list[EpisodeView] = []
     with _view(as_json=as_json) as view:
         views.append(view)
-        ended = go_on(
-            episode,
-            listeners=[view],
-            person=_person(views, as_json=as_json),
-            then=_keep_experience,
-        )
+        try:
+            ended = go_on(
+                episode,
+                listeners=[view],
+                person=_person(views, as_json=as_json),
+                then=_keep_experience,
+            )
+        except Interrupted as stop:
+            ended = stop.ended
     _finish(ended, episode, as_json=as_json)
 
 

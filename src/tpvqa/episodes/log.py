@@ -62,7 +62,8 @@ class EpisodeWriter:
         except BlockingIOError:
             self._file.close()
             raise EpisodeError(
-                f"{self.folder} is still being written by another process; wait for it or end it"
+                f"{self.folder} is still being written by another process, or by a writer that was "
+                "not closed; wait for it or end it"
             ) from None
 
     def append(self, event: Event) -> Event:
