@@ -248,7 +248,7 @@ def test_the_command_killed_at_a_bad_moment_resumes_to_the_same_end(tmp_path: Pa
         [*TPVQA_COMMAND, "resume", broken, "--json"], capture_output=True, text=True, check=False
     )
     if "has ended" not in result.stderr:
-        assert json.loads(result.stdout)["ended_because"] == read_episode(whole)[-1].because  # type: ignore[union-attr]
+        assert json.loads(result.stdout)["ended_because"] == read_episode(whole)[-1].ending  # type: ignore[union-attr]
     assert story(read_episode(broken)) == story(read_episode(whole))
 
 

@@ -306,3 +306,11 @@ def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
     whole = subprocess.run([*command, *trial, "--out", "whole"], cwd=tmp_path, capture_output=True)
     assert resumed.returncode == whole.returncode == 1
     assert story(tmp_path / "here") == story(tmp_path / "whole")
+
+
+def test_a_goal_that_is_only_believed_is_not_told_as_reached(tpvqa: Run) -> None:
+    trial = ["run", "serve_breakfast", *SYMBOLIC, "--monitor", "none", "--failure", "0.9"]
+    code, out, _ = tpvqa(*trial, "--json", "--out", "here")
+    told = json.loads(out)
+    assert (code, told["completed"]) == (1, False)
+    assert told["ended_because"] == "believed done and was not"

@@ -3,6 +3,7 @@
 from pydantic import BaseModel, ConfigDict
 
 from tpvqa.bench.cell import Cell
+from tpvqa.episodes.events import BELIEVED
 
 
 class EpisodeRow(BaseModel):
@@ -65,5 +66,5 @@ class EpisodeRow(BaseModel):
         if self.completed:
             return "goal"
         if self.believed_goal:
-            return "believed done and was not"
+            return BELIEVED
         return self.because

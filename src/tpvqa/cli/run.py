@@ -326,7 +326,7 @@ def _finish(ended: "Ended", folder: Path, *, as_json: bool) -> None:
                     "vlm": started.vlm,
                     "noise_model": started.noise_model,
                     "completed": ended.completed,
-                    "ended_because": ended.because,
+                    "ended_because": ended.ending,
                     "message": ended.message,
                     "actions": ended.actions,
                     "questions": ended.questions,

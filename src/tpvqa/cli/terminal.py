@@ -240,8 +240,7 @@ class EpisodeView:
             style = "green" if event.believed_goal else "red"
             headline = f"[bold {style}]ended: {event.because}[/]"
         else:
-            why = "the goal is believed but does not hold" if event.believed_goal else event.because
-            headline = f"[bold red]goal not reached[/] ({escape(why)})"
+            headline = f"[bold red]goal not reached[/] ({escape(event.ending)})"
         message = f" [dim]{escape(event.message)}[/]" if event.message else ""
         self._line(f"{headline}: {counts}{message}")
 

@@ -256,6 +256,16 @@ class Ended(_Event):
     repeats: int
     replans: int
 
+    @property
+    def ending(self) -> str:
+        """How it ended: `because`, but for a goal that was believed and does not hold."""
+        if self.completed is False and self.believed_goal:
+            return BELIEVED
+        return self.because
+
+
+BELIEVED = "believed done and was not"
+"""How an episode ended whose goal is believed and does not hold."""
 
 Event = (
     Started
