@@ -25,7 +25,8 @@ from tpvqa.episodes.events import (
     QuestionRecord,
     Resumed,
 )
-from tpvqa.errors import EpisodeError
+from tpvqa.episodes.plugged import called
+from tpvqa.errors import EpisodeError, PluginError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, State, Task
 from tpvqa.planning import Planner, PlanningResult
@@ -150,7 +151,7 @@ class Recorder:
             self._tell(record)
             self._observation = records.observation_from(record, self._folder)
             return self._observation
-        seen = replace(self.parts.world.observe(view), look=number)
+        seen = replace(called(self.parts.world, "observe", Observation, view), look=number)
         frames = tuple(
             FrameRecord(
                 view=frame.view,
@@ -201,11 +202,7 @@ class Recorder:
                 text = "nobody is there"
                 answers = [Answer(question, Reply.UNKNOWN, text=text) for question in questions]
             else:
-                answers = asked.ask(self._observation, questions)
-            if asked is not None and len(answers) != len(questions):
-                raise EpisodeError(
-                    f"{asked.name} gave {len(answers)} answers to {len(questions)} questions"
-                )
+                answers = _answers(asked, self._observation, questions)
             record = records.answered_record(answers, self._snapshot(self.parts.vlm))
             record = self._writer.append(record)  # type: ignore[assignment]
         self._tell(record)
@@ -235,7 +232,7 @@ class Recorder:
             execution = (
                 Execution(Report.FAILED, 0.0, "interrupted")
                 if interrupted
-                else world.execute(action, deadline=deadline, cancel=cancel)
+                else called(world, "execute", Execution, action, deadline=deadline, cancel=cancel)
             )
             record = self._writer.append(  # type: ignore[assignment]
                 Acted(
@@ -307,6 +304,18 @@ class Recorder:
         for listener in self._listeners:
             listener(event)
         return event
+
+
+def _answers(vlm: VLM, seen: Observation, questions: Sequence[Question]) -> list[Answer]:
+    """One answer to each question, in order."""
+    answers = called(vlm, "ask", list, seen, questions)
+    if len(answers) != len(questions) or not all(isinstance(each, Answer) for each in answers):
+        kinds = ", ".join(sorted({type(each).__name__ for each in answers})) or "nothing"
+        raise PluginError(
+            f"{vlm.name} has to give {len(questions)} Answers to {len(questions)} questions, "
+            f"and gave {len(answers)} ({kinds})"
+        )
+    return answers
 
 
 def _truth(world: World, before: object) -> dict[str, Any] | None:

@@ -1,0 +1,135 @@
+"""The robot and the VLM of docs/your-own-domain.md, run as they stand there."""
+
+import re
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tpvqa import Trial, TrialConfig
+from tpvqa.episodes import EpisodeWriter, read_episode
+from tpvqa.episodes.events import Acting
+from tpvqa.errors import PluginError
+from tpvqa.resuming import resume
+
+PAGE = Path(__file__).parents[1] / "docs/your-own-domain.md"
+LAB = """
+from pathlib import Path
+
+done = []
+
+def take_picture():
+    return b"a JPEG"
+
+def run_skill(name, arguments):
+    done.append((name, *arguments))
+    return True
+
+def probability_of_yes(picture, text):
+    return 0.95 if picture == b"a JPEG" else None
+"""
+Edit = Callable[[str, str, str], None]
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Edit]:
+    """Install the package of the page; gives a function that edits one of its files."""
+    blocks = re.findall(
+        r"```(\w+)\n(?:# my_package/(\w+\.py)\n)?(.*?)```", PAGE.read_text(), re.DOTALL
+    )
+    folder = tmp_path / "site" / "my_package"
+    folder.mkdir(parents=True)
+    (folder.parent / "my_lab.py").write_text(LAB)
+    for language, name, text in blocks:
+        if language == "python":
+            (folder / name).write_text(text)
+    (points,) = (text for language, _, text in blocks if language == "toml")
+    metadata = folder.parent / "my_package-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: my_package\nVersion: 1.0\n")
+    told = re.sub(r'\[project\.entry-points\."(.*)"\]', r"[\1]", points).replace('"', "")
+    (metadata / "entry_points.txt").write_text(told)
+    monkeypatch.syspath_prepend(str(folder.parent))
+
+    def forget() -> None:
+        for module in [
+            name for name in sys.modules if name.split(".")[0] in ("my_package", "my_lab")
+        ]:
+            del sys.modules[module]
+
+    def edit(name: str, old: str, new: str) -> None:
+        text = (folder / name).read_text()
+        assert old in text
+        (folder / name).write_text(text.replace(old, new))
+        forget()
+
+    forget()
+    yield edit
+    forget()
+
+
+CONFIG = TrialConfig(task="clean_dishes", world="my-robot", vlm="my-vlm")
+
+
+def run(folder: Path) -> None:
+    writer = EpisodeWriter(folder)
+    try:
+        with Trial(CONFIG) as trial:
+            trial.run(writer, folder=folder)
+    finally:
+        writer.close()
+
+
+def test_they_do_the_task(package: Edit, tmp_path: Path) -> None:
+    run(tmp_path / "here")
+    events = read_episode(tmp_path / "here")
+    done = sys.modules["my_lab"].done
+    assert done == [
+        (event.action.name, *event.action.arguments)
+        for event in events
+        if isinstance(event, Acting)
+    ]
+    assert len(done) >= 4
+    assert {path.read_bytes() for path in (tmp_path / "here/frames").iterdir()} == {b"a JPEG"}
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "says"),
+    [
+        (
+            "robot.py",
+            "take_picture())",
+            "camera)",
+            r"MyRobot\.observe broke: NameError: .*robot\.py:",
+        ),
+        (
+            "robot.py",
+            "return Observation(",
+            "return (",
+            r"observe has to return Observation, not tuple",
+        ),
+        (
+            "robot.py",
+            "return Execution(",
+            "return str(",
+            r"execute .*(broke|has to return Execution)",
+        ),
+        (
+            "vlm.py",
+            "for question in questions]",
+            "for question in ()]",
+            r"my-vlm has to give \d Answers",
+        ),
+        ("vlm.py", "p = probability_of_yes", "return probability_of_yes", r"my-vlm has to give"),
+        ("vlm.py", 'frames["front"]', 'frames["back"]', r"MyVLM\.ask broke: KeyError: 'back'"),
+    ],
+)
+def test_what_is_wrong_with_them_is_named_and_can_be_mended(
+    package: Edit, tmp_path: Path, file: str, old: str, new: str, says: str
+) -> None:
+    package(file, old, new)
+    with pytest.raises(PluginError, match=says):
+        run(tmp_path / "here")
+    package(file, new, old)
+    assert resume(tmp_path / "here").because in ("goal", "limit of repeats")
