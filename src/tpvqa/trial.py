@@ -233,6 +233,19 @@ class Trial:
             },
         )
 
+    def check(self) -> None:
+        """See whether world and VLM are there, before a robot moves: files, keys, servers.
+
+        Asks those that have a method `check`.
+
+        Raises:
+            TpvqaError: What is missing.
+        """
+        for part in (self.world, self.vlm):
+            check = getattr(part, "check", None)
+            if check is not None:
+                check()
+
     def run(
         self,
         writer: Writer,

@@ -314,3 +314,22 @@ def test_a_goal_that_is_only_believed_is_not_told_as_reached(tpvqa: Run) -> None
     told = json.loads(out)
     assert (code, told["completed"]) == (1, False)
     assert told["ended_because"] == "believed done and was not"
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--vlm", "openai:some"], "needs a key"),
+        (["--vlm", "openai:some", "--base-url", "http://localhost:9/v1"], "cannot be reached"),
+        (["--pictures", "not/there"], "cannot be read"),
+    ],
+)
+def test_what_is_missing_is_found_before_anything_moves(
+    tpvqa: Run, monkeypatch: pytest.MonkeyPatch, options: list[str], says: str
+) -> None:
+    for name in ("OPENAI_API_KEY", "OPENAI_BASE_URL"):
+        monkeypatch.delenv(name, raising=False)
+    code, out, err = tpvqa("run", "eat_apple", *options, "--out", "here")
+    assert (code, out) == (2, "")
+    assert says in err
+    assert not Path("here").exists()

@@ -161,6 +161,7 @@ def run(
             )
         for notice in (*trial.book.notices, *_about_calibration(trial)):
             print(f"note: {notice}", file=sys.stderr)
+        trial.check()
         folder = out or _new_folder(trial.task.name, seed, episode)
         writer = EpisodeWriter(folder)
         try:

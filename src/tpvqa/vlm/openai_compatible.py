@@ -7,6 +7,7 @@ import os
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.chance import chance
@@ -146,6 +147,15 @@ class OpenAICompatibleVLM:
         now = self._known | dict(zip(missing, outcomes, strict=True))
         self._known = {text: outcome for text, outcome in now.items() if outcome.final}
         return [_answer(question, now[question.text]) for question in questions]
+
+    def check(self) -> None:
+        """Ask one question about a grey picture, whatever the answer.
+
+        Raises:
+            AnswerError: As `ask` does.
+        """
+        grey = Frame("check", "front", _grey(), "image/png")
+        self._loop.run(self._ask_all(self._connect(), (grey,), ("Is this picture grey?",)))
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
@@ -329,6 +339,14 @@ class OpenAICompatibleVLM:
 
     def _where(self) -> str:
         return self.base_url or "OpenAI's server"
+
+
+def _grey() -> bytes:
+    from PIL import Image
+
+    file = BytesIO()
+    Image.new("RGB", (64, 64), (128, 128, 128)).save(file, "png")
+    return file.getvalue()
 
 
 def _pause(again: _Again, attempt: int, text: str) -> float:

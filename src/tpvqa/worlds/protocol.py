@@ -33,6 +33,7 @@ class Execution:
 class World(Protocol):
     """Somewhere to act and to look.
 
+    It may also have `check()`, which raises where something is missing, before anything is done.
     Every call of `observe` is a new look. Simulated worlds also have `truth`, a `TruthSource`
     for judges and noise models; robots do not.
     """

@@ -90,6 +90,14 @@ class ImageWorld:
         """The set, read when it is first needed."""
         return load_pictures(self._folder)
 
+    def check(self) -> None:
+        """See whether the pictures are there.
+
+        Raises:
+            TpvqaError: They cannot be read.
+        """
+        self.pictures  # noqa: B018 — read when it is first needed
+
     def views(self) -> Sequence[str]:
         """One view: the camera that the robot carries."""
         return (VIEW,)
