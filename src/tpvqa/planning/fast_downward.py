@@ -8,6 +8,7 @@ from tpvqa.pddl import State, Task, literals, validate
 from tpvqa.pddl.loading import to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
 from tpvqa.pddl.time_limit import limit_of
+from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 
 SATISFICING = "let(h,ff(),lazy_greedy([h],preferred=[h]))"
@@ -104,7 +105,7 @@ class FastDownward:
         if outcome["kind"] == "timeout":
             return TimedOut(limit or 0.0, self.name, seconds)
         if outcome["kind"] == "unsolvable":
-            return Unsolvable(outcome["reason"] + _hint(task), self.name, seconds)
+            return Unsolvable(outcome["reason"] + _hint(task, state), self.name, seconds)
         return Crashed(outcome["reason"], self.name, seconds)
 
     def close(self) -> None:
@@ -112,11 +113,12 @@ class FastDownward:
         WORKERS.close()
 
 
-def _hint(task: Task) -> str:
+def _hint(task: Task, state: State) -> str:
     """What may be wrong with a goal that cannot be reached."""
     for literal in literals(task.goal):
         try:
             task.check_atom(literal.atom)
         except PDDLError as error:
             return f". In the goal, {error}"
-    return ""
+    found = obstacle(task, state)
+    return found and f": {found}"
