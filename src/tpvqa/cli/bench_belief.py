@@ -40,7 +40,7 @@ def belief(
     episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 1000,
     curve_episodes: Annotated[
         int, typer.Option(help="Of every further point of a curve.", min=1)
-    ] = 300,
+    ] = 100,
     chains: Annotated[
         int,
         typer.Option(

@@ -71,7 +71,7 @@ class Extent:
     prices: Sequence[float] = PRICES
     models: Sequence[str] = ()
     episodes: int = 1000
-    curve: int = 300
+    curve: int = 100
     chains: int = 30
 
     def cells(self, part: Part) -> Iterator[tuple[Cell, int]]:
