@@ -1,6 +1,7 @@
 """The belief bench: what it runs and keeps, and what it concludes from made-up episodes."""
 
 import json
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -142,6 +143,22 @@ def test_tables_can_be_written_without_running(ran: Path, tmp_path: Path) -> Non
     assert len(lines_of(tmp_path)) == len(lines_of(ran))
     assert not (tmp_path / "calibrations").exists()
     assert {len(own) for own in results.rows.values()} == {2, 3}
+
+
+def test_published_trials_make_the_same_tables_and_are_not_run_again(
+    ran: Path, tmp_path: Path
+) -> None:
+    for name in (ROWS, "bench.json"):
+        shutil.copy(ran / name, tmp_path / name)
+    script = Path(__file__).parents[2] / "benchmarks/publish.py"
+    told = [sys.executable, str(script), str(tmp_path), "--out", str(tmp_path / "data")]
+    said = subprocess.run(told, capture_output=True, text=True, check=True).stdout
+    assert "35 rows" in said
+    again = tmp_path / "again"
+    run_belief_bench(bench(3), again, published=tmp_path / "data")
+    assert (again / ROWS).read_bytes() == b""
+    for name in ("targets.md", "belief.md"):
+        assert (again / name).read_text() == (ran / name).read_text()
 
 
 def test_other_settings_need_another_folder(ran: Path) -> None:
