@@ -54,3 +54,40 @@ def test_what_nothing_brings_about_is_named(init: str, goal: str, says: str | No
         assert isinstance(result, Unsolvable)
         assert says in result.reason
         assert says or "needs" not in result.reason
+
+
+CHAIN = 1500
+ROADS = """(define (domain roads) (:requirements :strips :action-costs)
+(:predicates (at ?a) (near ?a ?b)) (:functions (total-cost) (len ?a ?b))
+(:action go :parameters (?a ?b) :precondition (and (at ?a) (near ?a ?b))
+  :effect (and (at ?b) (not (at ?a)) (increase (total-cost) (len ?a ?b)))))"""
+STEPS = "(define (domain steps) (:predicates (s0) {facts}) {actions})".format(
+    facts=" ".join(f"(s{n})" for n in range(1, CHAIN)),
+    actions=" ".join(
+        f"(:action a{n} :precondition (s{n}) :effect (s{n + 1}))" for n in range(CHAIN - 1)
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("domain", "problem", "says"),
+    [
+        (  # costs of roads that are not there are not asked for
+            ROADS,
+            """(define (problem p) (:domain roads) (:objects a b c) (:init (at a) (near a b)
+            (= (total-cost) 0) (= (len a b) 3)) (:goal (at c)) (:metric minimize (total-cost)))""",
+            "needs near(",
+        ),
+        (  # however long the chain is
+            STEPS,
+            f"(define (problem p) (:domain steps) (:init) (:goal (s{CHAIN - 1})))",
+            f"the goal needs s{CHAIN - 1}(); a0() needs s0(), which nothing brings about",
+        ),
+    ],
+)
+def test_a_hint_changes_no_result(domain: str, problem: str, says: str) -> None:
+    planner: Planner = FastDownward()
+    result = planner.plan(task_from_text(domain, problem))
+    planner.close()
+    assert isinstance(result, Unsolvable)
+    assert says in result.reason

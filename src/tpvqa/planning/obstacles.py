@@ -4,17 +4,20 @@ Found where it shows even if nothing were ever undone (the delete relaxation: Bo
 2001); where a plan fails for other reasons, there is nothing to say.
 """
 
+from collections import deque
 from collections.abc import Iterator
 from itertools import islice, permutations, product
 
-from tpvqa.pddl import Action, Atom, Conjunction, Disjunction, Literal, State, Task
+from tpvqa.pddl import Atom, Conjunction, Disjunction, Literal, State, Task
 from tpvqa.pddl.conditions import Condition
-from tpvqa.pddl.schema import ActionSchema, EffectSchema
+from tpvqa.pddl.schema import ActionSchema, EffectSchema, ground_condition
 
-_TRIED = 2000
-"""Ways to give objects to an action's variables that are looked at."""
+_TRIED = 5000
+"""Actions that are looked at, reachable or not, before it is left unsaid."""
 _COMPARED = 100
 """Obstacles that are compared."""
+_TURNED = 4
+"""Arguments whose order is thought about."""
 
 
 def obstacle(task: Task, state: State) -> str:
@@ -26,7 +29,7 @@ def obstacle(task: Task, state: State) -> str:
     """
     possible = task.reachable_atoms | state
     for goal in _unmet(task.goal, possible):
-        roots = list(islice(_roots(task, goal, possible, set()), _COMPARED))
+        roots = list(islice(_roots(task, goal, possible), _COMPARED))
         if roots:
             action, atom = min(roots, key=lambda root: _odd(root[1], state))
             needs = f"{goal}; {action} needs {atom}" if action else str(goal)
@@ -45,48 +48,57 @@ def _unmet(condition: Condition, possible: State) -> list[Atom]:
             return min((_unmet(part, possible) for part in parts), key=len, default=[])
 
 
-def _roots(
-    task: Task, atom: Atom, possible: State, seen: set[Atom]
-) -> Iterator[tuple[Action | None, Atom]]:
+def _roots(task: Task, goal: Atom, possible: State) -> Iterator[tuple[str, Atom]]:
     """Atoms that no action says, each with the action on the way to the goal that needs it."""
-    seen.add(atom)
-    if atom.predicate in task.derived:
-        return
-    achievers = list(islice(_achievers(task, atom), _TRIED))
-    if not achievers:
-        yield None, atom
-        return
-    unmet = {action: _unmet(action.precondition, possible) for action in achievers}
-    fewest = min(map(len, unmet.values()))
-    for action, needs in unmet.items():
-        for need in needs if len(needs) == fewest else ():
-            if need not in seen:
-                for below, root in _roots(task, need, possible, seen):
-                    yield below or action, root
+    waiting, seen, tried = deque([("", goal)]), {goal}, 0
+    while waiting:
+        action, atom = waiting.popleft()
+        if atom.predicate in task.derived:
+            continue
+        unmet = {
+            said: _unmet(precondition, possible)
+            for said, precondition in islice(_achievers(task, atom), _TRIED - tried)
+        }
+        tried += len(unmet)
+        if tried >= _TRIED:
+            return
+        if not unmet:
+            yield action, atom
+            continue
+        fewest = min(map(len, unmet.values()))
+        for said, needs in unmet.items():
+            for need in needs if len(needs) == fewest else ():
+                if need not in seen:
+                    seen.add(need)
+                    waiting.append((said, need))
 
 
-def _achievers(task: Task, atom: Atom) -> Iterator[Action]:
-    """Actions whose effects say an atom, reachable or not; so many only."""
+def _achievers(task: Task, atom: Atom) -> Iterator[tuple[str, Condition]]:
+    """Actions whose effects say an atom, reachable or not, and what they need."""
     for schema in task.schemas:
         for effect in schema.effects:
             if effect.literal.positive and effect.literal.predicate == atom.predicate:
-                for arguments in _fitting(task, schema, effect, atom):
-                    yield task.action(schema.name, arguments)
+                for binding in _fitting(task, schema, effect, atom):
+                    said = f"{schema.name}({', '.join(binding.values())})"
+                    yield said, ground_condition(schema.precondition, binding, task.objects_by_type)
 
 
 def _fitting(
     task: Task, schema: ActionSchema, effect: EffectSchema, atom: Atom
-) -> Iterator[tuple[str, ...]]:
+) -> Iterator[dict[str, str]]:
+    """Objects for an action's variables with which an effect says an atom."""
     bound: dict[str, str] = {}
     for word, name in zip(effect.literal.arguments, atom.arguments, strict=True):
-        if (word if not word.startswith("?") else bound.setdefault(word, name)) != name:
+        if (bound.setdefault(word, name) if word.startswith("?") else word) != name:
             return
+    names = [parameter.name for parameter in schema.parameters]
     choices = []
     for parameter in schema.parameters:
         objects = task.objects_by_type.get(parameter.type, ())
         wanted = bound.get(parameter.name)
         choices.append(objects if wanted is None else tuple(o for o in objects if o == wanted))
-    yield from product(*choices)
+    for choice in product(*choices):
+        yield dict(zip(names, choice, strict=True))
 
 
 def _odd(atom: Atom, state: State) -> int:
@@ -98,6 +110,8 @@ def _odd(atom: Atom, state: State) -> int:
 
 def _turned(atom: Atom, state: State) -> Atom | None:
     """The same fact with its arguments in another order, where that holds."""
+    if len(atom.arguments) > _TURNED:
+        return None
     turned = (Atom(atom.predicate, arguments) for arguments in permutations(atom.arguments))
     return next((each for each in turned if each != atom and each in state), None)
 
