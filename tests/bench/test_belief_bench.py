@@ -157,6 +157,14 @@ def test_published_trials_make_the_same_tables_and_are_not_run_again(
     again = tmp_path / "again"
     run_belief_bench(bench(3), again, published=tmp_path / "data")
     assert (again / ROWS).read_bytes() == b""
+    # What is published already stays where a folder that went on from it is packed.
+    told[2] = str(again)
+    assert "35 rows" in subprocess.run(told, capture_output=True, text=True, check=True).stdout
+    told[2] = str(tmp_path / "nowhere")
+    missing = subprocess.run(told, capture_output=True, text=True, check=False)
+    assert (missing.returncode, missing.stdout) == (1, "")
+    assert "holds no bench" in missing.stderr
+    assert not (tmp_path / "nowhere").exists()
     for name in ("targets.md", "belief.md"):
         assert (again / name).read_text() == (ran / name).read_text()
 

@@ -85,3 +85,14 @@ def test_another_table_is_named(tmp_path: Path) -> None:
     parquet.write_table(pa.table({"a": [1]}), tmp_path / "a.parquet")
     with pytest.raises(BenchError, match="does not say which bench"):
         list(read_published(tmp_path / "a.parquet", SETTINGS))
+
+
+def test_a_failure_hides_no_finished_episode(tmp_path: Path) -> None:
+    write_published([row(episode=0, completed=True)], SETTINGS, tmp_path / "data" / "a.parquet")
+    own = Ledger(tmp_path / "bench", SETTINGS)
+    own.add([row(episode=0, error="broke"), row(episode=1, error="broke")])
+    own.close()
+    ledger = Ledger(tmp_path / "bench", SETTINGS, tmp_path / "data")
+    cell = Cell("t", "m", "v", "w")
+    assert ledger.missing(cell, 2) == [1]
+    assert [each.completed for each in ledger.of(cell, 1)] == [True]

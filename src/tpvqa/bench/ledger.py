@@ -48,9 +48,7 @@ class Ledger:
             self._file.close()
             raise BenchError(f"{folder}: another bench is at work there; wait for it") from None
         self._agree(dict(settings))
-        self.rows: dict[tuple[Cell, int], EpisodeRow] = {}
-        for row in chain(others, self._read()):
-            self.rows[row.cell, row.episode] = row
+        self.rows = merged(chain(others, self._read()))
 
     def _agree(self, settings: dict[str, Any]) -> None:
         path = self.folder / SETTINGS
@@ -109,3 +107,13 @@ class Ledger:
     def close(self) -> None:
         """Close the file. Can be called twice."""
         self._file.close()
+
+
+def merged(rows: Iterable[EpisodeRow]) -> dict[tuple[Cell, int], EpisodeRow]:
+    """Rows by cell and episode; the latest counts, but a failure never hides a finished episode."""
+    found: dict[tuple[Cell, int], EpisodeRow] = {}
+    for row in rows:
+        key = row.cell, row.episode
+        if not row.error or key not in found or found[key].error:
+            found[key] = row
+    return found

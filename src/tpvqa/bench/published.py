@@ -1,7 +1,7 @@
 """Rows of a bench in one small file, for others to check its tables and to go on from.
 
-A row of `episodes.jsonl` says how often each answer was given; that is most of it, and no table of
-the belief bench needs it. Without it, a row takes five to ten bytes.
+A row of `episodes.jsonl` says how often each answer was given, and how long it took; that is most
+of it, and no table of completion and questions needs it. Without, a row takes five to ten bytes.
 """
 
 import json
@@ -48,7 +48,7 @@ def write_published(rows: Iterable[EpisodeRow], settings: Mapping[str, Any], pat
         if kind is str:
             columns[name] = pa.array(values, pa.string()).dictionary_encode()
         elif kind is int:
-            columns[name] = pa.array(values, pa.int32())
+            columns[name] = pa.array(values, pa.int64())
         else:
             columns[name] = pa.array(values)
     table = pa.table(columns).replace_schema_metadata({_SETTINGS: json.dumps(dict(settings))})
@@ -58,6 +58,7 @@ def write_published(rows: Iterable[EpisodeRow], settings: Mapping[str, Any], pat
         parquet.write_table(table, temporary, compression="zstd", compression_level=19)
         temporary.replace(path)
     except OSError as error:
+        temporary.unlink(missing_ok=True)
         raise BenchError(f"{path}: cannot be written ({error})") from error
     return len(ordered)
 
