@@ -81,7 +81,7 @@ def run(folder: Path) -> None:
         writer.close()
 
 
-def test_they_do_the_task(package: Edit, tmp_path: Path) -> None:
+def test_they_act_and_are_asked(package: Edit, tmp_path: Path) -> None:
     run(tmp_path / "here")
     events = read_episode(tmp_path / "here")
     done = sys.modules["my_lab"].done
@@ -112,9 +112,23 @@ def test_they_do_the_task(package: Edit, tmp_path: Path) -> None:
         (
             "robot.py",
             "return Execution(",
-            "return str(",
-            r"execute .*(broke|has to return Execution)",
+            "return (",
+            r"execute has to return Execution, not tuple",
         ),
+        (
+            "robot.py",
+            "Report.DONE if worked",
+            '"finished" if worked',
+            "execute returned .* report: ",
+        ),
+        (
+            "robot.py",
+            "take_picture())",
+            'take_picture(), "image/jpg")',
+            "observe returned .*image/jpg",
+        ),
+        ("vlm.py", "p_yes=p)", "p_yes=100 * p)", "ask returned .*p_yes: .*less than or equal to 1"),
+        ("vlm.py", "Reply.YES if", '"maybe" if', "ask returned .*reply: "),
         (
             "vlm.py",
             "for question in questions]",

@@ -19,7 +19,7 @@ TpvqaError
 ├── BenchError             a bench cannot be run, read or written
 ├── CalibrationError       a calibration cannot be learnt, read or written
 ├── UnknownNameError       no plug-in or task of that name
-├── PluginError            a plug-in cannot be imported or does not take its arguments
+├── PluginError            a plug-in cannot be imported, does not take its arguments, or broke
 └── MissingExtraError      an optional package is needed
 """
 
@@ -141,7 +141,7 @@ class UnknownNameError(TpvqaError):
 
 
 class PluginError(TpvqaError):
-    """A plug-in cannot be imported, or does not take the arguments of its specification."""
+    """A plug-in cannot be imported, does not take the arguments of its specification, or broke."""
 
 
 class MissingExtraError(TpvqaError):

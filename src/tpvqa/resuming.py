@@ -91,6 +91,7 @@ def resume(
     folder = Path(folder)
     with Trial(config_of(started), person=person) as trial:
         _same_files(started, trial.started())
+        trial.check()
         writer = EpisodeWriter(folder, resume=len(events))
         try:
             ended = trial.run(

@@ -14,6 +14,7 @@ from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.shipped import shipped_calibration
 from tpvqa.episodes import Ended, Event, Limits, Parts, Started
+from tpvqa.episodes.plugged import called
 from tpvqa.episodes.recorder import Writer
 from tpvqa.episodes.records import atoms
 from tpvqa.errors import TpvqaError, UnknownNameError
@@ -236,15 +237,15 @@ class Trial:
     def check(self) -> None:
         """See whether world and VLM are there, before a robot moves: files, keys, servers.
 
-        Asks those that have a method `check`.
+        Asks those that have a method `check`; the VLM only where the monitor asks anything.
 
         Raises:
             TpvqaError: What is missing.
         """
-        for part in (self.world, self.vlm):
-            check = getattr(part, "check", None)
-            if check is not None:
-                check()
+        asks = not getattr(self.monitor, "never_asks", False)
+        for part in (self.world, self.vlm) if asks else (self.world,):
+            if hasattr(part, "check"):
+                called(part, "check", object)
 
     def run(
         self,

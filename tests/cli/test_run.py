@@ -333,3 +333,12 @@ def test_what_is_missing_is_found_before_anything_moves(
     assert (code, out) == (2, "")
     assert says in err
     assert not Path("here").exists()
+
+
+def test_a_monitor_that_asks_nothing_needs_no_vlm(
+    tpvqa: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("OPENAI_API_KEY", raising=False)
+    code, out, _ = tpvqa("run", "eat_apple", "--monitor", "tp", "--vlm", "openai:some", "--json")
+    assert code in (0, 1)
+    assert json.loads(out)["questions"] == 0

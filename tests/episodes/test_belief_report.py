@@ -196,9 +196,16 @@ def test_facts_are_said_as_they_are_asked_about(fact: str, said: str) -> None:
     assert words_of(started()).say(fact) == said
 
 
-def test_without_a_questions_file_facts_are_atoms() -> None:
+def test_without_a_questions_file_facts_are_said_by_their_names() -> None:
     unworded = started().model_copy(update={"questions": None})
-    assert words_of(unworded).say(DOUBTED) == DOUBTED
+    assert words_of(unworded).say("(in_hand bread left)") == "bread in hand (left)"
+
+
+def test_a_question_that_is_no_phrase_leaves_its_fact_an_atom(tmp_path: Path) -> None:
+    book = tmp_path / "questions.yaml"
+    book.write_text('predicates: {opened: "Does the {c} stand open?"}')
+    worded = started().model_copy(update={"questions": book.read_text()})
+    assert words_of(worded).say("(opened fridge)") == "opened(fridge)"
 
 
 @pytest.mark.parametrize(

@@ -142,10 +142,10 @@ class AnswerRecord(BaseModel):
     model_config = ConfigDict(frozen=True)
 
     reply: Reply
-    p_yes: float | None = None
+    p_yes: float | None = Field(default=None, ge=0, le=1)
     source: str = ""
     text: str = ""
-    p_cannot_see: float | None = None
+    p_cannot_see: float | None = Field(default=None, ge=0, le=1)
     leftover: float | None = None
     seconds: float = 0.0
 

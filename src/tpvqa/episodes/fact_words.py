@@ -15,8 +15,6 @@ _PATIENCE = 30.0
 
 def words_of(started: Started) -> FactWords:
     """The words of an episode, from the files' texts that its log keeps."""
-    if started.questions is None:
-        return FactWords()
     try:
         return FactWords(_book(started.domain, started.problem, started.questions))
     except TpvqaError:  # a log of another version still has to be shown
@@ -24,9 +22,11 @@ def words_of(started: Started) -> FactWords:
 
 
 @lru_cache(maxsize=8)
-def _book(domain: str, problem: str, questions: str) -> QuestionBook:
+def _book(domain: str, problem: str, questions: str | None) -> QuestionBook:
     """The questions, read once for all episodes of a task: reading PDDL takes a process."""
     task = task_from_text(domain, problem, timeout=_PATIENCE)
+    if questions is None:
+        return QuestionBook.load(None, task)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "questions.yaml"
         file.write_text(questions, encoding="utf-8")

@@ -3,6 +3,8 @@
 import traceback
 from typing import TypeVar
 
+from pydantic import ValidationError
+
 from tpvqa.errors import PluginError, TpvqaError
 
 T = TypeVar("T")
@@ -22,7 +24,7 @@ def called(part: object, method: str, wanted: type[T], /, *given: object, **name
         TpvqaError: What it raised itself.
         PluginError: It raised something else, or returned something else; says where.
     """
-    where = f"{type(part).__module__}.{type(part).__qualname__}.{method}"
+    where = _where(part, method)
     try:
         result = getattr(part, method)(*given, **named)
     except TpvqaError:
@@ -36,6 +38,24 @@ def called(part: object, method: str, wanted: type[T], /, *given: object, **name
     if not isinstance(result, wanted):
         raise PluginError(f"{where} has to return {wanted.__name__}, not {_short(result)}")
     return result
+
+
+def malformed(part: object, method: str, error: Exception) -> PluginError:
+    """What a method returned has the right type, but its insides are not what they must be."""
+    if isinstance(error, ValidationError):
+        first = error.errors()[0]
+        said = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"
+    else:
+        said = f"{type(error).__name__}: {error}"
+    return PluginError(f"{_where(part, method)} returned what cannot be kept: {said}")
+
+
+MALFORMED = (ValidationError, AttributeError, KeyError, TypeError, ValueError)
+"""What is raised where something of a plug-in is put into the log that does not belong there."""
+
+
+def _where(part: object, method: str) -> str:
+    return f"{type(part).__module__}.{type(part).__qualname__}.{method}"
 
 
 def _short(value: object) -> str:

@@ -8,6 +8,7 @@ kept, and the trial goes on.
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import repeat
 from pathlib import Path
 from threading import Event as Flag
 from typing import Any, Protocol, TypeVar
@@ -25,9 +26,9 @@ from tpvqa.episodes.events import (
     QuestionRecord,
     Resumed,
 )
-from tpvqa.episodes.plugged import called
+from tpvqa.episodes.plugged import MALFORMED, called, malformed
 from tpvqa.errors import EpisodeError, PluginError
-from tpvqa.observation import Observation
+from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, State, Task
 from tpvqa.planning import Planner, PlanningResult
 from tpvqa.questions import Question, QuestionBook
@@ -151,30 +152,31 @@ class Recorder:
             self._tell(record)
             self._observation = records.observation_from(record, self._folder)
             return self._observation
-        seen = replace(called(self.parts.world, "observe", Observation, view), look=number)
-        frames = tuple(
-            FrameRecord(
-                view=frame.view,
-                file=self._writer.save_frame(replace(frame, id=f"{seen.look:04d}-{frame.view}")),
-                media_type=frame.media_type,
-                source=frame.source,
+        world = self.parts.world
+        seen = called(world, "observe", Observation, view)
+        try:
+            seen = replace(seen, look=number)
+            observed = Observed(
+                look=seen.look,
+                view=view,
+                world_time=seen.time,
+                frames=tuple(map(self._frame, seen.frames.values(), repeat(number))),
+                detail=dict(seen.detail),
+                snapshot=self._snapshot(world),
             )
-            for frame in seen.frames.values()
-        )
-        self._tell(
-            self._writer.append(
-                Observed(
-                    look=seen.look,
-                    view=view,
-                    world_time=seen.time,
-                    frames=frames,
-                    detail=dict(seen.detail),
-                    snapshot=self._snapshot(self.parts.world),
-                )
-            )
-        )
+        except MALFORMED as error:
+            raise malformed(world, "observe", error) from error
+        self._tell(self._writer.append(observed))
         self._observation = seen
         return seen
+
+    def _frame(self, frame: Frame, look: int) -> FrameRecord:
+        return FrameRecord(
+            view=frame.view,
+            file=self._writer.save_frame(replace(frame, id=f"{look:04d}-{frame.view}")),
+            media_type=frame.media_type,
+            source=frame.source,
+        )
 
     def ask(self, questions: Sequence[Question], *, person: bool = False) -> list[Answer]:
         """Answers to questions about the latest look.
@@ -203,7 +205,10 @@ class Recorder:
                 answers = [Answer(question, Reply.UNKNOWN, text=text) for question in questions]
             else:
                 answers = _answers(asked, self._observation, questions)
-            record = records.answered_record(answers, self._snapshot(self.parts.vlm))
+            try:
+                record = records.answered_record(answers, self._snapshot(self.parts.vlm))
+            except MALFORMED as error:
+                raise malformed(asked, "ask", error) from error
             record = self._writer.append(record)  # type: ignore[assignment]
         self._tell(record)
         return records.answers_from(record, questions)
@@ -234,15 +239,17 @@ class Recorder:
                 if interrupted
                 else called(world, "execute", Execution, action, deadline=deadline, cancel=cancel)
             )
-            record = self._writer.append(  # type: ignore[assignment]
-                Acted(
+            try:
+                record = Acted(
                     report=execution.report,
                     seconds=execution.seconds,
                     message=execution.message,
                     truth=_truth(world, before),
                     snapshot=self._snapshot(world),
                 )
-            )
+            except MALFORMED as error:
+                raise malformed(world, "execute", error) from error
+            record = self._writer.append(record)  # type: ignore[assignment]
         assert isinstance(record, Acted)
         self._tell(record)
         if interrupted:

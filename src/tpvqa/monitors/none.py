@@ -8,6 +8,7 @@ class NoMonitor:
     """Believes that every action works, unless the skill itself says otherwise. It never looks."""
 
     name = "none"
+    never_asks = True
 
     def before(self, step: Step) -> Check:
         """Go on."""

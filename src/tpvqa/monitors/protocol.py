@@ -63,7 +63,8 @@ class Monitor(Protocol):
     """Decides, before and after every action, whether to go on, repeat or replan.
 
     A monitor does no input or output: it yields requests, and the loop performs and logs them.
-    One instance watches one trial and may remember what it has seen.
+    One instance watches one trial and may remember what it has seen. One that asks nothing may say
+    so by `never_asks = True`; then no VLM needs to be there.
     """
 
     @property

@@ -33,7 +33,7 @@ class FactWords:
         if atom not in self._said:
             question = self._book.fact(Literal(atom))
             asking = _ASKING.match(question.text)
-            said = asking["said"] if asking else question.text
+            said = asking["said"] if asking else str(atom)
             # The words may leave out objects; then two facts would be called the same.
             unsaid = [
                 self._book.name(argument)
