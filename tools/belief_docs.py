@@ -103,7 +103,9 @@ class Measured:
             found = [each for each in checks if each["measured"] is not None]
             if not found:
                 continue
-            targets = list(dict.fromkeys(each["target"] for each in checks))
+            targets = [each["target"] for each in checks]
+            if len(set(targets)) == 1:
+                targets = targets[:1]
             if len(checks) > 3:
                 least = min(found, key=lambda each: each["measured"])
                 where = re.sub(r"completion less (\S+)'s", r"over \1", least["what"])
@@ -139,7 +141,7 @@ class Measured:
                 votes = [found for each in VOTES if (found := self.find(vlm, task, each))]
                 best = max((float(row["completion_rate"]) for row in votes), default=0.0)
                 told.append(
-                    f"**{_rate(own)}** ({float(own['questions']):.0f}q), {best:.2f}, {_rate(tp)}"
+                    f"**{_rate(own)}** ({float(own['questions']):.0f}q), {best:.3f}, {_rate(tp)}"
                     if own
                     else "–"
                 )
