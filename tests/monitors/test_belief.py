@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tpvqa.belief import Calibration, Group, Rates
+from tpvqa.belief import Calibration, Group, Rates, faults
 from tpvqa.belief.calibration import Curve
 from tpvqa.episodes import Ended, Limits, MemoryWriter
 from tpvqa.episodes.events import Acting, Asked, Decided, Event, PlanMade
@@ -78,6 +78,19 @@ def test_the_same_seed_gives_the_same_trial(planner: Planner) -> None:
     one, other = run(planner, seed=4)[1], run(planner, seed=4)[1]
     assert story(one) == story(other)
     assert story(one) != story(run(planner, seed=5)[1])
+
+
+def test_what_is_worked_out_is_shared_up_to_a_limit_and_decides_nothing(
+    planner: Planner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shared = [run(planner, accuracy=0.7, episode=n) for n in range(4)]
+    models = [trial.monitor.belief.model for _, _, trial in shared]  # type: ignore[attr-defined]
+    assert all(model is models[0] for model in models)
+    monkeypatch.setattr(faults, "MOST_FACTS", len(TASK.init))
+    alone = [run(planner, accuracy=0.7, episode=n) for n in range(4)]
+    models = [trial.monitor.belief.model for _, _, trial in alone]  # type: ignore[attr-defined]
+    assert len({id(model) for model in models}) == len(models)
+    assert [story(events) for _, events, _ in alone] == [story(events) for _, events, _ in shared]
 
 
 def test_dear_questions_are_not_asked_and_cheap_ones_are(planner: Planner) -> None:

@@ -10,6 +10,9 @@ from tpvqa.belief.surprise import Surprise
 from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Action, Atom, State, Task
 
+MOST_FACTS = 300_000
+"""In the joint states of a model that trials share, at 0.7 KB each on the shipped tasks."""
+
 
 class Undoing(Protocol):
     """A form of fact that disturbances undo."""
@@ -130,6 +133,7 @@ class FaultModel:
         self._keep = _Keep(self._undo, task)
         self.hypotheses: list[Hypothesis] = []
         self.keys: list[bytes] = []
+        self.facts = 0
         self._numbers: dict[Hypothesis, int] = {}
         self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
         self._truths: dict[tuple[Atom, ...], Truth] = {}
@@ -141,6 +145,7 @@ class FaultModel:
         number = self._numbers.get(hypothesis)
         if number is None:
             number = self._numbers[hypothesis] = len(self.hypotheses)
+            self.facts += len(hypothesis.state)
             self.hypotheses.append(hypothesis)
             self.keys.append(_key(hypothesis))
         return number
@@ -278,8 +283,16 @@ def _shared(task: Task, rules: Any) -> FaultModel:
 
 
 def fault_model(task: Task, rules: FaultRules | None = None) -> FaultModel:
-    """The model of a task, worked out once in a process where the rules can be compared."""
+    """The model of a task, shared by trials where the rules can be compared.
+
+    One that knows more than `MOST_FACTS` is not handed out again, so that a process that runs
+    trials without end does not grow without end.
+    """
     try:
-        return _shared(task, rules)  # type: ignore[arg-type]
+        found = _shared(task, rules)  # type: ignore[arg-type]
     except TypeError:
         return FaultModel(task, rules)
+    if found.facts <= MOST_FACTS:
+        return found
+    _shared.cache_clear()
+    return _shared(task, rules)  # type: ignore[arg-type]
