@@ -159,7 +159,7 @@ class Measured:
                 yield (name, *cells)
 
     def counts(self) -> str:
-        """How many trials each part has."""
+        """How many trials a cell has, and which parts have another number."""
         grid = [row for row in self.rows if row["vlm"].startswith("oracle")]
         plain = [row for row in grid if not row["condition"]]
         priced = [row for row in plain if "question=" in row["monitor"]]
@@ -181,8 +181,10 @@ class Measured:
             ("of the ablations", ablated),
             ("at each further point of a curve", priced),
         )
-        told = ", ".join(f"{self.episodes(rows)} {what}" for what, rows in each)
-        return f"**{self.episodes(rest)} trials a cell**; {told}."
+        usual = self.episodes(rest)
+        found = [(self.episodes(rows), what) for what, rows in each]
+        others = ", ".join(f"{count} {what}" for count, what in found if count != usual)
+        return f"**{usual} trials a cell**{'; ' if others else ''}{others}."
 
 
 def _rate(row: Row | None) -> str:

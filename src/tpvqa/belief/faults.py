@@ -11,7 +11,7 @@ from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Action, Atom, State, Task
 
 MOST_FACTS = 300_000
-"""In the joint states of a model that trials share, at 0.7 KB each on the shipped tasks."""
+"""In the joint states of a model that trials share, at about 1 KB each on the shipped tasks."""
 
 
 class Undoing(Protocol):
