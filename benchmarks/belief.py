@@ -23,8 +23,10 @@ from typing import cast
 
 from consistency import problem  # type: ignore[import-not-found]
 from household_problems import household_problem  # type: ignore[import-not-found]
+from tpvqa.assembly import Trial
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.consistency import most_probable
+from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import MissingExtraError
 from tpvqa.monitors import Ask, Monitor, PlanFrom, Step, Verdict
@@ -35,7 +37,6 @@ from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.regression import needed
 from tpvqa.planning.remembering import Remembering
 from tpvqa.tasks import find_task
-from tpvqa.trial import Trial, TrialConfig
 
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 FACTS = 500

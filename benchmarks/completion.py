@@ -9,11 +9,13 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 
-from tpvqa.episodes import Ended, MemoryWriter
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import MemoryWriter
+from tpvqa.events import Ended
 from tpvqa.pddl import load_task
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.plugins import Kind, make
-from tpvqa.trial import Trial, TrialConfig
 
 Z = 1.959964  # 97.5% quantile of the normal distribution
 

@@ -16,7 +16,7 @@ from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.paper import MONITORS, TASKS
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.stage import stage
-from tpvqa.trial import TrialConfig
+from tpvqa.config import TrialConfig
 
 
 def rate(cells: list[Cell], episodes: int, warm: int) -> tuple[float, float]:

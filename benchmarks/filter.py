@@ -13,14 +13,15 @@ import time
 from collections.abc import Callable, Sequence
 from statistics import mean, quantiles
 
+from tpvqa.assembly import Trial
 from tpvqa.belief.belief import MOST, SMALLEST, Belief
 from tpvqa.belief.calibration import Calibration, Curve, Group
 from tpvqa.belief.calibration import Rates as AnswerRates
 from tpvqa.belief.faults import FaultModel, Hypothesis, Rates
+from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.pddl import Action, Atom, State
-from tpvqa.trial import Trial, TrialConfig
 
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 KEPT = (3, 10, 30)

@@ -3,11 +3,12 @@
 from pathlib import Path
 
 from tests.doubles import ScriptedVLM
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
-from tpvqa.episodes.events import Acting, Answered, Asked, Decided, Ended, PlanMade
+from tpvqa.events.events import Acting, Answered, Asked, Decided, Ended, PlanMade
 from tpvqa.monitors import Decision
 from tpvqa.questions import Question
-from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import Reply
 
 TOYS = Path(__file__).parent / "fixtures" / "toys"

@@ -13,16 +13,18 @@ from pathlib import Path
 import pytest
 
 from tests.doubles import ScriptedVLM, replies
-from tpvqa.episodes import Ended, EpisodeWriter, Event, Limits, MemoryWriter, Parts, read_episode
-from tpvqa.episodes.events import Acted, Acting
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
+from tpvqa.drivers import Interrupted, Parts, run_episode
+from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import EpisodeError
-from tpvqa.loop import Interrupted, run_episode
+from tpvqa.events import Ended, Event, Limits
+from tpvqa.events.events import Acted, Acting
 from tpvqa.monitors.tpvqa import TPVQA
 from tpvqa.planning import Crashed, Planner, TimedOut
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.resuming import config_of, resume
-from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import Reply
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from tpvqa import Trial, TrialConfig
 from tpvqa.episodes import EpisodeWriter, read_episode
-from tpvqa.episodes.events import Acting
 from tpvqa.errors import PluginError
+from tpvqa.events.events import Acting
 from tpvqa.resuming import resume
 
 PAGE = Path(__file__).parents[1] / "docs/your-own-domain.md"

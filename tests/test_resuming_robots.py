@@ -4,7 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from tpvqa.episodes import Ended, EpisodeWriter, Event, Parts, Resumed, read_episode
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
+from tpvqa.drivers import Parts
+from tpvqa.episodes import EpisodeWriter, read_episode
+from tpvqa.events import Ended, Event, Resumed
 from tpvqa.loop import run_episode
 from tpvqa.monitors import Monitor
 from tpvqa.monitors.belief import BeliefMonitor
@@ -15,7 +19,6 @@ from tpvqa.pddl import Action, Task, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
-from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm.oracle import Oracle
 from tpvqa.worlds import Execution, Report
 from tpvqa.worlds.simulation import SimulatedTruth, Simulation

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from tpvqa import Trial, TrialConfig
-from tpvqa.episodes import EpisodeWriter, MemoryWriter, Started, read_episode
+from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import EpisodeError, TpvqaError, UnknownNameError
+from tpvqa.events import Started
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.resuming import config_of, resume

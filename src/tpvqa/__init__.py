@@ -11,13 +11,15 @@ Names are imported when they are first used, so that `import tpvqa` stays quick.
 from importlib import import_module
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
+DECIDES_AS = "0.1.0"
+"""The first version that decides all trials as this one does: its published figures still stand."""
 
 _PUBLIC = {
     "Action": "tpvqa.pddl",
     "Answer": "tpvqa.vlm",
     "Atom": "tpvqa.pddl",
-    "Interrupted": "tpvqa.loop",
+    "Interrupted": "tpvqa.drivers",
     "Literal": "tpvqa.pddl",
     "Observation": "tpvqa.observation",
     "Plan": "tpvqa.planning",
@@ -26,13 +28,14 @@ _PUBLIC = {
     "State": "tpvqa.pddl",
     "Task": "tpvqa.pddl",
     "TpvqaError": "tpvqa.errors",
-    "Trial": "tpvqa.trial",
-    "TrialConfig": "tpvqa.trial",
+    "Trial": "tpvqa.assembly",
+    "TrialConfig": "tpvqa.config",
+    "TrialState": "tpvqa.events",
     "load_task": "tpvqa.pddl",
-    "run_episode": "tpvqa.loop",
 }
 
 __all__ = [
+    "DECIDES_AS",
     "__version__",
     *sorted(_PUBLIC),
 ]

@@ -5,6 +5,7 @@ TpvqaError
 │   ├── PDDLError          the domain or problem cannot be read
 │   ├── QuestionsError     a questions file is broken
 │   ├── WorldFileError     a world file or a script is broken
+│   ├── ConfigError        a trial's configuration is wrong
 │   └── PhotosError        a photo, its label or a file of prompts is wrong
 ├── PlannerError           the planner itself could not be run (never "there is no plan")
 │   └── GroundingTimedOut  reading and grounding took longer than allowed
@@ -83,6 +84,10 @@ class QuestionsError(PlacedError):
 
 class AnswerError(TpvqaError):
     """A VLM could not be asked at all (no key, say). A bad answer is *unknown* instead."""
+
+
+class ConfigError(PlacedError):
+    """The configuration of a trial is wrong."""
 
 
 class WorldFileError(PlacedError):

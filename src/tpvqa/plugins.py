@@ -13,21 +13,46 @@ as "oracle:0.8:0.5" or "openai:llama3:8b". The convention for what stands behind
 - One without `from_spec` is called with what it names of the context, and takes no arguments.
 
 The truth of a simulated world (`truth`, `simulation`) is withheld, whatever a signature names,
-from all but worlds and *noise models*: VLMs whose class says `noise_model = True`.
+from all that are not entitled to it: see `vlm.making` and `worlds.making`.
 """
 
 import inspect
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from enum import StrEnum
 from functools import lru_cache
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 from tpvqa.errors import MissingExtraError, PluginError, TpvqaError, UnknownNameError
 
 _TRUTH = frozenset({"truth", "simulation"})
+
+
+@runtime_checkable
+class Checked(Protocol):
+    """A world or a VLM that can see whether all that it needs is there, before a robot moves."""
+
+    def check(self) -> None:
+        """See whether everything is there: files, keys, servers.
+
+        Raises:
+            TpvqaError: What is missing.
+        """
+
+
+@runtime_checkable
+class Closing(Protocol):
+    """A plug-in that has something to let go of."""
+
+    def close(self) -> None:
+        """Let go of everything. Can be called twice."""
+
+
+def class_of(thing: object) -> type:
+    """The class of an object; a class itself."""
+    return thing if isinstance(thing, type) else type(thing)
 
 
 class Kind(StrEnum):
@@ -93,8 +118,7 @@ def make(kind: Kind, spec: str, **context: Any) -> Any:
     Args:
         kind: What is wanted.
         spec: NAME or NAME:ARGUMENTS.
-        **context: What a plug-in may ask for by naming it in its signature, `truth` and
-            `simulation` within the limits above.
+        **context: What a plug-in may ask for by naming it in its signature.
 
     Raises:
         UnknownNameError: Nothing of that name.
@@ -104,16 +128,31 @@ def make(kind: Kind, spec: str, **context: Any) -> Any:
     return make_from(kind, spec, context)[0]
 
 
-def make_from(kind: Kind, spec: str, context: Mapping[str, Any]) -> tuple[Any, set[str]]:
-    """As `make`, and the names of what the plug-in takes of a context."""
-    name, arguments = _split(spec)
+def make_from(
+    kind: Kind, spec: str, context: Mapping[str, Any], *, entitled: Collection[str] = ()
+) -> tuple[Any, set[str]]:
+    """As `make`, and the names of what the plug-in takes of a context.
+
+    Args:
+        kind: What is wanted.
+        spec: NAME or NAME:ARGUMENTS.
+        context: What it may ask for by naming it in its signature.
+        entitled: Of what tells the truth, what it may be given.
+    """
+    name, arguments = split(spec)
+    context = {k: v for k, v in context.items() if k not in _TRUTH or k in entitled}
     return _construct(kind, name, load(kind, name), arguments, context)
 
 
-def _split(spec: str) -> tuple[str, str]:
+def split(spec: str) -> tuple[str, str]:
     """The name of a specification and what follows its first colon."""
     name, _, arguments = spec.partition(":")
     return name.strip(), arguments.strip()
+
+
+def load_spec(kind: Kind, spec: str) -> Callable[..., Any]:
+    """Import what stands behind the name of a specification; raises as `load` does."""
+    return load(kind, split(spec)[0])
 
 
 def _construct(
@@ -133,14 +172,6 @@ def _construct(
             f"The {kind.value} {name!r} takes no arguments, but {arguments!r} was given. "
             f"Write {name!r} alone."
         )
-    noise_model = kind is Kind.VLM and bool(getattr(target, "noise_model", False))
-    if noise_model and context.get("truth") is None:
-        raise PluginError(
-            f"The VLM {name!r} is a noise model: it answers from the truth of a simulated world, "
-            "and there is none here. Choose one that looks at pictures, e.g. 'embedded'."
-        )
-    if not noise_model and kind is not Kind.WORLD:
-        context = {key: value for key, value in context.items() if key not in _TRUTH}
     function, given = (target, ()) if from_spec is None else (from_spec, (arguments,))
     signature = inspect.signature(function)
     parameters = signature.parameters.values()

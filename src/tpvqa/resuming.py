@@ -7,62 +7,45 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
+from tpvqa.assembly import Trial
 from tpvqa.belief import Calibration
 from tpvqa.belief.experience import Experience
-from tpvqa.episodes import Ended, EpisodeWriter, Event, Started, read_episode
+from tpvqa.config import TrialConfig
+from tpvqa.drivers import Listener
+from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.errors import EpisodeError
-from tpvqa.trial import Trial, TrialConfig
+from tpvqa.events import Ended, Started
 from tpvqa.vlm import VLM
 
 M = TypeVar("M", bound=BaseModel)
 
 
 def config_of(started: Started) -> TrialConfig:
-    """The configuration that an episode was started with."""
-    settings = started.settings
-    shipped = settings["shipped_task"]
-    return TrialConfig(
-        task=shipped,
-        domain=None if shipped else started.domain_file,
-        problem=None if shipped else started.problem_file,
-        questions=settings["own_questions"],
-        world_file=settings["own_world_file"],
-        monitor=started.monitor,
-        vlm=started.vlm,
-        world=started.world,
-        planner=settings["planner"],
-        seed=started.seed,
-        episode=started.episode,
-        failure=settings["failure"],
-        disturbance=settings["disturbance"],
-        spontaneous=settings["spontaneous"],
-        limits=started.limits,
-        planning_timeout=settings["planning_timeout"],
-        action_deadline=settings["action_deadline"],
-        calibration=_read(Calibration, settings.get("calibration")),
-        experience=_read(Experience, settings.get("experience")),
-        experience_file=settings.get("experience_file"),
-        options=settings["options"],
+    """The configuration that an episode was started with, names that were left open filled in."""
+    return started.config.but(vlm={"spec": started.vlm}, world={"spec": started.world})
+
+
+def trial_of(started: Started, *, person: VLM | None = None, **shared: Any) -> Trial:
+    """The trial that an episode was started as, with what its monitor was told then.
+
+    Args:
+        started: The episode's first event.
+        person: Answers where the monitor asks a person.
+        **shared: What trials share, see `Trial`.
+    """
+    return Trial(
+        config_of(started),
+        calibration=_read(Calibration, started.calibration),
+        experience=_read(Experience, started.experience),
+        person=person,
+        **shared,
     )
-
-
-def _same_files(then: Started, now: Started) -> None:
-    for part, file in (
-        ("domain", now.domain_file),
-        ("problem", now.problem_file),
-        ("questions", now.questions_file),
-        ("rules", now.world_file),
-    ):
-        if getattr(then, part) != getattr(now, part):
-            raise EpisodeError(
-                f"{file} has changed since the episode began: it cannot be resumed, only shown"
-            )
 
 
 def resume(
     folder: Path | str,
     *,
-    listeners: Sequence[Callable[[Event], None]] = (),
+    listeners: Sequence[Listener] = (),
     cancel: Flag | None = None,
     person: VLM | None = None,
     then: Callable[[Trial, Ended], None] = lambda trial, ended: None,
@@ -84,15 +67,15 @@ def resume(
     events = read_episode(folder)
     started, last = events[0], events[-1]
     assert isinstance(started, Started)
-    if isinstance(last, Ended) and last.because != "cancelled":
-        raise EpisodeError(f"{folder}: the episode has ended ({last.because}); show it instead")
     if isinstance(last, Ended):
+        if last.because != "cancelled":
+            raise EpisodeError(f"{folder}: the episode has ended ({last.because}); show it instead")
         events.pop()
     folder = Path(folder)
-    with Trial(config_of(started), person=person) as trial:
+    with trial_of(started, person=person) as trial:
         _same_files(started, trial.started())
         trial.check()
-        writer = EpisodeWriter(folder, resume=len(events))
+        writer = EpisodeWriter(folder, resume=len(events), time=events[-1].time)
         try:
             ended = trial.run(
                 writer,
@@ -106,6 +89,19 @@ def resume(
             return ended
         finally:
             writer.close()
+
+
+def _same_files(then: Started, now: Started) -> None:
+    for what, before, after in (
+        (now.domain_file, then.domain, now.domain),
+        (now.problem_file, then.problem, now.problem),
+        (now.questions_file, then.questions, now.questions),
+        (now.world_file, then.rules, now.rules),
+    ):
+        if before != after:
+            raise EpisodeError(
+                f"{what} has changed since the episode began: it cannot be resumed, only shown"
+            )
 
 
 def _read(kind: type[M], values: dict[str, Any] | None) -> M | None:

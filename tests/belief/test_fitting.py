@@ -14,9 +14,9 @@ from tpvqa.belief.held_out import held_out
 from tpvqa.belief.runs import runs
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
+from tpvqa.config import TrialConfig
 from tpvqa.errors import CalibrationError, MissingExtraError
 from tpvqa.questions import Way
-from tpvqa.trial import TrialConfig
 from tpvqa.vlm import Reply
 from tpvqa.vlm.metrics import calibration_error
 

@@ -40,9 +40,9 @@ from tpvqa.bench.ledger import ROWS, Ledger
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import batches
 from tpvqa.bench.stage import run_batch
+from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, CalibrationError
 from tpvqa.questions import Way
-from tpvqa.trial import TrialConfig
 from tpvqa.vlm import Reply
 
 CELL = Cell("clean_dishes", "belief", "oracle:0.8", "symbolic")

@@ -12,13 +12,13 @@ from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.labelled_episodes import label_episodes
 from tpvqa.bench.labelled_pictures import ask_pictures
 from tpvqa.bench.stage import Stage, stage, true_simulation
+from tpvqa.config import TrialConfig
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import CalibrationError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom
 from tpvqa.questions import Question, Way
-from tpvqa.trial import TrialConfig
 from tpvqa.vlm import Answer, Reply
 from tpvqa.worlds.images.manifest import Manifest, PictureSet, load_pictures
 

@@ -19,7 +19,8 @@ from tests.episodes.believing import (
 )
 from tpvqa.cli import main
 from tpvqa.cli.terminal import EpisodeView
-from tpvqa.episodes import EpisodeWriter, Event
+from tpvqa.episodes import EpisodeWriter
+from tpvqa.events import Event
 from tpvqa.monitors import Decision
 
 

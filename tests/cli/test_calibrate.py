@@ -11,7 +11,7 @@ from tests.cli.conftest import Run
 from tpvqa.belief import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.episodes import read_episode
-from tpvqa.episodes.events import Acted
+from tpvqa.events.events import Acted
 from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
 
 TRIALS = ["--trials", "10", "--tasks", "clean_dishes", "--vlm", "oracle:0.9:0.4"]

@@ -17,8 +17,8 @@ from tests.worlds.images.sources.images_server import Act, ImagesServer, picture
 from tpvqa.cli import main
 from tpvqa.cli.dataset import dataset
 from tpvqa.episodes import read_episode
-from tpvqa.episodes.events import Observed
 from tpvqa.errors import MissingExtraError, PictureSetError, PluginError, UnknownNameError
+from tpvqa.events.events import Observed
 from tpvqa.worlds.images.manifest import load_pictures
 
 FEW = ("--task", "clean_dishes", "--per-outcome", "5", "--no-fill")

@@ -15,15 +15,17 @@ from threading import Timer
 import pytest
 from rich.console import Console
 
+from tpvqa.assembly import Trial
 from tpvqa.cli.person import TerminalPerson
 from tpvqa.cli.terminal import EpisodeView
-from tpvqa.episodes import Ended, MemoryWriter, read_episode
-from tpvqa.episodes.events import Answered, Asked, Resumed
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import MemoryWriter, read_episode
+from tpvqa.events import Ended
+from tpvqa.events.events import Answered, Asked, Resumed
 from tpvqa.observation import Observation
 from tpvqa.pddl import Literal, load_task
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
-from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import Reply
 
 LOOK = Observation(0, 0.0)

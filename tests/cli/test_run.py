@@ -19,7 +19,8 @@ from tests.planning.test_processes import eventually
 from tpvqa import __version__
 from tpvqa.belief import Calibration
 from tpvqa.belief.experience import Experience
-from tpvqa.episodes import Ended, read_episode
+from tpvqa.episodes import read_episode
+from tpvqa.events import Ended
 from tpvqa.tasks import find_task
 
 TOYS = Path(__file__).parents[1] / "fixtures" / "toys"

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from tpvqa.episodes import Event, Limits, Started
-from tpvqa.episodes.events import Acted, Acting, ActionRecord, Decided, Ended, PlanMade
+from tpvqa.events import Event, Limits, Started
+from tpvqa.events.events import Acted, Acting, ActionRecord, Decided, Ended, PlanMade
 from tpvqa.monitors import Decision
 from tpvqa.tasks import find_task
 from tpvqa.worlds import Report

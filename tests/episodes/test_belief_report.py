@@ -20,11 +20,11 @@ from tests.episodes.believing import (
     started,
     without_belief,
 )
-from tpvqa.episodes import Event
-from tpvqa.episodes.events import Acted, Decided
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.report import render_report, tell
 from tpvqa.episodes.report.belief_chart import BeliefChart, Run, chart
+from tpvqa.events import Event
+from tpvqa.events.events import Acted, Decided
 from tpvqa.monitors import Decision
 
 

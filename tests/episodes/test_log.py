@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from tpvqa.episodes import EpisodeWriter, Resumed
+from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import EpisodeError
+from tpvqa.events import Resumed
 
 
 def numbers(folder: Path) -> list[int]:

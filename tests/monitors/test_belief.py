@@ -6,11 +6,14 @@ from dataclasses import replace
 
 import pytest
 
+from tpvqa.assembly import Trial
 from tpvqa.belief import Calibration, Group, Rates, faults
 from tpvqa.belief.calibration import Curve
-from tpvqa.episodes import Ended, Limits, MemoryWriter
-from tpvqa.episodes.events import Acting, Asked, Decided, Event, PlanMade
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import PluginError
+from tpvqa.events import Ended, Limits
+from tpvqa.events.events import Acting, Asked, Decided, Event, PlanMade
 from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Literal, load_task
@@ -18,7 +21,6 @@ from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
 from tpvqa.questions import Question
-from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import Answer, Reply
 from tpvqa.vlm.protocol import TruthSource
 from tpvqa.worlds.symbolic import SymbolicWorld

@@ -6,11 +6,11 @@ import pytest
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.stage import stage
+from tpvqa.config import TrialConfig
 from tpvqa.pddl import Task, load_task
 from tpvqa.planning import Plan
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.tasks import find_task
-from tpvqa.trial import TrialConfig
 from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import load_world_file
 

@@ -29,14 +29,10 @@ class Choice:
     Attributes:
         action: The action to execute; None to end the trial here.
         state: The most probable joint state in which this is the step to take.
-        plan: The plan that it is a step of.
-        place: Which step.
     """
 
     action: Action | None
     state: State
-    plan: AnnotatedPlan | None = None
-    place: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,9 +116,18 @@ class Chooser:
     def acted(self) -> None:
         """Note that an action was executed."""
         self._postponed.clear()
-        if self.left is not None:
-            self.left -= 1
+
+    def allow(self, actions: int | None, changes: int | None) -> None:
+        """Note what the trial still allows.
+
+        Args:
+            actions: Actions; None for any number.
+            changes: Changes of plan; None for any number.
+        """
+        if actions != self.left:
+            self.left = actions
             self._forget()
+        self.changes_left = changes
 
     def shortest(self, number: int) -> tuple[int, AnnotatedPlan] | None:
         """The fewest actions to the goal by a known plan, and that plan."""
@@ -289,7 +294,7 @@ class Chooser:
             place = len(plan.actions) - remaining
             action = plan.actions[place] if remaining else None
             if action not in found:
-                found[action] = Choice(action, self._model.state(number), plan, place)
+                found[action] = Choice(action, self._model.state(number))
         if None not in found:
             found[None] = Choice(None, self._model.state(ranked[0][0]))
         return list(found.values())

@@ -2,16 +2,13 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 from hashlib import blake2b
 from typing import Any, Protocol
 
 from tpvqa.belief.surprise import Surprise
 from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Action, Atom, State, Task
-
-MOST_FACTS = 300_000
-"""In the joint states of a model that trials share, at about 1 KB each on the shipped tasks."""
 
 
 class Undoing(Protocol):
@@ -115,7 +112,8 @@ class _OutcomesOf(dict[int, Outcomes]):
 class FaultModel:
     """The transitions of a task, worked out once for every joint state that is met.
 
-    It is a pure function of the task and its rules, so trials can share it.
+    It is a pure function of the task and its rules: trials one after the other can share it, but
+    not trials in several threads.
 
     Args:
         task: Gives the actions and the initial state.
@@ -275,24 +273,3 @@ class _Keep:
             if match is not None:
                 keys.append((place, *sorted((k, v) for k, v in match.items() if k in bound)))
         return keys
-
-
-@lru_cache(maxsize=16)
-def _shared(task: Task, rules: Any) -> FaultModel:
-    return FaultModel(task, rules)
-
-
-def fault_model(task: Task, rules: FaultRules | None = None) -> FaultModel:
-    """The model of a task, shared by trials where the rules can be compared.
-
-    One that knows more than `MOST_FACTS` is not handed out again, so that a process that runs
-    trials without end does not grow without end.
-    """
-    try:
-        found = _shared(task, rules)  # type: ignore[arg-type]
-    except TypeError:
-        return FaultModel(task, rules)
-    if found.facts <= MOST_FACTS:
-        return found
-    _shared.cache_clear()
-    return _shared(task, rules)  # type: ignore[arg-type]

@@ -1,10 +1,10 @@
 """What a bench compares: cells of one task under one monitor with one VLM."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
+from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
-from tpvqa.trial import TrialConfig
 
 RATES = ("failure", "disturbance", "spontaneous")
 
@@ -37,14 +37,13 @@ class Cell:
             common: What all cells share: seed, rates of faults, limits.
             episode: Its number, which gives it the same faults in every cell.
         """
-        return replace(
-            common,
+        return common.but(
             task=self.task,
-            monitor=self.monitor,
-            vlm=self.vlm,
-            world=self.world,
+            monitor={"spec": self.monitor},
+            vlm={"spec": self.vlm},
+            world={"spec": self.world},
             episode=episode,
-            **self.rates(),
+            simulation=self.rates(),
         )
 
     def rates(self) -> dict[str, Any]:

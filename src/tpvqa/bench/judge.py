@@ -3,10 +3,10 @@
 from collections import Counter
 
 from tpvqa.bench.truth import subject_of, yes_is_right
-from tpvqa.episodes.events import Acted, Acting, Answered, Asked, Decided, Event, PlanMade
-from tpvqa.episodes.events import QuestionRecord as Asking
-from tpvqa.monitors import Decision
+from tpvqa.events import Decision, Event, TrialState
+from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided
 from tpvqa.pddl import Action
+from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import Simulation
 
 
@@ -25,28 +25,29 @@ class Judge:
 
     def __init__(self, simulation: Simulation, actions: dict[str, Action]):
         self._simulation, self._actions = simulation, actions
-        self._asked: tuple[Asking, ...] = ()
+        self._state = TrialState()
         self._truths: list[bool] = []
         self.answers: Counter[str] = Counter()
         self.decisions: Counter[str] = Counter()
         self.longest_repeat = self.failures = self.wasted = 0
-        self.first_plan: int | None = None
+
+    @property
+    def first_plan(self) -> int:
+        """Actions of the first plan; 0 where there was none."""
+        return self._state.first_plan or 0
 
     def __call__(self, event: Event) -> None:
         """Take note of an event."""
+        self._state = self._state.after(event)
         match event:
-            case PlanMade() if self.first_plan is None:
-                self.first_plan = len(event.plan)
             case Asked():
-                self._asked = event.questions
                 self._truths = [
                     yes_is_right(question, self._simulation, self._actions)
                     for question in event.questions
                 ]
             case Answered():
-                for question, truth, answer in zip(
-                    self._asked, self._truths, event.answers, strict=True
-                ):
+                for told, truth in zip(self._state.latest, self._truths, strict=True):
+                    question, answer = told.question, told.answer
                     p = "" if answer.p_yes is None else f"{answer.p_yes:.2f}"
                     key = f"{question.way}|{subject_of(question)}|{truth:d}|{answer.reply}|{p}"
                     self.answers[key] += 1
@@ -62,7 +63,7 @@ class Judge:
                 self.longest_repeat = max(self.longest_repeat, event.attempt)
             case Acted() if event.truth is not None:
                 came = event.truth
-                changed = bool(came["added"] or came["removed"])
-                self.failures += not came["succeeded"] or came["undone"] is not None
-                impossible = came["reason"] == "a precondition did not hold"
-                self.wasted += impossible or (came["succeeded"] and not changed)
+                changed = bool(came.added or came.removed)
+                self.failures += not came.succeeded or came.undone is not None
+                impossible = came.failure is Failure.PRECONDITION
+                self.wasted += impossible or (came.succeeded and not changed)

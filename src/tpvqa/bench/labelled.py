@@ -6,9 +6,10 @@ from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.stage import stage, true_simulation
 from tpvqa.bench.truth import subject_of, yes_is_right
-from tpvqa.episodes.events import Answered, Asked, Event, Observed, QuestionRecord
+from tpvqa.config import TrialConfig
+from tpvqa.events import Event, TrialState
+from tpvqa.events.events import Answered, Asked, Observed, QuestionRecord
 from tpvqa.pddl import Action
-from tpvqa.trial import TrialConfig
 from tpvqa.worlds.simulation import Simulation
 
 
@@ -27,23 +28,24 @@ class Labeller:
     def __init__(self, simulation: Simulation, actions: Mapping[str, Action], trial: str):
         self._simulation, self._actions, self._trial = simulation, actions, trial
         self._views: dict[int, str | None] = {}
-        self._asked: Asked | None = None
+        self._state = TrialState()
         self._truths: list[bool] = []
         self.rows: list[LabelledAnswer] = []
 
     def __call__(self, event: Event) -> None:
         """Take note of an event."""
+        self._state = self._state.after(event)
         match event:
             case Observed():
                 self._views[event.look] = _view(event)
             case Asked():
-                self._asked = None if event.person else event
                 self._truths = [self._truth(question) for question in event.questions]
-            case Answered() if self._asked is not None:
-                look = self._asked.look
-                for question, truth, answer in zip(
-                    self._asked.questions, self._truths, event.answers, strict=True
+            case Answered():
+                for (question, answer, look, person), truth in zip(
+                    self._state.latest, self._truths, strict=True
                 ):
+                    if person:
+                        continue
                     row = LabelledAnswer(
                         way=question.way,
                         predicate=subject_of(question),

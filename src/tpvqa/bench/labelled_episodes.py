@@ -8,9 +8,10 @@ from tempfile import TemporaryDirectory
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.labelled import Labeller
-from tpvqa.episodes import Ended, Event, Started, read_episode
-from tpvqa.episodes.events import Acted
+from tpvqa.episodes import read_episode
 from tpvqa.errors import CalibrationError
+from tpvqa.events import Ended, Event, Started
+from tpvqa.events.events import Acted
 from tpvqa.pddl import Atom, Task, task_from_text
 from tpvqa.worlds import Report
 from tpvqa.worlds.simulation import Simulation
@@ -78,7 +79,8 @@ def _label(events: list[Event], started: Started, name: str) -> list[LabelledAns
             continue
         if event.truth is not None:
             gone, new = (
-                frozenset(map(Atom.parse, event.truth[part])) for part in ("removed", "added")
+                frozenset(map(Atom.parse, part))
+                for part in (event.truth.removed, event.truth.added)
             )
             simulation.state = (simulation.state - gone) | new
         elif event.report in (Report.DONE, Report.FAILED):

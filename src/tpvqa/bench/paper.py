@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,15 +15,19 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.settings import common_settings
 from tpvqa.bench.tables import write_tables
+from tpvqa.config import Limits, TrialConfig
+from tpvqa.monitors.capabilities import asks_actions
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.plugins import Kind, load, make
+from tpvqa.plugins import Kind, load, load_spec, make
 from tpvqa.questions import Way
 from tpvqa.tasks import find_task
-from tpvqa.trial import TrialConfig
+from tpvqa.vlm.capabilities import answers_facts_only, is_noise_model
 from tpvqa.vlm.metrics import measure
 from tpvqa.vlm.paper_table import PAPER_TABLE
 
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
+PAPER = TrialConfig(limits=Limits(actions=60))
+"""What all trials share, where nothing else is said."""
 MONITORS = ("tpvqa", "effectvqa", "tp", "palmevqa", "successvqa")
 
 
@@ -47,7 +51,7 @@ class PaperBench:
     world: str | None = None
     episodes: int = 100
     curve: int = 100
-    common: TrialConfig = field(default_factory=TrialConfig)
+    common: TrialConfig = PAPER
 
     def cells(self) -> list[Cell]:
         """The cells of the tables."""
@@ -84,14 +88,15 @@ class PaperBench:
 
 def looks(vlm: str) -> bool:
     """Whether a VLM looks at pictures; noise models do not."""
-    return not getattr(load(Kind.VLM, vlm.partition(":")[0]), "noise_model", False)
+    return not is_noise_model(load_spec(Kind.VLM, vlm))
 
 
 def can_answer(vlm: str, monitor: str) -> bool:
     """Whether a VLM has any answers to what a monitor asks; recorded ones know no whole actions."""
-    facts_only = getattr(load(Kind.VLM, vlm.partition(":")[0]), "facts_only", False)
-    asks_actions = getattr(load(Kind.MONITOR, monitor.partition(":")[0]), "asks_actions", False)
-    return not (facts_only and asks_actions)
+    return not (
+        answers_facts_only(load_spec(Kind.VLM, vlm))
+        and asks_actions(load_spec(Kind.MONITOR, monitor))
+    )
 
 
 def run_paper_bench(
@@ -164,7 +169,7 @@ def _results(bench: PaperBench, ledger: Ledger) -> Results:
 
 def balanced_lines(vlm_spec: str, tasks: Sequence[str], common: TrialConfig) -> list[AnswerLine]:
     """How right a VLM is on the balanced set of each task."""
-    vlm = make(Kind.VLM, vlm_spec, **common.options)
+    vlm = make(Kind.VLM, vlm_spec, **common.plugin_options())
     planner = FastDownward()
     lines = []
     try:

@@ -6,8 +6,9 @@ from pathlib import Path
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.experience import Experience
 from tpvqa.episodes import read_episode
-from tpvqa.episodes.events import Acted
 from tpvqa.errors import CalibrationError
+from tpvqa.events.events import Acted
+from tpvqa.worlds.outcome import Failure
 
 
 def experience_from(folders: Iterable[Path | str]) -> Experience:
@@ -31,12 +32,12 @@ def experience_from(folders: Iterable[Path | str]) -> Experience:
             if not isinstance(event, Acted) or event.truth is None:
                 continue
             known = True
-            failed = event.truth["reason"] == "the action failed"
-            worked = event.truth["succeeded"] and bool(event.truth["added"])
+            failed = event.truth.failure in (Failure.CHANCE, Failure.SCRIPT)
+            worked = event.truth.succeeded and bool(event.truth.added)
             chances.failure.yes += failed
             chances.failure.no += worked
-            if achieved and not event.truth["succeeded"]:
-                disturbed = event.truth["undone"] is not None
+            if achieved and not event.truth.succeeded:
+                disturbed = event.truth.undone is not None
                 chances.disturbance.yes += disturbed
                 chances.disturbance.no += not disturbed
             achieved = achieved or worked

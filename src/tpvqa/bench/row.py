@@ -3,7 +3,7 @@
 from pydantic import BaseModel, ConfigDict
 
 from tpvqa.bench.cell import Cell
-from tpvqa.episodes.events import BELIEVED
+from tpvqa.events.events import BELIEVED
 
 
 class EpisodeRow(BaseModel):

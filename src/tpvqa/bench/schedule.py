@@ -4,7 +4,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from types import MappingProxyType
 
 from tpvqa.belief.calibration import Calibration
@@ -12,8 +12,8 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.stage import run_batch
+from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, MissingExtraError
-from tpvqa.trial import TrialConfig
 
 BATCH: Mapping[str, int] = {"symbolic": 100, "images": 50}
 """Episodes that a worker is sent at once, by world: about a second's work."""
@@ -86,8 +86,8 @@ def run_all(
     if distributed is None:
         distributed = workers > 1 or scheduler is not None
 
-    def given(cell: Cell) -> TrialConfig:
-        return replace(common, calibration=calibrations.get(cell))
+    def given(batch: Batch) -> Given:
+        return batch.cell, common, batch.episodes, calibrations.get(batch.cell)
 
     results = _on_dask(todo, given, workers, scheduler) if distributed else _here(todo, given)
     for batch, rows in results:
@@ -95,16 +95,19 @@ def run_all(
         done(len(batch.episodes))
 
 
-Given = Callable[[Cell], TrialConfig]
+Given = tuple[Cell, TrialConfig, tuple[int, ...], Calibration | None]
+"""What `run_batch` is called with."""
 
 
-def _here(todo: Sequence[Batch], given: Given) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
+def _here(
+    todo: Sequence[Batch], given: Callable[[Batch], Given]
+) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
     for batch in todo:
-        yield batch, _rows(run_batch(batch.cell, given(batch.cell), batch.episodes))
+        yield batch, _rows(run_batch(*given(batch)))
 
 
 def _on_dask(
-    todo: Sequence[Batch], given: Given, workers: int, scheduler: str | None
+    todo: Sequence[Batch], given: Callable[[Batch], Given], workers: int, scheduler: str | None
 ) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
     if not todo:
         return
@@ -130,14 +133,7 @@ def _on_dask(
         ) from error
     try:
         futures = {
-            client.submit(
-                run_batch,
-                batch.cell,
-                given(batch.cell),
-                batch.episodes,
-                pure=False,
-                retries=RETRIES,
-            ): batch
+            client.submit(run_batch, *given(batch), pure=False, retries=RETRIES): batch
             for batch in todo
         }
         for future in as_completed(list(futures)):
@@ -147,7 +143,7 @@ def _on_dask(
                 batch,
                 _rows(future.result())
                 if failed is None
-                else _failed(batch, given(batch.cell), repr(failed)),
+                else _failed(batch, given(batch)[1], repr(failed)),
             )
     finally:
         client.close()

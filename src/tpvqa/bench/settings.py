@@ -2,21 +2,23 @@
 
 from typing import Any
 
-from tpvqa import __version__
-from tpvqa.trial import TrialConfig
+from tpvqa import DECIDES_AS
+from tpvqa.config import TrialConfig
 
 
 def common_settings(common: TrialConfig) -> dict[str, Any]:
-    """The version, and what all trials of a bench share.
+    """The version that decides alike, and what all trials of a bench share.
 
     Args:
         common: What all cells share: seed, rates of faults, limits.
     """
     return {
-        "version": __version__,
+        "version": DECIDES_AS,
         "seed": common.seed,
-        "failure": common.failure,
-        "disturbance": common.disturbance,
-        "spontaneous": common.spontaneous,
-        **{f"limit of {k}": v for k, v in common.limits.model_dump().items()},
+        **({} if common.simulation is None else common.simulation.model_dump()),
+        **{
+            f"limit of {name}": value
+            for name, value in common.limits.model_dump().items()
+            if value is not None
+        },
     }

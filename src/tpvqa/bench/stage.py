@@ -3,30 +3,41 @@
 import time
 import traceback
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from functools import lru_cache
+from threading import get_ident
 from typing import Any
 
+from tpvqa.assembly import Trial
+from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
+from tpvqa.belief.faults import FaultModel
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.episodes import Ended, Event, MemoryWriter
-from tpvqa.errors import TpvqaError
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import MemoryWriter
+from tpvqa.errors import BenchError, TpvqaError
+from tpvqa.events import Ended, Event
+from tpvqa.events.events import ListenerDropped
 from tpvqa.pddl import Action, Task, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
-from tpvqa.plugins import Kind, load, make
+from tpvqa.plugins import Kind, load_spec
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
-from tpvqa.trial import Trial, TrialConfig
 from tpvqa.vlm import VLM
+from tpvqa.vlm.capabilities import is_noise_model
+from tpvqa.vlm.making import make_vlm
+from tpvqa.worlds.capabilities import simulation_of
 from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 PICTURES = 512
 """Encoded pictures that are kept: all of the shipped set."""
+MOST_FACTS = 300_000
+"""In the joint states of a shared action model, at about 1 KB each on the shipped tasks."""
 
 
 class Stage:
@@ -44,15 +55,40 @@ class Stage:
         self.actions: dict[str, Action] = {
             action.pddl(): action for action in self.task.ground_actions()
         }
+        self._model: FaultModel | None = None
 
-    def run(self, cell: Cell, common: TrialConfig, episode: int) -> EpisodeRow:
-        """Run one episode. Whatever goes wrong in it is in its row, and the rest go on."""
-        return self.run_learning(cell, common, episode)[0]
+    @property
+    def model(self) -> FaultModel:
+        """The action model, shared by trials one after the other.
 
-    def run_learning(
-        self, cell: Cell, common: TrialConfig, episode: int
+        One that has grown large is not handed out again, so that a process that runs trials
+        without end does not grow without end.
+        """
+        if self._model is None or self._model.facts > MOST_FACTS:
+            self._model = FaultModel(self.task, self.rules)
+        return self._model
+
+    def run(
+        self,
+        cell: Cell,
+        common: TrialConfig,
+        episode: int,
+        *,
+        calibration: Calibration | None = None,
+        experience: Experience | None = None,
     ) -> tuple[EpisodeRow, Experience | None]:
-        """The same, and what the monitor has learned, where it learns."""
+        """Run one episode. Whatever goes wrong in it is in its row, and the rest go on.
+
+        Args:
+            cell: Which.
+            common: What all cells share.
+            episode: Its number.
+            calibration: What the monitor is told of the VLM's answers.
+            experience: What it has learned before.
+
+        Returns:
+            The row, and what the monitor has learned, where it learns.
+        """
         began = time.perf_counter()
         row: dict[str, Any] = {
             **asdict(cell),
@@ -60,24 +96,33 @@ class Stage:
             "episode": episode,
         }
         try:
-            figures, learned = self._figures(cell.config(common, episode))
+            figures, learned = self._figures(cell.config(common, episode), calibration, experience)
         except TpvqaError as error:
-            figures, learned = {"error": str(error)}, common.experience
+            figures, learned = {"error": str(error)}, experience
         except Exception:  # noqa: BLE001 — one broken plug-in must not end a bench of thousands
-            figures, learned = {"error": traceback.format_exc(limit=-3)}, common.experience
+            figures, learned = {"error": traceback.format_exc(limit=-3)}, experience
         seconds = round(time.perf_counter() - began, 4)
         return EpisodeRow(**row, **figures, seconds=seconds), learned
 
-    def trial(self, config: TrialConfig) -> Trial:
+    def trial(
+        self,
+        config: TrialConfig,
+        *,
+        calibration: Calibration | None = None,
+        experience: Experience | None = None,
+    ) -> Trial:
         """A trial of the task, ready to run; made of what all its trials share."""
-        assert config.vlm is not None
+        assert config.vlm.spec is not None
         return Trial(
             config,
             task=self.task,
             planner=_planner(),
-            vlm=_shared_vlm(config.vlm),
+            vlm=_shared_vlm(config.vlm.spec),
             book=self.book,
             rules=self.rules,
+            model=self.model,
+            calibration=calibration,
+            experience=experience,
         )
 
     def play(self, trial: Trial, listener: Callable[[Event], None]) -> Ended:
@@ -85,11 +130,27 @@ class Stage:
 
         Raises:
             KeyboardInterrupt: Ctrl-C ends the bench, and this episode is none of it.
+            BenchError: The listener broke, so that what it counted is not to be used.
         """
-        return trial.run(MemoryWriter(resumable=False, keep=False), listeners=[listener])
+        dropped: list[str] = []
 
-    def _figures(self, config: TrialConfig) -> tuple[dict[str, Any], Experience | None]:
-        with self.trial(config) as trial:
+        def watch(event: Event) -> None:
+            if isinstance(event, ListenerDropped):
+                dropped.append(f"{event.listener}: {event.error}")
+
+        writer = MemoryWriter(resumable=False, keep=False)
+        ended = trial.run(writer, listeners=[listener, watch])
+        if dropped:
+            raise BenchError(f"what was to be counted was not: {dropped[0]}")
+        return ended
+
+    def _figures(
+        self,
+        config: TrialConfig,
+        calibration: Calibration | None,
+        experience: Experience | None,
+    ) -> tuple[dict[str, Any], Experience | None]:
+        with self.trial(config, calibration=calibration, experience=experience) as trial:
             judge = Judge(true_simulation(trial), self.actions)
             ended = self.play(trial, judge)
             learned = trial.experience
@@ -106,7 +167,7 @@ class Stage:
             "longest_repeat": judge.longest_repeat,
             "failures": judge.failures,
             "wasted": judge.wasted,
-            "first_plan": judge.first_plan or 0,
+            "first_plan": judge.first_plan,
             "answers": dict(judge.answers),
             "decisions": dict(judge.decisions),
             "trust": None if trust is None else round(trust.mean, 4),
@@ -116,13 +177,16 @@ class Stage:
 
 def true_simulation(trial: Trial) -> Simulation:
     """Where the true state of a trial lies."""
-    found: Simulation = getattr(trial.world, "simulation", trial.simulation)
-    return found
+    return simulation_of(trial.world)
+
+
+def stage(task: str) -> Stage:
+    """The stage of a task, one in every thread of every process."""
+    return _stage(task, get_ident())
 
 
 @lru_cache
-def stage(task: str) -> Stage:
-    """The stage of a task, one in every process."""
+def _stage(task: str, thread: int) -> Stage:
     return Stage(task)
 
 
@@ -134,24 +198,23 @@ def _planner() -> Planner:
 @lru_cache
 def _shared_vlm(spec: str) -> VLM | None:
     """A VLM that all episodes share; None for noise models, which belong to one world."""
-    target: Callable[..., object] = load(Kind.VLM, spec.partition(":")[0].strip())
-    if getattr(target, "noise_model", False):
+    if is_noise_model(load_spec(Kind.VLM, spec)):
         return None
-    vlm: VLM = make(Kind.VLM, spec, remember=PICTURES)
-    return vlm
+    return make_vlm(spec, {"remember": PICTURES})[0]
 
 
 def run_batch(
-    cell: Cell, common: TrialConfig, episodes: tuple[int, ...]
+    cell: Cell,
+    common: TrialConfig,
+    episodes: tuple[int, ...],
+    calibration: Calibration | None = None,
 ) -> list[dict[str, object]]:
     """Run some episodes of a cell: what a worker is sent. Their rows as plain values."""
     here = stage(cell.task)
     carried, rows = cell.carried, []
+    learned: Experience | None = None
     for episode in episodes:
-        if carried and episode % carried == 0:
-            common = replace(common, experience=None)
-        row, learned = here.run_learning(cell, common, episode)
-        if carried:
-            common = replace(common, experience=learned)
+        known = learned if carried and episode % carried else None
+        row, learned = here.run(cell, common, episode, calibration=calibration, experience=known)
         rows.append(row.model_dump())
     return rows

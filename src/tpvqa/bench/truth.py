@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from functools import lru_cache
 
-from tpvqa.episodes.events import QuestionRecord
+from tpvqa.events.events import QuestionRecord
 from tpvqa.pddl import Action, Atom
 from tpvqa.questions import Way
 from tpvqa.worlds.simulation import Simulation

@@ -86,8 +86,7 @@ def paper(
 
     from tpvqa.bench.paper import PaperBench, as_rows, run_paper_bench
     from tpvqa.cli.progress import CountBar
-    from tpvqa.episodes import Limits
-    from tpvqa.trial import TrialConfig
+    from tpvqa.config import Limits, SimulationConfig, TrialConfig
 
     bench = PaperBench(
         tasks=_list(tasks),
@@ -98,8 +97,7 @@ def paper(
         curve=episodes if curve is None else curve,
         common=TrialConfig(
             seed=seed,
-            failure=failure,
-            disturbance=disturbance,
+            simulation=SimulationConfig(failure=failure, disturbance=disturbance),
             limits=Limits(repeats=max_repeats, replans=max_replans, actions=max_actions),
         ),
     )

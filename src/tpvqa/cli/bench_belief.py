@@ -78,8 +78,8 @@ def belief(
     from tpvqa.bench.belief import BeliefBench, run_belief_bench
     from tpvqa.bench.belief.parts import Extent
     from tpvqa.bench.belief.tables import summary_rows
+    from tpvqa.bench.paper import PAPER
     from tpvqa.cli.progress import CountBar
-    from tpvqa.trial import TrialConfig
 
     bench = BeliefBench(
         parts=[_part(name) for name in _list(parts)],
@@ -95,7 +95,7 @@ def belief(
         ),
         calibration_episodes=calibration_episodes,
         embedded_world=embedded_calibration,
-        common=TrialConfig(seed=seed),
+        common=PAPER.but(seed=seed),
     )
     with CountBar("calibrations") as bar:
 

@@ -155,8 +155,8 @@ def _from_trials(
     from tpvqa.bench.cell import Cell
     from tpvqa.bench.labelled import gather
     from tpvqa.bench.paper import looks
+    from tpvqa.config import Limits, TrialConfig
     from tpvqa.errors import TpvqaError
-    from tpvqa.trial import TrialConfig
 
     names = [name.strip() for name in tasks.split(",") if name.strip()]
     if not names:
@@ -166,7 +166,9 @@ def _from_trials(
     with _progress("trials", trials * len(names)) as done:
         for task in names:
             cell = Cell(task, monitor, vlm, world)
-            rows += gather(cell, TrialConfig(seed=seed), range(trials), done=done)
+            rows += gather(
+                cell, TrialConfig(seed=seed, limits=Limits(actions=60)), range(trials), done=done
+            )
     return rows
 
 

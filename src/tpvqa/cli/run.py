@@ -1,168 +1,80 @@
-"""`tpvqa run`, `resume`, `show` and `report`."""
+"""`tpvqa run`, `resume`, `config`, `show` and `report`."""
 
 import json
 import sys
+from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tpvqa.cli.options import trial_config, trial_options
+from tpvqa.config.layers import Layer, as_yaml
+
 if TYPE_CHECKING:
+    from tpvqa.assembly import Trial
     from tpvqa.cli.person import TerminalPerson
     from tpvqa.cli.terminal import EpisodeView
-    from tpvqa.episodes import Ended
+    from tpvqa.events import Ended
     from tpvqa.questions import QuestionBook
-    from tpvqa.trial import Trial
 
 _EXIT = "Exit codes: 0 goal reached, 1 not reached, 2 bad input, 130 interrupted."
+_OPTIMAL = Layer({("planner", "spec"): "fast-downward:optimal"}, {("planner", "spec"): "--optimal"})
 
 
 def register(app: typer.Typer) -> None:
     """Add the commands."""
     app.command(epilog=_EXIT)(run)
     app.command(epilog=_EXIT)(resume)
+    app.command("config")(configuration)
     app.command()(show)
     app.command()(report)
 
 
+Task = Annotated[
+    str | None,
+    typer.Argument(help="A shipped task (see `tpvqa tasks`), or your own domain file."),
+]
+Problem = Annotated[
+    Path | None, typer.Argument(metavar="[PROBLEM]", help="Your problem, after a domain file.")
+]
+Optimal = Annotated[
+    bool, typer.Option("--optimal", help="Plans of least cost: --planner fast-downward:optimal.")
+]
+
+
+@trial_options()
 def run(
-    task: Annotated[
-        str | None,
-        typer.Argument(help="A shipped task (see `tpvqa tasks`), or your own domain file."),
-    ] = None,
-    problem_file: Annotated[
-        Path | None, typer.Argument(metavar="[PROBLEM]", help="Your problem, after a domain file.")
-    ] = None,
+    task: Task = None,
+    problem_file: Problem = None,
     *,
-    world: Annotated[
-        str | None,
-        typer.Option(help="images, kitchen or symbolic (the default for your own domain)."),
-    ] = None,
-    monitor: Annotated[
-        str | None,
-        typer.Option(
-            help="belief (the default), belief:COST=VALUE (question, look, action, person, "
-            "failure), tpvqa (the paper's; the default with --majority), tpvqa:LOOKS, effectvqa, "
-            "palmevqa, successvqa, tp or none. With a cost of person you are asked, too."
-        ),
-    ] = None,
-    vlm: Annotated[
-        str | None,
-        typer.Option(
-            help="embedded (the default where there are pictures), openai:MODEL, or a noise "
-            "model: oracle[:ACCURACY[:RHO]] (the default where there are none)."
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
-    episode: Annotated[int, typer.Option(help="Number of the episode under the seed.")] = 0,
+    layers: Sequence[Layer],
+    optimal: Optimal = False,
     out: Annotated[Path | None, typer.Option(help="Folder for the episode.")] = None,
-    domain: Annotated[Path | None, typer.Option(help="Your own domain.")] = None,
-    problem: Annotated[Path | None, typer.Option(help="Your own problem.")] = None,
-    questions: Annotated[Path | None, typer.Option(help="Questions for your domain.")] = None,
-    world_file: Annotated[
-        Path | None, typer.Option(help="What disturbances undo in your domain.")
-    ] = None,
-    base_url: Annotated[str | None, typer.Option(help="Address of an OpenAI-like server.")] = None,
-    majority: Annotated[
-        str | None,
-        typer.Option(help="tie (at least half deny, the default) or strict (more than half)."),
-    ] = None,
-    calibration: Annotated[
-        Path | None,
-        typer.Option(help="belief: what the VLM's answers are worth, see `tpvqa calibrate`."),
-    ] = None,
-    experience: Annotated[
-        Path | None,
-        typer.Option(help="belief: file with what was learned in earlier trials; kept up to date."),
-    ] = None,
-    simulator: Annotated[
-        str | None,
-        typer.Option(
-            help="images world: state (the default), or paper (the paper's to the letter)."
-        ),
-    ] = None,
-    pictures: Annotated[
-        Path | None, typer.Option(help="images world: folder of a set of your own.")
-    ] = None,
-    failure: Annotated[float, typer.Option(help="P(an action fails).", min=0, max=1)] = 0.25,
-    disturbance: Annotated[
-        float, typer.Option(help="P(a failure undoes something achieved).", min=0, max=1)
-    ] = 0.25,
-    spontaneous: Annotated[
-        float, typer.Option(help="P(something is undone after a success).", min=0, max=1)
-    ] = 0.0,
-    max_repeats: Annotated[int, typer.Option(help="Repeats of an action in a row.", min=0)] = 10,
-    max_replans: Annotated[int, typer.Option(help="Replans in the trial.", min=0)] = 10,
-    max_actions: Annotated[int, typer.Option(help="Actions in the trial.", min=1)] = 60,
-    planning_timeout: Annotated[
-        float, typer.Option(help="Seconds for one call of the planner.", min=0.001)
-    ] = 30.0,
-    action_deadline: Annotated[
-        float | None, typer.Option(help="Seconds for one action.", min=0)
-    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the result as JSON; the trial goes to stderr.")
     ] = False,
 ) -> None:
     """Run one trial: plan, look, ask, act, and repeat or replan where the pictures say so."""
-    from tpvqa.belief import Calibration
-    from tpvqa.belief.experience import Experience
-    from tpvqa.episodes import EpisodeWriter, Limits
+    from tpvqa.assembly import Trial
+    from tpvqa.drivers import Interrupted
+    from tpvqa.episodes import EpisodeWriter
     from tpvqa.errors import TpvqaError
-    from tpvqa.loop import Interrupted
-    from tpvqa.trial import Trial, TrialConfig
 
-    if task is not None and problem_file is not None:
-        if domain or problem:
-            raise TpvqaError("Domain and problem were given twice; leave one pair out.")
-        domain, problem, task = Path(task), problem_file, None
-    if task is not None and (domain or problem):
-        raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
-    if monitor is None:
-        monitor = "belief" if majority is None else "tpvqa"
-    if not monitor.strip() or (vlm is not None and not vlm.strip()):
-        raise TpvqaError("--monitor and --vlm must not be empty.")
-    own = task is None
-    options = {
-        "majority": majority,
-        "simulator": simulator,
-        "pictures": None if pictures is None else str(pictures.resolve()),
-        "base_url": base_url,
-    }
-    config = TrialConfig(
-        task=task,
-        domain=None if domain is None else str(domain.resolve()),
-        problem=None if problem is None else str(problem.resolve()),
-        questions=None if questions is None else str(questions.resolve()),
-        world_file=None if world_file is None else str(world_file.resolve()),
-        monitor=monitor,
-        vlm=vlm,
-        world=world or ("symbolic" if own else "images"),
-        seed=seed,
-        episode=episode,
-        failure=failure,
-        disturbance=disturbance,
-        spontaneous=spontaneous,
-        limits=Limits(repeats=max_repeats, replans=max_replans, actions=max_actions),
-        planning_timeout=planning_timeout,
-        action_deadline=action_deadline,
-        calibration=None if calibration is None else Calibration.load(calibration),
-        experience=None if experience is None else Experience.load(experience),
-        experience_file=None if experience is None else str(experience.resolve()),
-        options={name: value for name, value in options.items() if value is not None},
-    )
+    config = trial_config([*layers, *_optimal(optimal)], task, problem_file)
     views: list[EpisodeView] = []
     with Trial(config, person=_person(views, as_json=as_json)) as trial:
-        if (calibration or experience) and not trial.weighs_answers:
+        known = config.monitor
+        if (known.calibration or known.experience) and not trial.weighs_answers:
             raise TpvqaError(
-                f"The monitor {monitor} weighs no answers: leave out --calibration and "
+                f"The monitor {known.spec} weighs no answers: leave out --calibration and "
                 "--experience, or take --monitor belief."
             )
         for notice in (*trial.book.notices, *_about_calibration(trial)):
             print(f"note: {notice}", file=sys.stderr)
         trial.check()
-        folder = out or _new_folder(trial.task.name, seed, episode)
+        folder = out or _new_folder(trial.task.name, config.seed, config.episode)
         writer = EpisodeWriter(folder)
         try:
             with _view(as_json=as_json, book=trial.book) as view:
@@ -176,14 +88,39 @@ def run(
     _finish(ended, folder, as_json=as_json)
 
 
+@trial_options()
+def configuration(
+    task: Task = None,
+    problem_file: Problem = None,
+    *,
+    layers: Sequence[Layer],
+    optimal: Optimal = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON.")] = False,
+) -> None:
+    """Print the configuration of a trial, every setting with where it comes from.
+
+    What is printed can be kept in a file, changed there, and given to `tpvqa run --config FILE`.
+    """
+    layers = [*layers, *_optimal(optimal)]
+    config = trial_config(layers, task, problem_file)
+    if as_json:
+        print(config.model_dump_json(indent=1, by_alias=True))
+    else:
+        print(as_yaml(config, layers), end="")
+
+
+def _optimal(wanted: bool) -> list[Layer]:
+    return [_OPTIMAL] if wanted else []
+
+
 def resume(
     episode: Annotated[Path, typer.Argument(help="Folder of an unfinished episode.")],
     *,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Go on with an episode that was interrupted or killed, to the end it would have had."""
+    from tpvqa.drivers import Interrupted
     from tpvqa.episodes.log import episode_folder
-    from tpvqa.loop import Interrupted
     from tpvqa.resuming import resume as go_on
 
     episode = episode_folder(episode)
@@ -211,7 +148,8 @@ def show(
     from rich.console import Console
 
     from tpvqa.cli.terminal import EpisodeView
-    from tpvqa.episodes import EVENT, read_episode
+    from tpvqa.episodes import read_episode
+    from tpvqa.events import EVENT
 
     events = read_episode(episode)
     if as_json:
@@ -261,7 +199,7 @@ def _about_calibration(trial: "Trial") -> list[str]:
     vlm, calibration, notices = trial.vlm_spec, trial.calibration, []
     if not trial.weighs_answers:
         return []
-    known = trial.config.experience
+    known = trial.known
     if known is not None and known.trust and known.with_vlm(vlm, calibration).trust is None:
         notices.append(
             f"how far to trust {known.vlm} was learned with another VLM or calibration, and is "
@@ -281,11 +219,11 @@ def _keep_experience(trial: "Trial", ended: "Ended") -> None:
     """Write what was learned where the user keeps it, unless other trials wrote there since."""
     from tpvqa.belief.experience import Experience
 
-    learned, config = trial.experience, trial.config
-    if learned is None or config.experience_file is None or ended.because == "cancelled":
+    learned, file = trial.experience, trial.config.monitor.experience
+    if learned is None or file is None or ended.because == "cancelled":
         return
-    path = Path(config.experience_file)
-    before = 0 if config.experience is None else config.experience.trials
+    path = Path(file)
+    before = 0 if trial.known is None else trial.known.trials
     there = Experience.load(path)
     if there is not None and there.trials != before:
         print(
@@ -315,7 +253,8 @@ def _silent(_event: object) -> None:
 
 def _finish(ended: "Ended", folder: Path, *, as_json: bool) -> None:
     if as_json:
-        from tpvqa.episodes import Started, read_episode
+        from tpvqa.episodes import read_episode
+        from tpvqa.events import Started
 
         started = read_episode(folder)[0]
         assert isinstance(started, Started)

@@ -1,6 +1,6 @@
 """An episode in the terminal: while it runs, and printed again."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from rich.console import Console, Group, RenderableType
@@ -10,25 +10,22 @@ from rich.table import Table
 from rich.text import Text
 
 from tpvqa.cli.belief_bars import BeliefBars
-from tpvqa.episodes.events import (
+from tpvqa.episodes.fact_words import words_of
+from tpvqa.events import Decision, Ended, Event, Exchange, TrialState
+from tpvqa.events.events import (
     Acted,
     Acting,
     Answered,
-    AnswerRecord,
     Asked,
     Believed,
     Decided,
-    Ended,
-    Event,
+    ListenerDropped,
     Observed,
     PlanMade,
-    QuestionRecord,
     Resumed,
     Started,
 )
-from tpvqa.episodes.fact_words import words_of
-from tpvqa.monitors import Decision
-from tpvqa.questions import FactWords, QuestionBook, Way
+from tpvqa.questions import FactWords, QuestionBook
 from tpvqa.vlm import Reply
 
 _REPLY_STYLE = {
@@ -71,14 +68,11 @@ class EpisodeView:
     ):
         self._console, self._truth = console, truth
         self._words = None if book is None else FactWords(book)
-        self._started: Started | None = None
         self._bars = BeliefBars(bars=console.is_terminal)
-        self._plan: PlanMade | None = None
-        self._step, self._attempt, self._done = 0, 0, False
-        self._headed, self._told = False, False
-        self._asked: tuple[QuestionRecord, ...] = ()
-        self._pictures = False
-        self._gathered: dict[str, list[tuple[QuestionRecord, AnswerRecord]]] = {}
+        self._state = TrialState()
+        self._headed: tuple[PlanMade | None, int, int] | None = None
+        self._told = False
+        self._gathered: dict[str, list[Exchange]] = {}
         wanted = console.is_terminal if live is None else live
         self._live = Live(console=console, auto_refresh=False, transient=True) if wanted else None
 
@@ -105,83 +99,79 @@ class EpisodeView:
 
     def __call__(self, event: Event) -> None:
         """Show an event."""
+        before, self._state = self._state, self._state.after(event)
         thinking = isinstance(event, PlanMade) and event.considered
         if not (thinking or isinstance(event, Observed | Asked | Answered)):
             self._show_gathered()
         match event:
             case Started():
-                self._started = event
                 noise = " (a noise model, not a VLM)" if event.noise_model else ""
                 self._line(
                     f"[bold]{escape(event.task)}[/]  [dim]world[/] {escape(event.world)}  "
                     f"[dim]monitor[/] {escape(event.monitor)}  "
-                    f"[dim]VLM[/] {escape(event.vlm)}{noise}  [dim]seed[/] {event.seed}"
+                    f"[dim]VLM[/] {escape(event.vlm)}{noise}  [dim]seed[/] {event.config.seed}"
                 )
             case PlanMade():
                 if not event.considered:
-                    self._show_plan(event)
+                    self._show_plan(event, again=before.plan is not None)
             case Observed():
-                self._head()
+                self._head(before)
                 names = ", ".join(frame.file for frame in event.frames)
-                self._pictures = bool(names)
                 if names:
                     self._line(f"  [dim]look {event.look}: {escape(names)}[/]")
             case Asked():
-                self._head()
-                self._asked, self._told = event.questions, True
+                self._head(before)
+                self._told = True
             case Answered():
-                for question, answer in zip(self._asked, event.answers, strict=True):
-                    if self._pictures:
-                        self._line(_answer_line(question, answer))
-                    else:
-                        self._gathered.setdefault(question.text, []).append((question, answer))
+                self._show_answers()
             case Believed():
                 gone = ", ".join(map(self._say, event.removed)) or "nothing"
                 new = ", ".join(map(self._say, event.added)) or "nothing"
                 self._line(f"  [dim]now believed: {escape(new)}; no longer: {escape(gone)}[/]")
             case Decided():
-                self._go_to(event.step)
-                self._head()
+                self._head(before)
                 self._show_decision(event)
                 self._show_belief(event)
             case Acting():
-                self._go_to(event.step)
-                self._head()
+                self._head(before)
                 self._line(f"  [blue]▶ {escape(event.action.said)}[/]")
             case Acted():
                 self._show_outcome(event)
             case Resumed():
                 self._line("  [yellow]gone on after an interruption: looking anew[/]")
+            case ListenerDropped():
+                self._line(f"  [yellow]{escape(event.listener)} broke: {escape(event.error)}[/]")
             case Ended():
-                self._done = event.believed_goal
                 self._show_end(event)
         if self._live is not None:
             self._live.update(self._plan_panel(), refresh=True)
 
+    def _show_answers(self) -> None:
+        observed = self._state.observed
+        for each in self._state.latest:
+            if observed is not None and observed.frames:
+                self._line(_answer_line(each))
+            else:
+                self._gathered.setdefault(each.question.text, []).append(each)
+
     def _show_gathered(self) -> None:
         """Of looks without pictures, one line for all answers to a question."""
         for told in self._gathered.values():
-            if len(told) == 1:
-                self._line(_answer_line(*told[0]))
-            else:
-                self._line(_answers_line(told[0][0], [answer for _, answer in told]))
+            self._line(_answer_line(told[0]) if len(told) == 1 else _answers_line(told))
         self._gathered.clear()
 
     def _line(self, text: str) -> None:
         self._console.print(text, highlight=False, soft_wrap=True)
 
-    def _go_to(self, step: int) -> None:
-        """Follow a monitor that goes on at another step than the next one."""
-        if step != self._step:
-            self._step, self._attempt, self._headed = step, 0, False
-
-    def _head(self) -> None:
+    def _head(self, state: TrialState) -> None:
         """Name the step, once, before the first that happens in it."""
-        if self._headed or self._plan is None or self._step >= len(self._plan.plan):
+        here = (state.plan, state.index, state.attempt)
+        action = state.action
+        if action is None or self._headed == here:
             return
-        self._headed = True
-        again = f" [yellow](attempt {self._attempt + 1})[/]" if self._attempt else ""
-        self._line(f"[bold]{self._step + 1}. {escape(self._plan.plan[self._step].said)}[/]{again}")
+        self._headed = here
+        again = f" [yellow](attempt {state.attempt + 1})[/]" if state.attempt else ""
+        self._line(f"[bold]{state.index + 1}. {escape(action.said)}[/]{again}")
 
     def _show_decision(self, event: Decided) -> None:
         explained = bool(event.belief) and event.when == "after"
@@ -189,10 +179,6 @@ class EpisodeView:
             style = _COURSE_STYLE[event.course]
             self._line(f"  [{style}]→ {event.course}:[/] {escape(event.reason)}")
         self._told = False
-        if event.decision is Decision.REPEAT:
-            self._attempt, self._headed = self._attempt + 1, False
-        elif event.when == "after" and event.decision is Decision.GO_ON:
-            self._step, self._attempt, self._headed = event.onward, 0, False
 
     def _show_belief(self, event: Decided) -> None:
         if not event.belief:
@@ -202,17 +188,17 @@ class EpisodeView:
 
     def _say(self, fact: str) -> str:
         if self._words is None:
-            self._words = FactWords() if self._started is None else words_of(self._started)
+            started = self._state.started
+            self._words = FactWords() if started is None else words_of(started)
         return self._words.say(fact)
 
-    def _show_plan(self, event: PlanMade) -> None:
-        replanned = self._plan is not None
+    def _show_plan(self, event: PlanMade, *, again: bool) -> None:
         if event.result != "plan":
             self._line(f"[red]no plan: {event.result}[/] {escape(event.reason)}")
             return
-        self._plan, self._step, self._attempt, self._headed = event, 0, 0, False
+        self._headed = None
         steps = " · ".join(action.said for action in event.plan) or "nothing left to do"
-        word = "new plan" if replanned else "plan"
+        word = "new plan" if again else "plan"
         self._line(
             f"[cyan]{word}[/] {escape(steps)} "
             f"[dim]({event.planner}, {event.seconds * 1e3:.0f} ms)[/]"
@@ -223,9 +209,10 @@ class EpisodeView:
             self._line(f"  [dim]the robot reports {event.report}: {escape(event.message)}[/]")
         if not self._truth or event.truth is None:
             return
-        parts = [] if event.truth["succeeded"] else [f"in truth {event.truth['reason']}"]
-        if event.truth["undone"]:
-            parts.append(f"{self._say(event.truth['undone'])} ended: {event.truth['undoing']}")
+        failure, undone = event.truth.failure, event.truth.undone
+        parts = [] if failure is None else [f"in truth {failure.said}"]
+        if undone is not None:
+            parts.append(f"{self._say(undone)} ended: {event.truth.undoing}")
         if parts:
             self._line(f"  [dim italic]{escape('; '.join(parts))}[/]")
 
@@ -245,13 +232,15 @@ class EpisodeView:
         self._line(f"{headline}: {counts}{message}")
 
     def _plan_panel(self) -> RenderableType:
-        if self._plan is None or self._plan.result != "plan":
+        state = self._state
+        if state.plan is None:
             return Text("")
+        done = state.ended is not None and state.ended.believed_goal
         table = Table.grid(padding=(0, 1))
-        for number, action in enumerate(self._plan.plan):
-            if self._done or number < self._step:
+        for number, action in enumerate(state.plan.plan):
+            if done or number < state.index:
                 mark, style = "✓", "green"
-            elif number == self._step:
+            elif number == state.index:
                 mark, style = "▶", "bold"
             else:
                 mark, style = " ", "dim"
@@ -259,9 +248,9 @@ class EpisodeView:
         return Group(Text("─" * min(40, self._console.width), "dim"), table)
 
 
-def _answers_line(question: QuestionRecord, answers: list[AnswerRecord]) -> str:
+def _answers_line(told: Sequence[Exchange]) -> str:
     """Many answers to one question, counted, in the order in which they came."""
-    replies = [answer.reply for answer in answers]
+    question, replies = told[0].question, [each.answer.reply for each in told]
     counts = ", ".join(
         f"[{_REPLY_STYLE[reply]}]{count} {reply}[/]"
         for reply in Reply
@@ -272,12 +261,10 @@ def _answers_line(question: QuestionRecord, answers: list[AnswerRecord]) -> str:
     return f"  · {escape(question.text)} {counts}  [dim]{marks}{more}[/]"
 
 
-def _answer_line(question: QuestionRecord, answer: AnswerRecord) -> str:
+def _answer_line(told: Exchange) -> str:
+    question, answer = told.question, told.answer
     style = _REPLY_STYLE[answer.reply]
-    agrees = {Reply.YES: question.expected, Reply.NO: not question.expected}.get(answer.reply)
-    if question.way is Way.ALTERNATIVE:
-        agrees = None
-    mark = {True: "[green]✓[/]", False: "[red]✗[/]", None: "[dim]·[/]"}[agrees]
+    mark = {True: "[green]✓[/]", False: "[red]✗[/]", None: "[dim]·[/]"}[told.agrees]
     if answer.p_yes is None:
         chance = ""
     else:

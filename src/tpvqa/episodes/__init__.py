@@ -1,19 +1,6 @@
-"""Every step of a trial as a typed event on disk; reading back, resuming."""
+"""The events of a trial on disk: writing, reading back, following; the report."""
 
-from tpvqa.episodes.events import EVENT, Ended, Event, Limits, Resumed, Started
+from tpvqa.episodes.following import follow
 from tpvqa.episodes.log import EpisodeWriter, MemoryWriter, read_episode
-from tpvqa.episodes.recorder import Parts, Recorder
 
-__all__ = [
-    "EVENT",
-    "Ended",
-    "EpisodeWriter",
-    "Event",
-    "Limits",
-    "MemoryWriter",
-    "Parts",
-    "Recorder",
-    "Resumed",
-    "Started",
-    "read_episode",
-]
+__all__ = ["EpisodeWriter", "MemoryWriter", "follow", "read_episode"]

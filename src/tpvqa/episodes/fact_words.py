@@ -4,8 +4,8 @@ import tempfile
 from functools import lru_cache
 from pathlib import Path
 
-from tpvqa.episodes.events import Started
 from tpvqa.errors import TpvqaError
+from tpvqa.events.events import Started
 from tpvqa.pddl.loading import task_from_text
 from tpvqa.questions import FactWords, QuestionBook
 

@@ -1,6 +1,7 @@
 """The episode on disk: `episode.jsonl`, one event a line, and the pictures in `frames/`."""
 
 import fcntl
+import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,8 +9,10 @@ from time import monotonic
 
 from pydantic import ValidationError
 
-from tpvqa.episodes.events import EVENT, Event, Started
+from tpvqa import __version__
 from tpvqa.errors import EpisodeError
+from tpvqa.events import EVENT, Event, Started
+from tpvqa.events.events import SCHEMA
 from tpvqa.observation import Frame
 
 LOG = "episode.jsonl"
@@ -24,6 +27,7 @@ class EpisodeWriter:
             `resume` is given.
         resume: Number of whole events that the folder's log holds; what follows them (a line
             torn by a kill) is cut off.
+        time: Seconds that the episode had taken by then.
         durable: Whether to wait for the disk. Off only for experiments of many episodes.
 
     Raises:
@@ -32,9 +36,9 @@ class EpisodeWriter:
 
     resumable = True
 
-    def __init__(self, folder: Path, *, resume: int = 0, durable: bool = True):
+    def __init__(self, folder: Path, *, resume: int = 0, time: float = 0.0, durable: bool = True):
         self.folder, self._durable, self._count = Path(folder), durable, resume
-        self._began = monotonic()
+        self._began = monotonic() - time
         path = self.folder / LOG
         try:
             if path.exists() and path.stat().st_size and not resume:
@@ -71,7 +75,7 @@ class EpisodeWriter:
         event = event.model_copy(
             update={"number": self._count, "time": round(monotonic() - self._began, 4)}
         )
-        self._file.write(EVENT.dump_json(event, exclude_none=True) + b"\n")
+        self._file.write(EVENT.dump_json(event, exclude_none=True, by_alias=True) + b"\n")
         self._file.flush()
         if self._durable:
             os.fsync(self._file.fileno())
@@ -107,13 +111,16 @@ class MemoryWriter:
     def __init__(self, *, resumable: bool = True, keep: bool = True) -> None:
         self.resumable, self._keep = resumable, keep
         self.events: list[Event] = []
+        self._began, self._count = monotonic(), 0
 
     def append(self, event: Event) -> Event:
         """Keep an event."""
-        if not self._keep:
-            return event
-        event = event.model_copy(update={"number": len(self.events)})
-        self.events.append(event)
+        event = event.model_copy(
+            update={"number": self._count, "time": round(monotonic() - self._began, 4)}
+        )
+        self._count += 1
+        if self._keep:
+            self.events.append(event)
         return event
 
     def save_frame(self, frame: Frame) -> str:
@@ -141,6 +148,48 @@ def episode_folder(path: Path | str) -> Path:
     return path.parent if path.name == LOG else path
 
 
+def event_of(path: Path, number: int, line: bytes) -> Event:
+    """The event that stands in a line of a log.
+
+    Args:
+        path: The log, as messages name it.
+        number: Of the line, from 1.
+        line: What stands there.
+
+    Raises:
+        EpisodeError: It is no event, or one of another version's.
+    """
+    try:
+        return EVENT.validate_json(line)
+    except ValidationError as error:
+        if number == 1:
+            _check_schema(path, line)
+        problem = error.errors()[0]
+        place = ".".join(map(str, problem["loc"]))
+        raise EpisodeError(
+            f"{path}:{number}: not an event of this version ({place}: {problem['msg']})"
+        ) from error
+
+
+def _check_schema(path: Path, line: bytes) -> None:
+    """Say which version reads a log that this one does not.
+
+    Raises:
+        EpisodeError: It is a log of another version.
+    """
+    try:
+        first = json.loads(line)
+        if first.get("kind") != "started" or first.get("schema", 1) == SCHEMA:
+            return
+    except (ValueError, AttributeError):
+        return
+    version = first.get("version", "another version")
+    raise EpisodeError(
+        f"{path}: written by tpvqa {version} in another format (schema {first.get('schema', 1)}; "
+        f"this is tpvqa {__version__}, which reads schema {SCHEMA}). tpvqa {version} reads it"
+    )
+
+
 def read_episode(folder: Path | str) -> list[Event]:
     """All whole events of an episode, also of one that was killed.
 
@@ -153,14 +202,7 @@ def read_episode(folder: Path | str) -> list[Event]:
     path = episode_folder(folder) / LOG
     events: list[Event] = []
     for number, line in _lines(path):
-        try:
-            events.append(EVENT.validate_json(line))
-        except ValidationError as error:
-            problem = error.errors()[0]
-            place = ".".join(map(str, problem["loc"]))
-            raise EpisodeError(
-                f"{path}:{number}: not an event of this version ({place}: {problem['msg']})"
-            ) from error
+        events.append(event_of(path, number, line))
     if not events or not isinstance(events[0], Started):
         raise EpisodeError(f"{path}: the episode has no beginning; it was killed before it started")
     return events

@@ -1,8 +1,9 @@
 """Action + answers → `Verdict`, behind the `Monitor` protocol."""
 
+from tpvqa.events.decision import Decision
 from tpvqa.monitors.protocol import Check, Monitor, Step
 from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 
 __all__ = [
     "Ask",

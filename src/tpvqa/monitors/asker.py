@@ -4,10 +4,11 @@ from collections.abc import Generator, Sequence
 from typing import Any
 
 from tpvqa.errors import PluginError
+from tpvqa.events.decision import Decision
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Ask, Look, Request
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 from tpvqa.monitors.vote import vote
 from tpvqa.questions import Question
 from tpvqa.vlm import Answer

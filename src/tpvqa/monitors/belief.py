@@ -4,24 +4,25 @@ from collections.abc import Generator, Sequence
 from copy import deepcopy
 from typing import Any
 
-from pydantic import ValidationError
-
-from tpvqa.belief.ablations import PARTS, belief_without
+from tpvqa.belief.ablations import belief_without
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Choice, Chooser, Table
-from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
-from tpvqa.belief.faults import FaultRules, Rates, fault_model
+from tpvqa.belief.faults import FaultModel, FaultRules
 from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
 from tpvqa.belief.trust import Trust
-from tpvqa.errors import PlannerError, PluginError
-from tpvqa.monitors.protocol import Check, Limits, Step
-from tpvqa.monitors.reasons import Moment, Told, reason
+from tpvqa.errors import PlannerError
+from tpvqa.events.decision import Decision
+from tpvqa.monitors.belief_settings import BeliefSettings
+from tpvqa.monitors.capabilities import Learning
+from tpvqa.monitors.inspection import Inspection, Replies
+from tpvqa.monitors.protocol import Check, Step
+from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan, Unsolvable
@@ -31,10 +32,9 @@ from tpvqa.vlm import Answer, Reply
 
 SAME = 3
 """Looks in a row that may show a picture which the question was asked of already."""
-_RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate")
 
 
-class BeliefMonitor:
+class BeliefMonitor(Learning):
     """Keeps a Bayes filter over the facts and does what is expected to cost least.
 
     After every action it predicts what that may have led to, asks as long as an answer is worth
@@ -43,15 +43,14 @@ class BeliefMonitor:
 
     Args:
         task: The task.
+        settings: What things cost, what is believed of faults, what is left out.
         rules: What the world file says about faults.
         calibration: What the VLM's answers are worth.
-        costs: What things cost.
         views: The views that the world can be looked at from, the default one first.
-        rates: What is believed about faults beforehand.
-        experience: What was learned in earlier trials; goes before `rates`.
-        without: One of `belief.ablations.PARTS`, to be left out.
-        limits: When the trial is ended without success; None for never.
+        experience: What was learned in earlier trials; goes before the rates of `settings`.
         noise_model: Whether answers do not depend on the picture, but on the look.
+        model: The action model, where trials one after the other share it.
+        name: What the log calls it.
 
     Example:
         >>> BeliefMonitor.from_spec("question=0.05", task=task).costs.question  # doctest: +SKIP
@@ -61,48 +60,42 @@ class BeliefMonitor:
     def __init__(
         self,
         task: Task,
+        settings: BeliefSettings | None = None,
         *,
         rules: FaultRules | None = None,
         calibration: Calibration | None = None,
-        costs: Costs | None = None,
         views: Sequence[str] = (),
-        rates: Rates | None = None,
         experience: Experience | None = None,
-        without: str | None = None,
         noise_model: bool = False,
-        limits: Limits | None = None,
+        model: FaultModel | None = None,
         name: str = "belief",
     ):
-        self.task, self.costs, self.name = task, costs or Costs(), name
-        self.belief = belief_without(without, fault_model(task, rules))
+        settings = settings or BeliefSettings()
+        self.task, self.costs, self.name = task, settings.costs, name
+        self.belief = belief_without(settings.without, model or FaultModel(task, rules))
+        rates = settings.rates
         self.chances = Chances(rates) if experience is None else experience.chances(rates)
-        if calibration is None or without == "calibration":
+        if calibration is None or settings.without == "calibration":
             calibration = Calibration.default()
-        self._learn = without != "learning"
-        self._all_facts = without == "relevance"
+        self._learns = settings.without != "learning"
+        self._asks_all = settings.without == "relevance"
         self.trust: Trust | None = None
-        if self._learn:
+        if self._learns:
             learned = None if experience is None else experience.trusting()
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
         self.evidence = Evidence(self.belief, calibration, self.trust)
         self._chooser = Chooser(self.belief.model, self.costs)
-        self._repeats = None if limits is None else limits.repeats
-        if limits is not None:
-            self._chooser.left, self._chooser.changes_left = limits.actions, limits.replans
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
-        self._view = self._views[0] if self._views else None
-        self._picture: Picture | None = None
-        self._looks = self._questions = self._looks_here = self._questions_here = 0
-        self._told: dict[str, Told] = {}
+        self._looks = self._questions = 0
         self._words: FactWords | None = None
         self._person = self.costs.person is not None
-        self._action: Action | None = None
-        self._effects: frozenset[Atom] = frozenset()
+        self._plans: dict[State, Plan] = {}
+        self._followed: Plan | None = None
         self._settled: Action | None = None
         self._stepped: Step | None = None
-        self._asked_about: dict[frozenset[Atom], list[Question]] = {}
+        self._now = self._begin(None)
 
     @classmethod
     def from_spec(
@@ -115,58 +108,22 @@ class BeliefMonitor:
         views: Sequence[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
-        limits: Limits | None = None,
+        model: FaultModel | None = None,
     ) -> "BeliefMonitor":
-        """Make it from `belief`, or `belief:question=0.05:failure=200` with other costs.
-
-        Also understood: `failure_rate`, `disturbance_rate` and `spontaneous_rate`, believed
-        beforehand; `without=PART`.
+        """Make it from `belief`, or `belief:question=0.05:failure=200`; see `BeliefSettings`.
 
         Raises:
             PluginError: Something is unknown, or no fitting number.
         """
-        given: dict[str, Any] = {}
-        for part in arguments.split(":") if arguments else []:
-            key, _, value = part.partition("=")
-            if key.strip() in given:
-                raise PluginError(f"'belief:{arguments}': {key.strip()} is given twice")
-            given[key.strip()] = value.strip()
-        without = given.pop("without", None)
-        if without is not None and without not in PARTS:
-            raise PluginError(
-                f"'belief:{arguments}': what can be left out is {', '.join(PARTS)}, not {without!r}"
-            )
-        try:
-            believed = {
-                key.removesuffix("_rate"): float(given.pop(key)) for key in _RATES if key in given
-            }
-            if not all(0 <= rate <= 1 for rate in believed.values()):
-                raise ValueError("a rate lies between 0 and 1")
-            costs = Costs.model_validate(given)
-        except ValidationError as error:
-            first = error.errors()[0]
-            where = ".".join(map(str, first["loc"]))
-            what = (
-                f"there is no cost {where!r}" if where not in Costs.model_fields else first["msg"]
-            )
-            raise PluginError(
-                f"'belief:{arguments}' is not understood: {where}: {what}. Costs are "
-                f"{', '.join(Costs.model_fields)}; write belief:question=0.05:look=0.01, say, "
-                f"or without={'|'.join(PARTS)}."
-            ) from None
-        except ValueError as error:
-            raise PluginError(f"'belief:{arguments}' is not understood: {error}") from None
         return cls(
             task,
+            BeliefSettings.parse(arguments),
             rules=rules,
             calibration=calibration,
             views=views,
-            costs=costs,
-            rates=Rates(**believed),
             experience=experience,
-            without=without,
             noise_model=noise_model,
-            limits=limits,
+            model=model,
             name=f"belief:{arguments}" if arguments else "belief",
         )
 
@@ -194,14 +151,18 @@ class BeliefMonitor:
         if step is not self._stepped:  # a check that is done again predicts nothing again
             self._stepped = step
             self._acted(step)
-        worn = self._repeats is not None and step.attempt >= self._repeats
+        worn = step.repeats_left is not None and step.repeats_left <= 0
         choice = yield from self._choose(step, barred=step.action if worn else None)
         return self._verdict(step, choice, acted=True)
 
     def _know(self, step: Step) -> None:
-        """Annotate the plan that is being followed."""
-        if step.index == 0 and self._annotated(step) is None:
-            self._annotate(step.plan, step.state)
+        """Annotate the plan that is being followed, and know what the trial still allows."""
+        self._chooser.allow(step.actions_left, step.replans_left)
+        if step.plan is not self._followed:
+            self._followed = step.plan
+            self._plans[step.state] = step.plan
+            if self._annotated(step) is None:
+                self._annotate(step.plan, step.state)
 
     def _annotated(self, step: Step) -> AnnotatedPlan | None:
         actions = step.plan.actions
@@ -216,23 +177,22 @@ class BeliefMonitor:
         self._chooser.add(AnnotatedPlan(self.task, plan.actions, needs))
 
     def _acted(self, step: Step) -> None:
-        if self._learn:
+        if self._learns:
             self.chances.learn(self.belief.outcome_shares())
         self.belief.act(step.action, self.chances.rates)
         self.evidence.acted(troubled=bool(step.trouble))
         self._chooser.acted()
-        self._action = step.action
-        self._effects = frozenset(effect.literal.atom for effect in step.action.effects)
-        self._picture, self._view = None, self._views[0] if self._views else None
-        self._looks_here = self._questions_here = 0
-        self._told.clear()
-        self._asked_about.clear()
+        self._now = self._begin(step.action)
+
+    def _begin(self, action: Action | None) -> Inspection:
+        return Inspection(action, self._views[0] if self._views else None)
 
     def _choose(self, step: Step, barred: Action | None = None) -> Generator[Request, Any, Choice]:
         while True:
             while (state := self._chooser.unplanned(self.belief)) is not None:
                 result = yield PlanFrom(state)
                 if isinstance(result, Plan):
+                    self._plans[state] = result
                     self._annotate(result, state)
                 elif isinstance(result, Unsolvable):
                     self._chooser.give_up_on(state)
@@ -250,8 +210,10 @@ class BeliefMonitor:
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
         budget = self._budget()
         questions = self._about_needs(step.book)
-        if self._all_facts and budget.questions > 0:
-            fresh = [q for q in questions if q.text not in self._told and self._open_views(q)]
+        if self._asks_all and budget.questions > 0:
+            fresh = [
+                q for q in questions if q.text not in self._now.replies and self._open_views(q)
+            ]
             doubted = [each for each in fresh if 1e-3 < self._likely(each) < 1 - 1e-3]
             if doubted:
                 return Inquiry(doubted[0], 1, 0.0)
@@ -259,7 +221,7 @@ class BeliefMonitor:
             questions,
             table,
             budget,
-            picture=self._picture,
+            picture=self._now.picture,
             views=self._open_views,
             person=self._person,
         )
@@ -268,10 +230,10 @@ class BeliefMonitor:
         costs = self.costs
         return Budget(
             min(
-                costs.questions_per_step - self._questions_here,
+                costs.questions_per_step - self._now.questions,
                 costs.questions_per_trial - self._questions,
             ),
-            min(costs.looks_per_step - self._looks_here, costs.looks_per_trial - self._looks),
+            min(costs.looks_per_step - self._now.looks, costs.looks_per_trial - self._looks),
         )
 
     def _likely(self, question: Question) -> float:
@@ -281,32 +243,34 @@ class BeliefMonitor:
     def _about_needs(self, book: QuestionBook) -> list[Question]:
         """Questions about what the plans need: nothing else can change a decision."""
         atoms: frozenset[Atom] = frozenset().union(*(p.atoms() for p in self._chooser.plans))
-        if self._all_facts:
+        if self._asks_all:
             atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
-        if atoms not in self._asked_about:
+        known = self._now.about
+        if atoms not in known:
             questions: dict[str, Question] = {}
+            effects = self._now.effects
             for atom in sorted(atoms):
-                effect = atom in self._effects
-                action = self._action if effect else None
+                effect = atom in effects
+                action = self._now.action if effect else None
                 if book.asked(Literal(atom), action):
                     way = Way.EFFECT if effect else Way.PRECONDITION
                     question = book.fact(Literal(atom), way=way, action=action)
                     questions.setdefault(question.text, question)
-            self._asked_about[atoms] = list(questions.values())
-        return self._asked_about[atoms]
+            known[atoms] = list(questions.values())
+        return known[atoms]
 
     def _open_views(self, question: Question) -> list[str | None]:
         """From where a question may still find an answer, the next one first.
 
         They go round: another view repeats the last answer less than the same one does.
         """
-        turn = self._looks_here % len(self._views) if self._views else 0
+        turn = self._now.looks % len(self._views) if self._views else 0
         views: list[str | None] = [*self._views[turn:], *self._views[:turn]]
         return [view for view in views or [None] if not self.evidence.silent(question.text, view)]
 
     def _ask(self, question: Question, *, person: bool) -> Generator[Request, Any, None]:
         assert question.atom is not None
-        before = self._likely(question)
+        now, before = self._now, self._likely(question)
         if person:
             answer: Answer = yield AskPerson(question)
             self._person = answer.reply is not Reply.UNKNOWN
@@ -315,32 +279,33 @@ class BeliefMonitor:
             looks = 0
             while not self._shows_something_new(question):
                 if looks == SAME:  # there is no other picture of it to be had
-                    self.evidence.silence(question.text, self._view)
+                    self.evidence.silence(question.text, now.view)
                     looks = 0
                 open_views = self._open_views(question)
                 if not open_views:
                     return
-                self._view = open_views[0]
-                observation: Observation = yield Look(self._view)
-                self._picture = observation.look if self._blind else _picture(observation)
+                now.view = open_views[0]
+                observation: Observation = yield Look(now.view)
+                now.picture = observation.look if self._blind else _picture(observation)
                 self._looks += 1
-                self._looks_here += 1
+                now.looks += 1
                 looks += 1
             answers: list[Answer] = yield Ask((question,))
             answer = answers[0]
             self._questions += 1
-            self._questions_here += 1
-            self.evidence.take(answer, self._picture, self._view)
+            now.questions += 1
+            self.evidence.take(answer, now.picture, now.view)
         if answer.reply in (Reply.YES, Reply.NO):
-            told = Told((question.atom, *question.alike), before)
-            self._told.setdefault(question.text, told).replies.append(answer.reply)
+            told = Replies((question.atom, *question.alike), before)
+            now.replies.setdefault(question.text, told).replies.append(answer.reply)
 
     def _shows_something_new(self, question: Question) -> bool:
         """Whether the latest picture may tell more than what a question was answered before."""
+        now = self._now
         return (
-            self._picture is not None
-            and not self.evidence.asked_of(question.text, self._picture)
-            and not self.evidence.silent(question.text, self._view)
+            now.picture is not None
+            and not self.evidence.asked_of(question.text, now.picture)
+            and not self.evidence.silent(question.text, now.view)
         )
 
     def _verdict(self, step: Step, choice: Choice, *, acted: bool) -> Verdict:
@@ -356,28 +321,27 @@ class BeliefMonitor:
                 number for number, each in enumerate(step.plan.actions) if same(each, action, state)
             ]
             decision = Decision.GO_ON if places else Decision.REPLAN
-            if not places and self._chooser.changes_left is not None:
-                self._chooser.changes_left -= 1
             place = min(places, key=lambda each: abs(each - step.index), default=None)
         if self._words is None:
             self._words = FactWords(step.book)
-        moment = Moment(
+        grounds = Grounds(
             step,
             self._words,
             self.belief,
-            self._told,
+            self._now.replies,
             self._annotated(step),
             acted,
             unseen=self.evidence.unseen,
             questions_left=self._budget().questions > 0,
-            actions_left=self._chooser.left,
+            actions_left=step.actions_left,
         )
-        why = reason(moment, decision, action, state, place)
+        why = reason(grounds, decision, action, state, place)
         if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
             acted or place != step.index
         ):
             self._settled = action
-        return Verdict(decision, why, state, step=place, belief=self._marginals())
+        plan = self._plans.get(state) if decision is Decision.REPLAN else None
+        return Verdict(decision, why, state, step=place, belief=self._marginals(), plan=plan)
 
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}

@@ -1,9 +1,10 @@
 """The paper's ablation: effects are checked, preconditions are believed."""
 
+from tpvqa.events.decision import Decision
 from tpvqa.monitors.asker import Asker, check_effects
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.protocol import Check, Step
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 
 
 class EffectVQA:

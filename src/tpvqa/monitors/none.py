@@ -1,14 +1,15 @@
 """Planning without perception: the paper's baseline TP, and a run without a VLM."""
 
+from tpvqa.events.decision import Decision
+from tpvqa.monitors.capabilities import NeverAsks
 from tpvqa.monitors.protocol import Check, Step
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 
 
-class NoMonitor:
+class NoMonitor(NeverAsks):
     """Believes that every action works, unless the skill itself says otherwise. It never looks."""
 
     name = "none"
-    never_asks = True
 
     def before(self, step: Step) -> Check:
         """Go on."""

@@ -1,14 +1,16 @@
 """A baseline of the paper: "Is it possible to <action> here?", "Was <action> successful?"."""
 
 from tpvqa.errors import PluginError
+from tpvqa.events.decision import Decision
 from tpvqa.monitors.asker import Asker, give_up
+from tpvqa.monitors.capabilities import AsksActions
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.protocol import Check, Step
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 from tpvqa.pddl import Literal, State
 
 
-class PaLMEVQA:
+class PaLMEVQA(AsksActions):
     """Zhang et al. 2023, section "Baselines", with the questions of Driess et al. 2023.
 
     A no to "Is it possible …?" names no fact. So all preconditions that could have been asked
@@ -18,8 +20,6 @@ class PaLMEVQA:
         start_over: Instead plan from the task's initial state, as the authors' scripts do.
         looks: How often to look again where the answer abstains, before stopping.
     """
-
-    asks_actions = True
 
     def __init__(self, *, start_over: bool = False, looks: int = 3):
         self._asker, self.start_over = Asker(looks=looks), start_over

@@ -26,6 +26,9 @@ class Step:
         state: What is believed to be true, before the action.
         attempt: How often this step's action has been repeated so far.
         trouble: After the action, what the robot's own skill says went wrong; never the truth.
+        actions_left: Actions that the trial still allows; None for any number.
+        replans_left: Replans that it still allows; None for any number.
+        repeats_left: Repeats of this action that it still allows; None for any number.
     """
 
     task: Task
@@ -35,6 +38,9 @@ class Step:
     state: State
     attempt: int = 0
     trouble: str = ""
+    actions_left: int | None = None
+    replans_left: int | None = None
+    repeats_left: int | None = None
 
     @property
     def action(self) -> Action:
@@ -42,29 +48,13 @@ class Step:
         return self.plan.actions[self.index]
 
 
-class Limits(Protocol):
-    """When a trial is ended without success; see `episodes.Limits`."""
-
-    @property
-    def repeats(self) -> int:
-        """Repeats of one step's action in a row."""
-
-    @property
-    def replans(self) -> int:
-        """Replans in the trial."""
-
-    @property
-    def actions(self) -> int:
-        """Actions in the trial."""
-
-
 @runtime_checkable
 class Monitor(Protocol):
     """Decides, before and after every action, whether to go on, repeat or replan.
 
     A monitor does no input or output: it yields requests, and the loop performs and logs them.
-    One instance watches one trial and may remember what it has seen. One that asks nothing may say
-    so by `never_asks = True`; then no VLM needs to be there.
+    One instance watches one trial and may remember what it has seen. What else it may be stands in
+    `monitors.capabilities`.
     """
 
     @property

@@ -1,4 +1,4 @@
-"""What a monitor asks the loop to do for it. The loop performs and logs every request."""
+"""What a monitor asks to have done for it. Whatever drives the trial does it, and logs it."""
 
 from dataclasses import dataclass
 
@@ -22,9 +22,15 @@ class Ask:
 
 @dataclass(frozen=True, slots=True)
 class PlanFrom:
-    """A plan from a state; answered with a `PlanningResult`."""
+    """A plan from a state; answered with a `PlanningResult`.
+
+    Attributes:
+        state: Where it begins.
+        followed: Whether it is to be followed, or only considered.
+    """
 
     state: State
+    followed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

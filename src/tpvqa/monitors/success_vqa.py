@@ -1,11 +1,13 @@
 """A baseline of the paper: "Did the robot successfully <action>?"; nothing before an action."""
 
+from tpvqa.events.decision import Decision
 from tpvqa.monitors.asker import Asker, give_up
+from tpvqa.monitors.capabilities import AsksActions
 from tpvqa.monitors.protocol import Check, Step
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 
 
-class SuccessVQA:
+class SuccessVQA(AsksActions):
     """Zhang et al. 2023, section "Baselines", with the question of Du et al. 2023.
 
     Args:
@@ -13,7 +15,6 @@ class SuccessVQA:
     """
 
     name = "successvqa"
-    asks_actions = True
 
     def __init__(self, *, looks: int = 3):
         self._asker = Asker(looks=looks)

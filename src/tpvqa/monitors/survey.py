@@ -7,9 +7,10 @@ answers count, repeated ones too.
 from collections.abc import Sequence
 
 from tpvqa.errors import PluginError
+from tpvqa.events.decision import Decision
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Ask, Look
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 from tpvqa.questions import Question
 
 LOOKS = 8

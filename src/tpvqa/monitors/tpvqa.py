@@ -4,12 +4,13 @@ from collections.abc import Generator, Sequence
 from typing import Any
 
 from tpvqa.errors import PluginError
+from tpvqa.events.decision import Decision
 from tpvqa.monitors.asker import Asker, check_effects, give_up, tally
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Ask, Request
-from tpvqa.monitors.verdict import Decision, Verdict
+from tpvqa.monitors.verdict import Verdict
 from tpvqa.pddl import Atom, Literal, State
 from tpvqa.questions import Question, Way
 from tpvqa.vlm import Answer, Reply

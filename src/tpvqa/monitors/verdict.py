@@ -2,19 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 
+from tpvqa.events.decision import Decision
 from tpvqa.pddl import Atom, State
-
-
-class Decision(StrEnum):
-    """The ways in which a trial can go on from a check."""
-
-    GO_ON = "go on"
-    REPEAT = "repeat"
-    REPLAN = "replan"
-    DONE = "done"
-    GIVE_UP = "give up"
+from tpvqa.planning import Plan
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +20,7 @@ class Verdict:
         step: At which step of the plan to go on; None for the natural one (the action itself
             before it, the next one after it).
         belief: Probabilities of the facts that the plan needs, where a monitor keeps them.
+        plan: To replan: the plan from `state` that the decision rests on; None to have one made.
     """
 
     decision: Decision
@@ -36,3 +28,4 @@ class Verdict:
     state: State | None = None
     step: int | None = None
     belief: Mapping[Atom, float] = field(default_factory=dict)
+    plan: Plan | None = None

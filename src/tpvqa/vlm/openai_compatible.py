@@ -16,6 +16,7 @@ from tpvqa.observation import Frame, Observation
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.background_loop import BackgroundLoop
+from tpvqa.vlm.capabilities import NeedsPictures
 from tpvqa.vlm.chat_completions import (
     INSTRUCTION,
     Dialect,
@@ -46,7 +47,7 @@ class _Again(Exception):  # noqa: N818 — a request to try again, not an error
         self.why, self.pause, self.unreachable = why, pause, unreachable
 
 
-class OpenAICompatibleVLM:
+class OpenAICompatibleVLM(NeedsPictures):
     """Asks a server with the pictures and one question a request, several at a time.
 
     P(yes) comes from the logprobs of the first answer token, P(yes) = yes / (yes + no) summed
@@ -74,8 +75,6 @@ class OpenAICompatibleVLM:
         MissingExtraError: The `openai` package is not installed.
         AnswerError: The address is not one.
     """
-
-    needs_pictures = True
 
     def __init__(
         self,

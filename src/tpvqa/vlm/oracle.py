@@ -9,6 +9,7 @@ from tpvqa.errors import EpisodeError, PluginError
 from tpvqa.observation import Observation
 from tpvqa.questions.question import Question, Way
 from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.capabilities import NoiseModel
 from tpvqa.vlm.protocol import TruthSource
 
 
@@ -21,7 +22,7 @@ class _Given:
     yes: bool
 
 
-class Oracle:
+class Oracle(NoiseModel):
     """Answers from the truth, errs at rate 1 - accuracy, and can repeat its errors.
 
     A noise model, not a VLM: it does not look at the pictures. It answers yes or no to every
@@ -45,8 +46,6 @@ class Oracle:
     Raises:
         PluginError: `accuracy` or `rho` is not a probability.
     """
-
-    noise_model = True
 
     def __init__(
         self,

@@ -13,7 +13,7 @@ from tpvqa.vlm.answer import Answer
 class VLM(Protocol):
     """Answers yes/no questions about what is seen.
 
-    It may also have `check()`, which raises where it cannot be asked, before a robot moves.
+    What else it may be stands in `vlm.capabilities`.
     One call answers all questions on one observation. Within an observation the same question
     gets the same answer; another look is another observation.
     """

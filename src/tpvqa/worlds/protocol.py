@@ -1,10 +1,10 @@
 """The seam between the loop and whatever a robot acts in."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from threading import Event
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action
@@ -33,9 +33,8 @@ class Execution:
 class World(Protocol):
     """Somewhere to act and to look.
 
-    It may also have `check()`, which raises where something is missing, before anything is done.
-    Every call of `observe` is a new look. Simulated worlds also have `truth`, a `TruthSource`
-    for judges and noise models; robots do not.
+    Every call of `observe` is a new look. What else a world may be stands in
+    `worlds.capabilities`.
     """
 
     def views(self) -> Sequence[str]:
@@ -61,14 +60,3 @@ class World(Protocol):
 
     def close(self) -> None:
         """Let go of everything. Can be called twice."""
-
-
-@runtime_checkable
-class Restorable(Protocol):
-    """A world that can be put back into an earlier state, so that an episode can be resumed."""
-
-    def snapshot(self) -> Mapping[str, Any]:
-        """The whole state as plain JSON values."""
-
-    def restore(self, snapshot: Mapping[str, Any]) -> None:
-        """Put back what `snapshot` gave."""

@@ -7,8 +7,9 @@ import logging
 from pathlib import Path
 
 from tpvqa.pddl import Action
+from tpvqa.worlds.outcome import Failure, Outcome
 from tpvqa.worlds.script_file import Script, load_script
-from tpvqa.worlds.simulation import Outcome, Simulation
+from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.symbolic import SymbolicWorld
 
 _LOG = logging.getLogger(__name__)
@@ -29,14 +30,12 @@ class _ScriptedSimulation(Simulation):
             outcome = super().execute(action)
         else:
             self.attempts[action.pddl()] += 1
-            outcome = Outcome(False, "the script says so", None, "", before, before)
+            outcome = Outcome(Failure.SCRIPT, None, "", before, before)
         if fault is None:
             return outcome
         self._become((self.state - fault.delete) | fault.add)
         gone = next(iter(sorted(fault.delete)), None)
-        return Outcome(
-            outcome.succeeded, outcome.reason, gone, "the script says so", before, self.state
-        )
+        return Outcome(outcome.failure, gone, Failure.SCRIPT.said, before, self.state)
 
 
 class ScriptedWorld(SymbolicWorld):

@@ -6,36 +6,15 @@ also undo something achieved before. The truth is kept for judging and never sho
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from tpvqa.chance import chance
 from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.worlds.outcome import Failure, Outcome
 from tpvqa.worlds.world_file import WorldRules
 
 FAILURE = 0.25
 DISTURBANCE = 0.25
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What truly came of an action.
-
-    Attributes:
-        succeeded: Whether the action did what its effects say (or they held already).
-        reason: Why it failed; empty where it did not.
-        undone: The achieved fact that a disturbance ended, if one did.
-        undoing: How the world file says that.
-        before: The true state before.
-        after: The true state after.
-    """
-
-    succeeded: bool
-    reason: str
-    undone: Atom | None
-    undoing: str
-    before: State
-    after: State
 
 
 class Simulation:
@@ -91,23 +70,20 @@ class Simulation:
         fails, disturbs = draw.random() < self.failure, draw.random()
         possible = self.possible(action)
         intended = self.task.apply(before, self.truly(action))
-        undone, undoing, reason = None, "", ""
-        if self.achieved(action):
-            succeeded = True
-        elif not possible:
-            succeeded, reason = False, "a precondition did not hold"
-            if disturbs < self.disturbance:
+        undone, undoing = None, ""
+        failure: Failure | None = None
+        if not self.achieved(action):
+            disturbance = self.disturbance
+            if not possible:
+                failure = Failure.PRECONDITION
+            elif fails:
+                failure = Failure.CHANCE
+            else:
+                self._become(intended)
+                disturbance = self.spontaneous
+            if disturbs < disturbance:
                 undone, undoing = self._disturb(draw.random(), draw.random())
-        elif fails:
-            succeeded, reason = False, "the action failed"
-            if disturbs < self.disturbance:
-                undone, undoing = self._disturb(draw.random(), draw.random())
-        else:
-            succeeded = True
-            self._become(intended)
-            if disturbs < self.spontaneous:
-                undone, undoing = self._disturb(draw.random(), draw.random())
-        return Outcome(succeeded, reason, undone, undoing, before, self.state)
+        return Outcome(failure, undone, undoing, before, self.state)
 
     def truly(self, action: Action) -> Action:
         """The action that the robot's skill truly is, see `Rebinding`."""

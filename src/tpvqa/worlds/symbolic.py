@@ -7,18 +7,18 @@ from typing import Any
 from tpvqa.errors import UnknownNameError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action
+from tpvqa.worlds.capabilities import Pictureless, Simulated
+from tpvqa.worlds.outcome import Outcome
 from tpvqa.worlds.protocol import Execution, Report
-from tpvqa.worlds.simulation import Outcome, SimulatedTruth, Simulation
+from tpvqa.worlds.simulation import SimulatedTruth, Simulation
 
 
-class SymbolicWorld:
+class SymbolicWorld(Simulated, Pictureless):
     """A simulation without pictures; its observations are empty, so only noise models answer.
 
     Args:
         simulation: The true state and its faults.
     """
-
-    has_pictures = False
 
     def __init__(self, simulation: Simulation):
         self.simulation = simulation

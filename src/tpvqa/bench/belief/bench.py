@@ -14,14 +14,14 @@ from tpvqa.bench.belief.tables import write_results
 from tpvqa.bench.belief.targets import Check
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
-from tpvqa.bench.paper import looks
+from tpvqa.bench.paper import PAPER, looks
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.settings import common_settings
 from tpvqa.bench.stage import stage
+from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.plugins import Kind, load, make
 from tpvqa.tasks import find_task
-from tpvqa.trial import TrialConfig
 
 Told = Callable[[int, int], None]
 SPEED_FILE = "speed.json"
@@ -45,7 +45,7 @@ class BeliefBench:
     extent: Extent = field(default_factory=Extent)
     calibration_episodes: int = 80
     embedded_world: str = "images"
-    common: TrialConfig = field(default_factory=TrialConfig)
+    common: TrialConfig = PAPER
 
     def wanted(self, parts: Iterable[Part] | None = None) -> dict[Cell, int]:
         """How many episodes of each cell; a cell of several parts is run once.

@@ -1,7 +1,7 @@
 """What each VLM's answers are worth, learnt from trials that no cell of the bench runs."""
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from tpvqa.belief.calibration import Calibration, Group
@@ -12,7 +12,7 @@ from tpvqa.bench.labelled import gather
 from tpvqa.bench.labelled_recordings import label_recordings
 from tpvqa.bench.paper import looks
 from tpvqa.bench.stage import stage
-from tpvqa.trial import TrialConfig
+from tpvqa.config import TrialConfig
 from tpvqa.vlm.recorded.vlm import told_by
 
 SURVEY = "survey"
@@ -75,7 +75,7 @@ def calibrations(
         TpvqaError: A trial cannot be run, a file is damaged or cannot be written.
     """
     found: dict[Source, Calibration] = {}
-    away = replace(common, seed=common.seed + OTHER_SEEDS)
+    away = common.but(seed=common.seed + OTHER_SEEDS)
     for source in sorted(sources):
         path = folder / source.file
         done(len(found), len(sources))

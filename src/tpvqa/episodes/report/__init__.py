@@ -4,13 +4,13 @@ import base64
 from contextlib import suppress
 from pathlib import Path
 
-from tpvqa.episodes.events import Event, FrameRecord
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.log import episode_folder, read_episode
 from tpvqa.episodes.notable_facts import probability
 from tpvqa.episodes.report.belief_chart import chart
 from tpvqa.episodes.report.story import Story, tell
 from tpvqa.errors import EpisodeError
+from tpvqa.events.events import Event, FrameRecord
 
 __all__ = ["Story", "render_report", "tell", "write_report"]
 

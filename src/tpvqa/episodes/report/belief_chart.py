@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from tpvqa.episodes.events import Decided
 from tpvqa.episodes.notable_facts import in_doubt, probability
 from tpvqa.episodes.report.story import Chapter, Story
 from tpvqa.episodes.report.true_facts import TrueFacts
+from tpvqa.events.events import Decided
 
 HEIGHT = 100
 """Of a row in the units of its drawing, in which a decision is one unit wide."""

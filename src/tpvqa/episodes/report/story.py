@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from tpvqa.episodes.events import (
+from tpvqa.episodes.notable_facts import FactNow, notable
+from tpvqa.errors import EpisodeError
+from tpvqa.events import Exchange, TrialState
+from tpvqa.events.events import (
     Acted,
     Acting,
     ActionRecord,
     Answered,
-    AnswerRecord,
-    Asked,
     Believed,
     Decided,
     Ended,
@@ -17,30 +18,8 @@ from tpvqa.episodes.events import (
     FrameRecord,
     Observed,
     PlanMade,
-    QuestionRecord,
     Started,
 )
-from tpvqa.episodes.notable_facts import FactNow, notable
-from tpvqa.errors import EpisodeError
-from tpvqa.questions import Way
-from tpvqa.vlm import Reply
-
-
-@dataclass
-class Asking:
-    """One question with its answer."""
-
-    question: QuestionRecord
-    answer: AnswerRecord | None = None
-
-    @property
-    def agrees(self) -> bool | None:
-        """Whether the answer agrees with what is expected; None where nothing is."""
-        if self.answer is None or self.answer.reply not in (Reply.YES, Reply.NO):
-            return None
-        if self.question.way is Way.ALTERNATIVE:
-            return None
-        return (self.answer.reply is Reply.YES) == self.question.expected
 
 
 @dataclass
@@ -49,7 +28,7 @@ class Check:
 
     look: int | None = None
     frames: tuple[FrameRecord, ...] = ()
-    askings: list[Asking] = field(default_factory=list)
+    exchanges: list[Exchange] = field(default_factory=list)
 
 
 @dataclass
@@ -109,10 +88,9 @@ def tell(events: Sequence[Event]) -> Story:
     if not events or not isinstance(events[0], Started):
         raise EpisodeError("the episode has no beginning")
     story = Story(events[0], [], None)
-    plan: PlanMade | None = None
+    state = TrialState()
     current: Chapter | None = None
-    phase: Phase | None = None
-    probabilities: dict[str, float] = {}
+    phase = Phase()
 
     def chapter() -> Chapter:
         nonlocal current, phase
@@ -122,44 +100,34 @@ def tell(events: Sequence[Event]) -> Story:
             story.chapters.append(current)
         return current
 
-    for event in events[1:]:
+    for event in events:
+        before, state = state, state.after(event)
         match event:
             case PlanMade() if event.considered:
                 chapter()
-                assert phase is not None
                 phase.considered.append(event)
             case PlanMade():
-                plan = event
                 story.chapters.append(Chapter(plan=event))
                 current = None
             case Observed():
                 chapter()
-                assert phase is not None
                 phase.checks.append(Check(event.look, event.frames))
-            case Asked():
+            case Answered():
                 chapter()
-                assert phase is not None
                 if not phase.checks:
                     phase.checks.append(Check())
-                phase.checks[-1].askings += [Asking(question) for question in event.questions]
-            case Answered():
-                assert phase is not None
-                askings = phase.checks[-1].askings[-len(event.answers) :]
-                for asking, answer in zip(askings, event.answers, strict=True):
-                    asking.answer = answer
+                phase.checks[-1].exchanges += state.latest
             case Decided():
                 # A monitor may go on at another step instead of acting: that step is told anew.
                 if event.when == "before" and current is not None and current.step != event.step:
                     current = None if current.step is not None else current
                 here = chapter()
-                assert phase is not None
                 phase.decided = event
-                if event.belief and event.belief != probabilities:
-                    phase.facts = notable(event.belief, probabilities)
-                    probabilities = event.belief
+                if event.belief and event.belief != before.belief:
+                    phase.facts = notable(event.belief, before.belief)
                 here.step = event.step
-                if plan is not None and event.step < len(plan.plan):
-                    here.action = plan.plan[event.step]
+                if before.plan is not None and event.step < len(before.plan.plan):
+                    here.action = before.plan.plan[event.step]
                 # A verdict that sends the trial elsewhere ends the chapter.
                 if event.when == "after" or event.decision != "go on":
                     current = None

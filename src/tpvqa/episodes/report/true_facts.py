@@ -2,7 +2,7 @@
 
 import re
 
-from tpvqa.episodes.events import Acted, Started
+from tpvqa.events.events import Acted, Started
 
 _DERIVED = re.compile(r"\(\s*:derived\s+\(\s*([^\s()]+)", re.IGNORECASE)
 
@@ -25,8 +25,8 @@ class TrueFacts:
         if acted.truth is None:
             self._known = False
         else:
-            self._state -= set(acted.truth["removed"])
-            self._state |= set(acted.truth["added"])
+            self._state -= set(acted.truth.removed)
+            self._state |= set(acted.truth.added)
 
     def holds(self, fact: str) -> bool | None:
         """Whether a fact, given as PDDL, is true now; None where that is not known."""

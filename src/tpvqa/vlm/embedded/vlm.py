@@ -14,6 +14,7 @@ from tpvqa.errors import AnswerError
 from tpvqa.observation import Frame, Observation
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.capabilities import NeedsPictures
 from tpvqa.vlm.embedded.lexicon import Unknown
 from tpvqa.vlm.embedded.sessions import Floats, Sessions
 from tpvqa.vlm.embedded.weights import SHIPPED, Weights
@@ -24,7 +25,7 @@ _ANSWERS = 100_000
 """Answers that are kept."""
 
 
-class EmbeddedVLM:
+class EmbeddedVLM(NeedsPictures):
     """Answers questions about the household with a small network on the CPU.
 
     Not a general VLM: it knows the household's objects in pictures like those it was trained on,
@@ -46,8 +47,6 @@ class EmbeddedVLM:
         >>> vlm.name
         'embedded'
     """
-
-    needs_pictures = True
 
     def __init__(
         self,

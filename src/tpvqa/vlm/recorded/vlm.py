@@ -10,6 +10,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Task
 from tpvqa.questions.question import Question, Way
 from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.capabilities import FactsOnly, NoiseModel
 from tpvqa.vlm.protocol import TruthSource
 from tpvqa.vlm.recorded.answers import Recording, Recordings, models, recordings
 
@@ -31,7 +32,7 @@ _KIND = {
 }
 
 
-class Recorded:
+class Recorded(NoiseModel, FactsOnly):
     """Draws answers from those that a model gave to questions of the same kind.
 
     A noise model, not a VLM. An answer with its P(yes) is drawn from the model's recorded answers
@@ -50,9 +51,6 @@ class Recorded:
         seed: The user's seed.
         episode: Number of the episode under this seed.
     """
-
-    noise_model = True
-    facts_only = True
 
     def __init__(
         self, truth: TruthSource, told: Recordings, *, spec: str, seed: int = 0, episode: int = 0

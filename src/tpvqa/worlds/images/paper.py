@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from tpvqa.pddl import Action, Atom, State
-from tpvqa.worlds.simulation import Outcome, Simulation
+from tpvqa.worlds.outcome import Outcome
+from tpvqa.worlds.simulation import Simulation
 
 
 class PaperSimulation(Simulation):

@@ -10,17 +10,19 @@ from tpvqa.chance import chance
 from tpvqa.errors import PictureSetError, PluginError, UnknownNameError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Atom, State
+from tpvqa.worlds.capabilities import Simulated
 from tpvqa.worlds.images.manifest import Meshes, Picture, PictureSet, load_pictures
 from tpvqa.worlds.images.paper import PaperSimulation
 from tpvqa.worlds.images.visible import describe, mirrored, visible_state
 from tpvqa.worlds.kitchen.household import Household
+from tpvqa.worlds.outcome import Outcome
 from tpvqa.worlds.protocol import Execution, Report
-from tpvqa.worlds.simulation import Outcome, SimulatedTruth, Simulation
+from tpvqa.worlds.simulation import SimulatedTruth, Simulation
 
 VIEW = "front"
 
 
-class ImageWorld:
+class ImageWorld(Simulated):
     """The paper's simulator: faults on a true state, pictures of what it looks like.
 
     Args:

@@ -11,14 +11,16 @@ from numpy.typing import NDArray
 from tpvqa.errors import PluginError, UnknownNameError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Atom
+from tpvqa.worlds.capabilities import Simulated
 from tpvqa.worlds.kitchen.household import Household
 from tpvqa.worlds.kitchen.layout import Split
 from tpvqa.worlds.kitchen.rotation import matrix, quaternion
 from tpvqa.worlds.kitchen.scene import VIEWS, KitchenScene
 from tpvqa.worlds.kitchen.spots import Pose
 from tpvqa.worlds.kitchen.truth import Shown
+from tpvqa.worlds.outcome import Outcome
 from tpvqa.worlds.protocol import Execution, Report
-from tpvqa.worlds.simulation import Outcome, SimulatedTruth, Simulation
+from tpvqa.worlds.simulation import SimulatedTruth, Simulation
 
 QUALITY = 92
 """Of the JPEG pictures."""
@@ -28,7 +30,7 @@ MOVING = 1.0
 """Seconds that a skill takes by the world's clock."""
 
 
-class KitchenWorld:
+class KitchenWorld(Simulated):
     """A random kitchen that is drawn as the robot sees it and in which dropped things fall.
 
     The kitchen is a function of the simulation's seed and episode. Things stay where they are

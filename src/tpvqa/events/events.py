@@ -1,48 +1,61 @@
-"""Every step of an episode as a typed event: the one log that terminal, report and replay read."""
+"""Every step of an episode as a typed event: the one log that everything else reads."""
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, field_serializer
 
-from tpvqa.monitors import Decision
+from tpvqa.config import Limits, TrialConfig
+from tpvqa.events.decision import Decision
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 from tpvqa.worlds import Report
+from tpvqa.worlds.outcome import Failure
+
+SCHEMA: Literal[2] = 2
+"""Of the log. That of tpvqa 0.1, which did not say its number, was 1."""
 
 
-class _Event(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+class _Record(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
+
+class _Event(_Record):
     number: int = -1
     time: float = 0.0
-
-
-class Limits(BaseModel):
-    """When a trial is ended without success.
-
-    Attributes:
-        repeats: Repeats of one step's action in a row.
-        replans: Replans in the trial.
-        actions: Actions executed in the trial, repeats included.
-    """
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    repeats: int = 10
-    replans: int = 10
-    actions: int = 60
 
 
 class Started(_Event):
     """The first event: everything that is needed to run the trial again.
 
-    `domain`, `problem`, `questions` and `rules` (the world file) are the texts of the files. A
-    `noise_model` answers from the truth, for experiments; it is no VLM.
+    Attributes:
+        schema_number: Of the log's format.
+        version: Of tpvqa.
+        config: What was asked for. `simulation` is None where the world is not simulated.
+        task: The task's name.
+        monitor: Specification of the monitor, as all that follow with its defaults filled in.
+        vlm: Specification of the VLM.
+        world: Specification of the world.
+        planner: Specification of the planner.
+        noise_model: Whether the VLM answers from the truth, for experiments; it is no VLM then.
+        domain: Text of the file, as are `problem`, `questions` and `rules` (the world file).
+        initial: The facts that hold at first.
+        goal: The goal in words.
+        calibration: What the monitor was told of the VLM's answers, where it weighs them.
+        experience: What it was told of earlier trials.
     """
 
     kind: Literal["started"] = "started"
+    schema_number: Literal[2] = Field(
+        default=SCHEMA, validation_alias="schema", serialization_alias="schema"
+    )
     version: str
+    config: TrialConfig
     task: str
+    monitor: str
+    vlm: str
+    world: str
+    planner: str
+    noise_model: bool = False
     domain_file: str
     problem_file: str
     questions_file: str | None = None
@@ -53,25 +66,30 @@ class Started(_Event):
     rules: str | None = None
     initial: tuple[str, ...]
     goal: str
-    monitor: str
-    vlm: str
-    noise_model: bool = False
-    world: str
-    planner: str
-    seed: int
-    episode: int
-    limits: Limits
-    settings: dict[str, Any] = Field(default_factory=dict)
+    calibration: dict[str, Any] | None = None
+    experience: dict[str, Any] | None = None
+
+    @field_serializer("config")
+    def _whole(self, config: TrialConfig) -> dict[str, Any]:
+        """With what is None, which a log leaves out elsewhere."""
+        return config.model_dump(mode="json", by_alias=True)
+
+    @property
+    def limits(self) -> Limits:
+        """When the trial is ended without success."""
+        return self.config.limits
 
 
-class ActionRecord(BaseModel):
+class ActionRecord(_Record):
     """A ground action, and how it is said."""
-
-    model_config = ConfigDict(frozen=True)
 
     name: str
     arguments: tuple[str, ...]
     said: str
+
+    def pddl(self) -> str:
+        """The action as PDDL writes it."""
+        return f"({' '.join((self.name, *self.arguments))})"
 
 
 class PlanMade(_Event):
@@ -91,10 +109,8 @@ class PlanMade(_Event):
     considered: bool = False
 
 
-class FrameRecord(BaseModel):
+class FrameRecord(_Record):
     """A camera image that was saved beside the log."""
-
-    model_config = ConfigDict(frozen=True)
 
     view: str
     file: str
@@ -103,7 +119,7 @@ class FrameRecord(BaseModel):
 
 
 class Observed(_Event):
-    """A look at the world."""
+    """A look at the world. One `during` an action was taken while the action ran."""
 
     kind: Literal["observed"] = "observed"
     look: int
@@ -111,13 +127,12 @@ class Observed(_Event):
     world_time: float
     frames: tuple[FrameRecord, ...] = ()
     detail: dict[str, Any] = Field(default_factory=dict)
+    during: bool = False
     snapshot: dict[str, Any] | None = None
 
 
-class QuestionRecord(BaseModel):
+class QuestionRecord(_Record):
     """A question as it was asked."""
-
-    model_config = ConfigDict(frozen=True)
 
     text: str
     way: Way
@@ -136,10 +151,8 @@ class Asked(_Event):
     person: bool = False
 
 
-class AnswerRecord(BaseModel):
+class AnswerRecord(_Record):
     """An answer as it came."""
-
-    model_config = ConfigDict(frozen=True)
 
     reply: Reply
     p_yes: float | None = Field(default=None, ge=0, le=1)
@@ -190,12 +203,17 @@ class Decided(_Event):
         return self.step + (self.when == "after") if self.onto is None else self.onto
 
     @property
+    def acts(self) -> bool:
+        """Whether the action is executed now."""
+        return (
+            self.when == "before" and self.decision is Decision.GO_ON and self.onward == self.step
+        )
+
+    @property
     def course(self) -> str:
         """The decision as it is shown: to go on elsewhere in the plan has words of its own."""
-        if self.decision is not Decision.GO_ON:
-            return self.decision
         natural = self.step + (self.when == "after")
-        if self.onward == natural:
+        if self.decision is not Decision.GO_ON or self.onward == natural:
             return self.decision
         return "go back" if self.onward < natural else "skip ahead"
 
@@ -209,6 +227,21 @@ class Acting(_Event):
     attempt: int
 
 
+class OutcomeRecord(_Record):
+    """What truly came of an action, for judging; see `worlds.outcome.Outcome`."""
+
+    failure: Failure | None = None
+    undone: str | None = None
+    undoing: str = ""
+    added: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the action did what its effects say, or they held already."""
+        return self.failure is None
+
+
 class Acted(_Event):
     """What the robot's skill reports. `truth` is what a simulated world knows, for judging."""
 
@@ -216,7 +249,7 @@ class Acted(_Event):
     report: Report
     seconds: float
     message: str = ""
-    truth: dict[str, Any] | None = None
+    truth: OutcomeRecord | None = None
     snapshot: dict[str, Any] | None = None
 
 
@@ -225,6 +258,7 @@ EndedBecause = Literal[
     "limit of repeats",
     "limit of replans",
     "limit of actions",
+    "limit of time",
     "no plan",
     "planner timed out",
     "planner crashed",
@@ -239,6 +273,14 @@ class Resumed(_Event):
     changed while nobody watched, so what was being checked is checked again."""
 
     kind: Literal["resumed"] = "resumed"
+
+
+class ListenerDropped(_Event):
+    """Something that was told of events broke, and is told of no more. The trial goes on."""
+
+    kind: Literal["listener dropped"] = "listener dropped"
+    listener: str
+    error: str
 
 
 class Ended(_Event):
@@ -278,6 +320,7 @@ Event = (
     | Acting
     | Acted
     | Resumed
+    | ListenerDropped
     | Ended
 )
 

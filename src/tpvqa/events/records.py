@@ -5,21 +5,25 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from tpvqa.episodes.events import (
+from tpvqa.errors import EpisodeError
+from tpvqa.events.events import (
+    Acted,
     ActionRecord,
     Answered,
     AnswerRecord,
     FrameRecord,
     Observed,
+    OutcomeRecord,
     PlanMade,
     QuestionRecord,
 )
-from tpvqa.errors import EpisodeError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, State, Task
 from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.vlm import Answer
+from tpvqa.worlds import Execution
+from tpvqa.worlds.outcome import Outcome
 
 _OF_ANSWERS = tuple(each.name for each in fields(Answer) if each.name != "question")
 
@@ -93,6 +97,24 @@ def answers_from(record: Answered, questions: Sequence[Question]) -> list[Answer
         Answer(question, *(getattr(answer, name) for name in _OF_ANSWERS))
         for question, answer in zip(questions, record.answers, strict=True)
     ]
+
+
+def outcome_record(outcome: Outcome | None) -> OutcomeRecord | None:
+    """What truly came of an action; None where nobody knows."""
+    if outcome is None:
+        return None
+    return OutcomeRecord(
+        failure=outcome.failure,
+        undone=None if outcome.undone is None else outcome.undone.pddl(),
+        undoing=outcome.undoing,
+        added=atoms(outcome.after - outcome.before),
+        removed=atoms(outcome.before - outcome.after),
+    )
+
+
+def execution_from(record: Acted) -> Execution:
+    """What a skill reported, from the record."""
+    return Execution(record.report, record.seconds, record.message)
 
 
 def observation_from(record: Observed, folder: Path | None) -> Observation:

@@ -1,0 +1,23 @@
+"""What a trial is, in names and numbers: one model that CLI, YAML, log and bench read."""
+
+from tpvqa.config.model import (
+    Limits,
+    MonitorConfig,
+    PlannerConfig,
+    SimulationConfig,
+    TaskConfig,
+    TrialConfig,
+    VLMConfig,
+    WorldConfig,
+)
+
+__all__ = [
+    "Limits",
+    "MonitorConfig",
+    "PlannerConfig",
+    "SimulationConfig",
+    "TaskConfig",
+    "TrialConfig",
+    "VLMConfig",
+    "WorldConfig",
+]

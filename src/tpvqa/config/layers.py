@@ -1,0 +1,173 @@
+"""One configuration from several sources: defaults, a file, the command line."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from tpvqa.config.model import TrialConfig
+from tpvqa.errors import ConfigError
+from tpvqa.yaml_places import Place, read_yaml
+
+Key = tuple[str, ...]
+"""Where a setting stands in the configuration: ("limits", "actions")."""
+SPECS = {"task": "name", "world": "spec", "vlm": "spec", "monitor": "spec", "planner": "spec"}
+"""The setting of a part for which a name alone stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One setting of the configuration.
+
+    Attributes:
+        key: Where it stands.
+        option: What the command line calls it.
+        says: What it is.
+        default: Its value where none is given.
+        kind: Its type.
+        file: Whether it names a file or a folder.
+    """
+
+    key: Key
+    option: str
+    says: str
+    default: Any
+    kind: Any
+    file: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """Values from one source.
+
+    Attributes:
+        values: By where they stand.
+        places: Where each was given, as messages say it: "trial.yaml:3" or "--seed".
+    """
+
+    values: Mapping[Key, Any] = field(default_factory=dict)
+    places: Mapping[Key, str] = field(default_factory=dict)
+
+
+def settings() -> Iterator[Setting]:
+    """All settings of a trial, in the order of the model."""
+    return _settings(TrialConfig, ())
+
+
+def _settings(model: type[BaseModel], above: Key) -> Iterator[Setting]:
+    for name, info in model.model_fields.items():
+        key = (*above, name)
+        told = info.json_schema_extra
+        part = _part(info)
+        if part is not None:
+            yield from _settings(part, key)
+        elif isinstance(told, dict):
+            default = info.get_default(call_default_factory=True)
+            yield Setting(
+                key,
+                str(told["option"]),
+                info.description or "",
+                default,
+                info.annotation,
+                bool(told["file"]),
+            )
+
+
+def _part(info: FieldInfo) -> type[BaseModel] | None:
+    """The model of a part, where a field is one."""
+    kinds = (info.annotation, *getattr(info.annotation, "__args__", ()))
+    return next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), None)
+
+
+def combined(layers: Sequence[Layer]) -> TrialConfig:
+    """The configuration that layers give, the later before the earlier ones.
+
+    Raises:
+        ConfigError: A value does not fit; says where it was given.
+    """
+    nested: dict[str, Any] = {}
+    for layer in layers:
+        for (first, *rest), value in layer.values.items():
+            if not rest:
+                nested[first] = {**nested.get(first, {}), **value} if first == "options" else value
+            else:
+                nested.setdefault(first, {})[rest[0]] = value
+    try:
+        return TrialConfig.model_validate(nested)
+    except ValidationError as error:
+        first_error = error.errors()[0]
+        key = tuple(str(part) for part in first_error["loc"][:2])
+        place = origin(key, layers)
+        raise ConfigError(f"{place}: {'.'.join(key)}: {first_error['msg']}") from None
+
+
+def origin(key: Key, layers: Sequence[Layer]) -> str:
+    """Where a setting was given; "default" where nowhere."""
+    return next((layer.places[key] for layer in reversed(layers) if key in layer.places), "default")
+
+
+def file_layer(path: Path) -> Layer:
+    """What a configuration file says. Paths in it are relative to its folder.
+
+    Raises:
+        ConfigError: It cannot be read, or names something that there is not.
+    """
+    top = read_yaml(path, ConfigError)
+    values: dict[Key, Any] = {}
+    places: dict[Key, str] = {}
+    known: dict[str, dict[str, Setting]] = {}
+    for each in settings():
+        known.setdefault(each.key[0], {})[each.key[-1]] = each
+    for name, part in top.sections("schema", *known).items() if top is not None else ():
+        if name == "schema":
+            values[("schema",)], places[("schema",)] = _value(part), f"{path}:{part.line}"
+            continue
+        for setting, place in _given(name, part, known[name]):
+            value = _value(place)
+            if setting.file and isinstance(value, str):
+                value = str((path.parent / value).resolve())
+            values[setting.key], places[setting.key] = value, f"{path}:{place.line}"
+    return Layer(values, places)
+
+
+def _given(name: str, part: Place, known: Mapping[str, Setting]) -> list[tuple[Setting, Place]]:
+    """The settings of a part, and their values."""
+    if (name,) in {setting.key for setting in known.values()}:
+        return [(known[name], part)]
+    if name in SPECS and part.is_text():
+        return [(known[SPECS[name]], part)]
+    return [(known[key], place) for key, place in part.sections(*known).items()]
+
+
+def _value(place: Place) -> Any:
+    """A value of YAML as a plain one."""
+    loader = yaml.SafeLoader("")
+    try:
+        return loader.construct_object(place.node, deep=True)
+    except yaml.YAMLError as error:
+        raise place.wrong(f"cannot be read: {error}") from None
+    finally:
+        loader.dispose()
+
+
+def as_yaml(config: TrialConfig, layers: Sequence[Layer]) -> str:
+    """A configuration as a file, every setting with where it came from."""
+    lines: list[str] = [f"schema: {config.schema_number}"]
+    part = ""
+    for setting in settings():
+        value: Any = config
+        for name in setting.key:
+            value = None if value is None else getattr(value, name)
+        if len(setting.key) > 1 and setting.key[0] != part:
+            part = setting.key[0]
+            lines.append(f"{part}:")
+        indent = "  " * (len(setting.key) - 1)
+        said = (
+            yaml.safe_dump(value, default_flow_style=True, width=10_000).split("\n...")[0].strip()
+        )
+        lines.append(f"{indent}{setting.key[-1]}: {said}  # {origin(setting.key, layers)}")
+    return "\n".join(lines) + "\n"

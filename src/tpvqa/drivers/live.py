@@ -1,0 +1,54 @@
+"""A trial from its beginning, or from where it was interrupted, to its end."""
+
+from tpvqa.drivers.performing import Performer
+from tpvqa.drivers.stepping import SteppingTrial
+from tpvqa.events import Ended
+from tpvqa.trial import Conclusion
+from tpvqa.worlds.truth import goal_holds
+
+CANCELLED = Conclusion("cancelled")
+INTERRUPTED = Conclusion("cancelled", "interrupted by the user")
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during an episode, whose log has its end: what runs many ends with it.
+
+    Attributes:
+        ended: The last event.
+    """
+
+    def __init__(self, ended: Ended):
+        super().__init__("interrupted")
+        self.ended = ended
+
+
+def run(trial: SteppingTrial, performer: Performer) -> Ended:
+    """Do whatever a trial wants done, until it ends.
+
+    Args:
+        trial: The trial; not begun yet.
+        performer: Does it. Its `cancel` ends the trial early.
+
+    Returns:
+        The last event. `completed` means that all goals hold in truth and that the trial ended
+        believing so.
+
+    Raises:
+        Interrupted: Ctrl-C. The log is ended first, and can be gone on with.
+    """
+    interrupted = False
+    try:
+        trial.begin()
+        while trial.pending is not None and not performer.cancel.is_set():
+            trial.send(performer.perform(trial.pending))
+        conclusion = trial.conclusion or CANCELLED
+    except KeyboardInterrupt:
+        if trial.replaying:  # the log is right as it is
+            raise
+        conclusion, interrupted = INTERRUPTED, True
+    trial.settle()
+    goal = goal_holds(performer.parts.world, performer.parts.task.goal)
+    ended = trial.end(conclusion, goal_holds=goal)
+    if interrupted:
+        raise Interrupted(ended)
+    return ended

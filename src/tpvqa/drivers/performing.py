@@ -1,0 +1,184 @@
+"""Doing what a trial asks for, with real planners, worlds and VLMs."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import repeat
+from threading import Event as Flag
+from typing import Any
+
+from tpvqa.drivers.plugged import MALFORMED, called, malformed
+from tpvqa.errors import PluginError
+from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade
+from tpvqa.events.records import answered_record, outcome_record, plan_record
+from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
+from tpvqa.observation import Frame, Observation
+from tpvqa.pddl import Action, Task
+from tpvqa.planning import Planner
+from tpvqa.questions import Question, QuestionBook
+from tpvqa.trial import Act, Pending
+from tpvqa.vlm import VLM, Answer, Reply
+from tpvqa.worlds import Execution, Restorable, World
+from tpvqa.worlds.capabilities import last_outcome_of
+
+
+@dataclass
+class Parts:
+    """What a trial is made of.
+
+    Attributes:
+        person: Answers where a monitor asks a person; None where nobody is there.
+    """
+
+    task: Task
+    book: QuestionBook
+    planner: Planner
+    world: World
+    vlm: VLM
+    person: VLM | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Performed:
+    """What came of a request: for the trial a value, for the log an event."""
+
+    value: Any
+    event: PlanMade | Observed | Answered | Acted
+
+
+class Performer:
+    """Does what a trial asks for, and says what came of it.
+
+    Args:
+        parts: Planner, world, VLM and person.
+        save_frame: Saves a picture; gives its path within the episode.
+        snapshots: Whether events are to hold the states of world and VLM.
+        planning_timeout: Seconds for one call of the planner.
+        action_deadline: Seconds for one action.
+        cancel: Set from another thread to end the trial.
+    """
+
+    def __init__(
+        self,
+        parts: Parts,
+        *,
+        save_frame: Callable[[Frame], str],
+        snapshots: bool = True,
+        planning_timeout: float | None = None,
+        action_deadline: float | None = None,
+        cancel: Flag | None = None,
+    ):
+        self.parts, self._save_frame, self._snapshots = parts, save_frame, snapshots
+        self._planning_timeout, self._action_deadline = planning_timeout, action_deadline
+        self.cancel = cancel or Flag()
+
+    def perform(self, pending: Pending) -> Performed:
+        """Do what is pending.
+
+        Raises:
+            TpvqaError: A plug-in broke, or returned what it must not.
+        """
+        match pending.request:
+            case Look(view):
+                return self.look(view, pending.look)
+            case Ask(questions):
+                return self._ask(pending.seen, questions)
+            case AskPerson(question):
+                return self._ask_person(pending.seen, question)
+            case PlanFrom():
+                return self._plan(pending.request)
+            case Act(action):
+                return self._act(action)
+
+    def look(self, view: str | None, number: int, *, during: bool = False) -> Performed:
+        """Look at the world.
+
+        Args:
+            view: From where; None for the default.
+            number: Of the look.
+            during: Whether an action is running.
+        """
+        world = self.parts.world
+        seen = called(world, "observe", Observation, view)
+        try:
+            seen = replace(seen, look=number)
+            observed = Observed(
+                look=number,
+                view=view,
+                world_time=seen.time,
+                frames=tuple(map(self._frame, seen.frames.values(), repeat(number))),
+                detail=dict(seen.detail),
+                during=during,
+                snapshot=None if during else self._snapshot(world),
+            )
+        except MALFORMED as error:
+            raise malformed(world, "observe", error) from error
+        return Performed(seen, observed)
+
+    def _frame(self, frame: Frame, look: int) -> FrameRecord:
+        return FrameRecord(
+            view=frame.view,
+            file=self._save_frame(replace(frame, id=f"{look:04d}-{frame.view}")),
+            media_type=frame.media_type,
+            source=frame.source,
+        )
+
+    def _plan(self, request: PlanFrom) -> Performed:
+        result = self.parts.planner.plan(
+            self.parts.task, request.state, timeout=self._planning_timeout
+        )
+        made = plan_record(result, request.state, self.parts.book)
+        return Performed(result, made.model_copy(update={"considered": not request.followed}))
+
+    def _ask(self, seen: Observation | None, questions: Sequence[Question]) -> Performed:
+        answers = _answers(self.parts.vlm, seen, questions)
+        return Performed(answers, self._answered(self.parts.vlm, answers))
+
+    def _ask_person(self, seen: Observation | None, question: Question) -> Performed:
+        person = self.parts.person
+        if person is None:
+            answer = Answer(question, Reply.UNKNOWN, text="nobody is there")
+            return Performed(answer, self._answered(self.parts.vlm, [answer]))
+        answers = _answers(person, seen, (question,))
+        return Performed(answers[0], self._answered(person, answers))
+
+    def _answered(self, asked: VLM, answers: Sequence[Answer]) -> Answered:
+        try:
+            return answered_record(answers, self._snapshot(self.parts.vlm))
+        except MALFORMED as error:
+            raise malformed(asked, "ask", error) from error
+
+    def _act(self, action: Action) -> Performed:
+        world = self.parts.world
+        before = last_outcome_of(world)
+        execution = called(
+            world, "execute", Execution, action, deadline=self._action_deadline, cancel=self.cancel
+        )
+        try:
+            outcome = last_outcome_of(world)
+            acted = Acted(
+                report=execution.report,
+                seconds=execution.seconds,
+                message=execution.message,
+                truth=None if outcome is before else outcome_record(outcome),
+                snapshot=self._snapshot(world),
+            )
+        except MALFORMED as error:
+            raise malformed(world, "execute", error) from error
+        return Performed(execution, acted)
+
+    def _snapshot(self, part: object) -> dict[str, Any] | None:
+        if self._snapshots and isinstance(part, Restorable):
+            return dict(part.snapshot())
+        return None
+
+
+def _answers(vlm: VLM, seen: Observation | None, questions: Sequence[Question]) -> list[Answer]:
+    """One answer to each question, in order."""
+    answers = called(vlm, "ask", list, seen, questions)
+    if len(answers) != len(questions) or not all(isinstance(each, Answer) for each in answers):
+        kinds = ", ".join(sorted({type(each).__name__ for each in answers})) or "nothing"
+        raise PluginError(
+            f"{vlm.name} has to give {len(questions)} Answers to {len(questions)} questions, "
+            f"and gave {len(answers)} ({kinds})"
+        )
+    return answers

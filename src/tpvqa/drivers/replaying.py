@@ -1,0 +1,96 @@
+"""The recorded events of an episode, as what came of the requests of the same trial."""
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tpvqa.errors import EpisodeError
+from tpvqa.events import Event, Resumed
+from tpvqa.events.events import Acted, Answered, ListenerDropped, Observed, PlanMade
+from tpvqa.events.records import answers_from, execution_from, observation_from, plan_from
+from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
+from tpvqa.pddl import Task
+from tpvqa.trial import Act, Pending
+
+E = TypeVar("E", bound=Event)
+
+
+class Recording:
+    """Events of an unfinished episode, to be fed to the same trial again.
+
+    Args:
+        events: The episode's, without its end.
+        task: The task.
+        folder: Where the episode's pictures lie.
+
+    Attributes:
+        snapshots: The latest states of "world" and "vlm" that were played back.
+    """
+
+    def __init__(self, events: Sequence[Event], task: Task, folder: Path | None = None):
+        self._events, self._task, self._folder = deque(events), task, folder
+        self._take: Callable[[Event], None] = lambda event: None
+        self.snapshots: dict[str, Mapping[str, Any]] = {}
+
+    def __bool__(self) -> bool:
+        """Whether there is more to be played back."""
+        return bool(self._events)
+
+    def tell(self, take: Callable[[Event], None]) -> None:
+        """Name who is told of every event that is played back."""
+        self._take = take
+
+    def event(self, kind: type[E]) -> E:
+        """Play back an event that the trial says itself.
+
+        Raises:
+            EpisodeError: The log holds another one.
+        """
+        event = self._events.popleft() if self._events else None
+        if not isinstance(event, kind):
+            raise EpisodeError(
+                f"event {getattr(event, 'number', 'after the last')} of the log is "
+                f"{getattr(event, 'kind', 'missing')!r} where this version would write "
+                f"{kind.model_fields['kind'].default!r}: it cannot be resumed, only shown"
+            )
+        if isinstance(event, Observed | Answered | Acted) and event.snapshot is not None:
+            self.snapshots["vlm" if isinstance(event, Answered) else "world"] = event.snapshot
+        self._take(event)
+        while self._events and _beside(self._events[0]):
+            self._take(self._events.popleft())
+        return event
+
+    def resumed(self) -> bool:
+        """Play back that the trial was gone on with here, in a world that may have changed.
+
+        Returns:
+            Whether it was.
+        """
+        if not self._events or not isinstance(self._events[0], Resumed):
+            return False
+        self.event(Resumed)
+        return True
+
+    def value(self, pending: Pending) -> Any:
+        """Play back what came of a request.
+
+        Raises:
+            EpisodeError: The log holds what came of another one.
+        """
+        match pending.request:
+            case Look():
+                return observation_from(self.event(Observed), self._folder)
+            case Ask(questions):
+                return answers_from(self.event(Answered), questions)
+            case AskPerson(question):
+                return answers_from(self.event(Answered), (question,))[0]
+            case PlanFrom():
+                return plan_from(self.event(PlanMade), self._task)
+            case Act():
+                return execution_from(self.event(Acted))
+
+
+def _beside(event: Event) -> bool:
+    """Whether the trial neither says an event nor has asked for it."""
+    return isinstance(event, ListenerDropped) or (isinstance(event, Observed) and event.during)

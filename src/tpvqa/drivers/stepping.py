@@ -1,0 +1,159 @@
+"""A trial one request at a time: for environments, for debugging, and under the other drivers."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tpvqa.drivers.journal import Journal
+from tpvqa.drivers.performing import Performed
+from tpvqa.drivers.replaying import Recording
+from tpvqa.events import Ended, Event, Resumed, TrialState
+from tpvqa.trial import Conclusion, Pending, Result, Steps, Unwatched
+
+Restore = Callable[[Mapping[str, Mapping[str, Any]]], bool]
+"""Puts "world" and "vlm" back into recorded states; whether the world is as the log left it."""
+
+
+class SteppingTrial:
+    """Goes through a trial from request to request; somebody else does what is pending.
+
+    A trial that is gone on with first plays back what was recorded: what is pending then is the
+    first thing that is not in the log.
+
+    Args:
+        steps: The trial.
+        journal: Where its events go.
+        recording: What was recorded of it, if it is gone on with.
+        restore: Called once all of that is played back.
+
+    Attributes:
+        pending: What is to be done now; None once the trial has come to its end.
+        conclusion: How it ended; None before.
+
+    Example:
+        >>> def through(trial, performer):
+        ...     while trial.pending is not None:
+        ...         trial.send(performer.perform(trial.pending))
+        ...     return trial.conclusion
+    """
+
+    def __init__(
+        self,
+        steps: Steps,
+        journal: Journal,
+        *,
+        recording: Recording | None = None,
+        restore: Restore = lambda snapshots: True,
+    ):
+        self._steps, self.journal, self._restore = steps, journal, restore
+        self._recording = recording
+        if recording is not None:
+            recording.tell(journal.take)
+        self._unwatched = False
+        self.pending: Pending | None = None
+        self.conclusion: Conclusion | None = None
+
+    @property
+    def state(self) -> TrialState:
+        """Where the trial stands."""
+        return self.journal.state
+
+    @property
+    def replaying(self) -> bool:
+        """Whether recorded events are still to be played back."""
+        return bool(self._recording)
+
+    def begin(self) -> None:
+        """Go to the first thing that is to be done."""
+        self._advance(None)
+
+    def send(self, performed: Performed) -> None:
+        """Go on with what came of what was pending, to the next thing that is to be done."""
+        self.journal.write(performed.event)
+        self._advance(Result(performed.value, self.state))
+
+    def end(self, conclusion: Conclusion, *, goal_holds: bool | None) -> Ended:
+        """Write the last event.
+
+        Args:
+            conclusion: How the trial ended, or was ended.
+            goal_holds: Whether the goal holds in truth; None where nobody knows.
+        """
+        self.settle()
+        state, believes = self.state, conclusion.believes_goal
+        ended = Ended(
+            because=conclusion.because,
+            message=conclusion.message,
+            believed_goal=believes,
+            goal_holds=goal_holds,
+            completed=None if goal_holds is None else goal_holds and believes,
+            actions=state.actions,
+            questions=state.questions,
+            looks=state.looks,
+            repeats=state.repeats,
+            replans=state.replans,
+        )
+        written = self.journal.write(ended)
+        assert isinstance(written, Ended)
+        return written
+
+    def settle(self) -> None:
+        """Put world and VLM where the log left them, once it has been played back."""
+        if self._recording is not None and not self._recording:
+            self._unwatched = not self._restore(self._recording.snapshots)
+            self._recording = None
+
+    def _advance(self, sent: TrialState | Result | None) -> None:
+        self.pending, unwatched = None, None
+        while True:
+            try:
+                step = self._steps.throw(unwatched) if unwatched else self._steps.send(sent)
+            except StopIteration as end:
+                self.conclusion = end.value
+                return
+            sent, unwatched = None, None
+            if not isinstance(step, Pending):
+                sent = self._say(step)
+                continue
+            try:
+                sent = self._replayed(step)
+            except Unwatched as error:
+                unwatched = error
+            else:
+                if sent is None:
+                    self.pending = step
+                    return
+
+    def _say(self, event: Event) -> TrialState:
+        """Write an event of the trial, or take the recorded one in its place."""
+        if self._recording:
+            self._recording.event(type(event))
+        else:
+            self.settle()
+            self.journal.write(event)
+        return self.state
+
+    def _replayed(self, pending: Pending) -> Result | None:
+        """What came of a request, from the record; None where it is to be done now.
+
+        Raises:
+            Unwatched: The world may have changed since the log was written.
+        """
+        announced, record = pending.announced, self._recording
+        if record:
+            if record.resumed():
+                raise Unwatched(self.state)
+            if announced is not None:
+                record.event(type(announced))
+                announced = None
+                if record.resumed():
+                    raise Unwatched(self.state)
+            if record:
+                return Result(record.value(pending), self.state)
+        self.settle()
+        if self._unwatched:
+            self._unwatched = False
+            self.journal.write(Resumed())
+            raise Unwatched(self.state)
+        if announced is not None:
+            self.journal.write(announced)
+        return None

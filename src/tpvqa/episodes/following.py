@@ -1,0 +1,61 @@
+"""Reading a log while it grows, at no cost to whoever writes it."""
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from tpvqa.episodes.log import LOG, episode_folder, event_of
+from tpvqa.errors import EpisodeError
+from tpvqa.events import Ended, Event
+
+POLL = 0.1
+"""Seconds between two looks at the file."""
+
+
+def follow(
+    folder: Path | str, *, start: int = 0, poll: float = POLL, timeout: float | None = None
+) -> Iterator[Event]:
+    """The events of an episode as they are written, up to its end.
+
+    Any number of readers can follow one log, each from where it likes. An episode that was ended
+    by Ctrl-C and is gone on with is followed again from its event of that number.
+
+    Args:
+        folder: The episode's folder, or its `episode.jsonl`. It may not be there yet.
+        start: Number of the first event that is wanted.
+        poll: Seconds between two looks at the file.
+        timeout: Seconds without an event after which to give up; None for never.
+
+    Raises:
+        EpisodeError: A line is damaged, or nothing came in time.
+    """
+    path = episode_folder(folder) / LOG
+    position, number, quiet = 0, 0, time.monotonic()
+    while True:
+        lines, position = _lines_after(path, position)
+        for line in lines:
+            quiet = time.monotonic()
+            event = event_of(path, number + 1, line)
+            if number >= start:
+                yield event
+                if isinstance(event, Ended):
+                    return
+            number += 1
+        if not lines:
+            if timeout is not None and time.monotonic() - quiet > timeout:
+                raise EpisodeError(f"{path}: no further event within {timeout:g} s")
+            time.sleep(poll)
+
+
+def _lines_after(path: Path, position: int) -> tuple[list[bytes], int]:
+    """The whole lines after a position, and the position after them."""
+    try:
+        with path.open("rb") as file:
+            file.seek(position)
+            data = file.read()
+    except FileNotFoundError:
+        return [], position
+    except OSError as error:
+        raise EpisodeError(f"{path}: cannot be read ({error.strerror})") from error
+    whole, newline, _ = data.rpartition(b"\n")
+    return (whole.split(b"\n") if newline else []), position + len(whole) + len(newline)

@@ -1,0 +1,40 @@
+"""What a monitor declares of itself, or has besides; and the one place that asks."""
+
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+from tpvqa.plugins import class_of
+
+if TYPE_CHECKING:
+    from tpvqa.belief.experience import Experience
+
+
+class NeverAsks:
+    """Declares that a monitor asks nothing: then no VLM needs to be there."""
+
+
+class AsksActions:
+    """Declares that a monitor asks about whole actions, not about facts."""
+
+
+@runtime_checkable
+class Learning(Protocol):
+    """A monitor that learns from trial to trial."""
+
+    @property
+    def experience(self) -> "Experience | None":
+        """What is known now, for the next trial; None where nothing is learned."""
+
+
+def never_asks(monitor: object) -> bool:
+    """Whether a monitor, or a class of monitors, asks nothing."""
+    return issubclass(class_of(monitor), NeverAsks)
+
+
+def asks_actions(monitor: object) -> bool:
+    """Whether a monitor, or a class of monitors, asks about whole actions."""
+    return issubclass(class_of(monitor), AsksActions)
+
+
+def experience_of(monitor: object) -> "Experience | None":
+    """What a monitor has learned; None for one that learns nothing."""
+    return monitor.experience if isinstance(monitor, Learning) else None

@@ -1,0 +1,53 @@
+"""What was seen and answered since the last action."""
+
+from dataclasses import dataclass, field
+
+from tpvqa.belief.evidence import Picture
+from tpvqa.pddl import Action, Atom
+from tpvqa.questions import Question
+from tpvqa.vlm import Reply
+
+
+@dataclass(slots=True, eq=False)
+class Replies:
+    """What was answered to a question since the last action.
+
+    Attributes:
+        atoms: The fact that it is about, and those alike.
+        before: How probable it was before the first answer.
+        replies: The answers.
+    """
+
+    atoms: tuple[Atom, ...]
+    before: float
+    replies: list[Reply] = field(default_factory=list)
+
+
+@dataclass(slots=True, eq=False)
+class Inspection:
+    """What happened since the last action; a new one begins with every action.
+
+    Attributes:
+        action: That action; None before the first.
+        view: Where the next look is taken from.
+        picture: What tells the latest look from others; None before the first.
+        looks: Looks so far.
+        questions: Questions so far.
+        replies: What was answered to each question.
+        about: The questions about sets of facts.
+    """
+
+    action: Action | None = None
+    view: str | None = None
+    picture: Picture | None = None
+    looks: int = 0
+    questions: int = 0
+    replies: dict[str, Replies] = field(default_factory=dict)
+    about: dict[frozenset[Atom], list[Question]] = field(default_factory=dict)
+
+    @property
+    def effects(self) -> frozenset[Atom]:
+        """The facts that the action was to change."""
+        if self.action is None:
+            return frozenset()
+        return frozenset(effect.literal.atom for effect in self.action.effects)

@@ -1,0 +1,33 @@
+"""What a VLM declares of itself, by deriving from one of these; and the one place that asks.
+
+A class says it, not an object: that a VLM is a noise model is known before one is made.
+"""
+
+from tpvqa.plugins import class_of
+
+
+class NoiseModel:
+    """It answers from the truth of a simulated world, for experiments. It is no VLM."""
+
+
+class NeedsPictures:
+    """It looks at pictures, and has nothing to say where there are none."""
+
+
+class FactsOnly:
+    """It answers questions about facts only, never about whole actions."""
+
+
+def is_noise_model(vlm: object) -> bool:
+    """Whether a VLM, or a class of VLMs, is a noise model."""
+    return issubclass(class_of(vlm), NoiseModel)
+
+
+def needs_pictures(vlm: object) -> bool:
+    """Whether a VLM, or a class of VLMs, needs pictures."""
+    return issubclass(class_of(vlm), NeedsPictures)
+
+
+def answers_facts_only(vlm: object) -> bool:
+    """Whether a VLM, or a class of VLMs, answers nothing about whole actions."""
+    return issubclass(class_of(vlm), FactsOnly)

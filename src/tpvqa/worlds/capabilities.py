@@ -1,0 +1,94 @@
+"""What a world can do besides acting and looking, and the one place that asks whether it can.
+
+A world has a capability by having all of its members, but for `Simulated` and `Pictureless`, which
+a class declares by deriving from them: what they say is known before a world is made.
+"""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+from tpvqa.errors import WorldError
+from tpvqa.plugins import class_of
+from tpvqa.vlm import TruthSource
+from tpvqa.worlds.outcome import Outcome
+
+if TYPE_CHECKING:
+    from tpvqa.worlds.simulation import Simulation
+
+
+@runtime_checkable
+class Restorable(Protocol):
+    """It can be put back into an earlier state, so that an episode can be resumed."""
+
+    def snapshot(self) -> Mapping[str, Any]:
+        """The whole state as plain JSON values."""
+
+    def restore(self, snapshot: Mapping[str, Any]) -> None:
+        """Put back what `snapshot` gave."""
+
+
+@runtime_checkable
+class Judged(Protocol):
+    """It knows what is true in it: for judges and noise models, and for nothing else."""
+
+    @property
+    def truth(self) -> TruthSource:
+        """What is true now."""
+
+
+@runtime_checkable
+class Telling(Protocol):
+    """It knows what truly came of its actions."""
+
+    @property
+    def last_outcome(self) -> Outcome | None:
+        """What came of the last action that happened; None before the first."""
+
+
+class Simulated:
+    """Declares that a world is simulated: it is given a `Simulation` to keep its true state in.
+
+    A world that does not derive from this is a robot's: nothing is said about how often it fails.
+
+    Attributes:
+        simulation: Where the true state lies.
+    """
+
+    simulation: "Simulation"
+
+
+class Pictureless:
+    """Declares that a world's observations hold no pictures: only noise models can answer."""
+
+
+def is_simulated(world: object) -> bool:
+    """Whether a world, or a class of worlds, is simulated."""
+    return issubclass(class_of(world), Simulated)
+
+
+def simulation_of(world: object) -> "Simulation":
+    """Where the true state of a simulated world lies.
+
+    Raises:
+        WorldError: The world is not simulated.
+    """
+    if not isinstance(world, Simulated):
+        raise WorldError(
+            f"{type(world).__name__} is not simulated: nobody knows what is true in it"
+        )
+    return world.simulation
+
+
+def has_pictures(world: object) -> bool:
+    """Whether a world, or a class of worlds, can be seen."""
+    return not issubclass(class_of(world), Pictureless)
+
+
+def truth_of(world: object) -> TruthSource | None:
+    """What is true in a world; None in one that does not know."""
+    return world.truth if isinstance(world, Judged) else None
+
+
+def last_outcome_of(world: object) -> Outcome | None:
+    """What truly came of the last action; None where it did not happen or nobody knows."""
+    return world.last_outcome if isinstance(world, Telling) else None

@@ -1,0 +1,50 @@
+"""What truly came of an action, in a simulated world."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from tpvqa.pddl import Atom, State
+
+
+class Failure(StrEnum):
+    """Why an action did not do what its effects say."""
+
+    PRECONDITION = "precondition"  # one did not hold
+    CHANCE = "chance"  # it was possible, and failed
+    SCRIPT = "script"  # a script says so
+
+    @property
+    def said(self) -> str:
+        """In words."""
+        return _SAID[self]
+
+
+_SAID = {
+    Failure.PRECONDITION: "a precondition did not hold",
+    Failure.CHANCE: "the action failed",
+    Failure.SCRIPT: "the script says so",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What truly came of an action.
+
+    Attributes:
+        failure: Why it did not do what its effects say; None where it did, or they held already.
+        undone: The achieved fact that a disturbance ended, if one did.
+        undoing: How the world file says that.
+        before: The true state before.
+        after: The true state after.
+    """
+
+    failure: Failure | None
+    undone: Atom | None
+    undoing: str
+    before: State
+    after: State
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the action did what its effects say, or they held already."""
+        return self.failure is None
