@@ -16,7 +16,7 @@ import statistics
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
 from typing import cast
@@ -26,7 +26,7 @@ from household_problems import household_problem  # type: ignore[import-not-foun
 from tpvqa.assembly import Trial
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.consistency import most_probable
-from tpvqa.config import TrialConfig
+from tpvqa.config import TaskConfig, TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import MissingExtraError
 from tpvqa.monitors import Ask, Monitor, PlanFrom, Step, Verdict
@@ -95,7 +95,7 @@ def belief_steps(config: TrialConfig, episodes: int) -> list[float]:
     """Seconds of every belief step of some episodes."""
     planner, found = Remembering(FastDownward()), list[float]()
     for episode in range(episodes):
-        with Trial(replace(config, episode=episode), planner=planner) as trial:
+        with Trial(config.but(episode=episode), planner=planner) as trial:
             timed = Timed(trial.monitor)
             trial.monitor = timed
             trial.run(MemoryWriter(resumable=False, keep=False))
@@ -170,12 +170,13 @@ def household(folder: Path) -> TrialConfig:
         path.write_text(household_problem(items), encoding="utf-8")
         facts = len(load_task(shipped.domain, path).atoms())
     print(f"household: {items} things, {facts} facts")
-    return TrialConfig(
+    files = TaskConfig(
         domain=str(shipped.domain),
         problem=str(path),
         questions=str(shipped.questions),
         world_file=str(shipped.world),
     )
+    return TrialConfig(task=files, monitor="belief", vlm=VLM, world="symbolic")
 
 
 def told(name: str, seconds: Sequence[float]) -> float:
@@ -207,16 +208,15 @@ def main() -> None:
         found["annotation of a plan, median"] = round(1000 * max(annotating), 4)
         found["check of a plan, median"] = round(1000 * max(checking), 4)
         for name in TASKS:
-            config = replace(common, task=name)
+            config = common.but(task=name)
             told(f"belief step, {name}", belief_steps(config, given.episodes))
-        assert big.domain is not None
-        assert big.problem is not None
-        times = plan_times(load_task(Path(big.domain), Path(big.problem)), 15)
+        assert big.task.domain is not None
+        assert big.task.problem is not None
+        times = plan_times(load_task(Path(big.task.domain), Path(big.task.problem)), 15)
         told(f"annotation of a plan, {FACTS} facts", times[0])
         told(f"check of a plan, {FACTS} facts", times[1])
-        config = replace(big, monitor="belief", vlm=VLM, world="symbolic")
         found["belief step, 500 facts"] = told(
-            f"belief step, {FACTS} facts", belief_steps(config, max(given.episodes // 4, 1))
+            f"belief step, {FACTS} facts", belief_steps(big, max(given.episodes // 4, 1))
         )
     try:
         found[CONSISTENT] = told(CONSISTENT, consistent())

@@ -136,10 +136,9 @@ def trial(task: str, accuracy: float, episode: int) -> dict[str, Beside]:
         world="symbolic",
         vlm=f"oracle:{accuracy}",
         monitor="belief",
-        calibration=calibration,
         episode=episode,
     )
-    with Trial(config) as made:
+    with Trial(config, calibration=calibration) as made:
         assert isinstance(made.monitor, BeliefMonitor)
         model = made.monitor.belief.model
         others = {REFERENCE: Beside(Belief(model, smallest=1e-9, most=10**6))}

@@ -1,12 +1,55 @@
 """Scripted stand-ins for the neighbours of what a test is about."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
+from tpvqa.config import TrialConfig
 from tpvqa.monitors import Ask, Check, Look, Verdict
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom
 from tpvqa.questions import Question
-from tpvqa.vlm import Answer, Reply
+from tpvqa.vlm import Answer, Reply, TruthSource
+from tpvqa.vlm.making import make_vlm
+from tpvqa.worlds import World
+from tpvqa.worlds.capabilities import truth_of
+
+_PARTS = {
+    "failure": "simulation",
+    "disturbance": "simulation",
+    "spontaneous": "simulation",
+    "domain": "task",
+    "problem": "task",
+    "questions": "task",
+    "world_file": "task",
+}
+
+
+def configured(**settings: Any) -> TrialConfig:
+    """A configuration whose settings are named without their parts."""
+    parts: dict[str, Any] = {}
+    for name, value in settings.items():
+        part = _PARTS.get(name)
+        if part is None:
+            key = "name" if name == "task" else "spec"
+            named = name in ("task", "world", "vlm", "monitor", "planner")
+            known = parts.get(name, {})
+            parts[name] = {**known, key: value} if named and isinstance(value, str) else value
+        else:
+            parts.setdefault(part, {})[name] = value
+    return TrialConfig.model_validate(parts)
+
+
+def made(spec: str, **context: object) -> Any:
+    """The VLM of a specification."""
+    return make_vlm(spec, context)[0]
+
+
+def known_truth(world: World) -> TruthSource:
+    """What is true in a simulated world."""
+    truth = truth_of(world)
+    assert truth is not None
+    return truth
+
 
 Answerer = Callable[[Question], Reply]
 

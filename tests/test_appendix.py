@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-from tests.doubles import ScriptedVLM
+from tests.doubles import ScriptedVLM, configured, known_truth
 from tpvqa.assembly import Trial
-from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events.events import Acting, Answered, Asked, Decided, Ended, PlanMade
 from tpvqa.monitors import Decision
@@ -15,19 +14,20 @@ TOYS = Path(__file__).parent / "fixtures" / "toys"
 
 
 def test_the_container_drops_the_plan_starts_again_and_a_failed_pick_is_repeated() -> None:
-    config = TrialConfig(
+    config = configured(
         domain=str(TOYS / "domain.pddl"),
         problem=str(TOYS / "collect.pddl"),
         questions=str(TOYS / "questions.yaml"),
         world=f"scripted:{TOYS / 'script.yaml'}",
         vlm="oracle",
+        monitor="tpvqa",
     )
     writer = MemoryWriter()
     with Trial(config) as trial:
 
         def sees(question: Question) -> Reply:
             assert question.atom is not None
-            return Reply.YES if trial.world.truth.holds(question.atom) else Reply.NO  # type: ignore[attr-defined]
+            return Reply.YES if known_truth(trial.world).holds(question.atom) else Reply.NO
 
         trial.parts.vlm = ScriptedVLM(sees)
         ended = trial.run(writer)

@@ -12,20 +12,20 @@ from pathlib import Path
 
 import pytest
 
-from tests.doubles import ScriptedVLM, replies
+from tests.doubles import ScriptedVLM, configured, replies
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
-from tpvqa.drivers import Interrupted, Parts, run_episode
+from tpvqa.drivers import Interrupted
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import EpisodeError
 from tpvqa.events import Ended, Event, Limits
 from tpvqa.events.events import Acted, Acting
-from tpvqa.monitors.tpvqa import TPVQA
 from tpvqa.planning import Crashed, Planner, TimedOut
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.resuming import config_of, resume
+from tpvqa.resuming import resume, trial_of
 from tpvqa.vlm import Reply
+from tpvqa.worlds.outcome import Failure
 
 
 @pytest.fixture(scope="module")
@@ -36,8 +36,9 @@ def planner() -> Iterator[Planner]:
 
 
 def symbolic(task: str = "serve_breakfast", **changes: object) -> TrialConfig:
-    settings: dict[str, object] = {"task": task, "world": "symbolic", "vlm": "oracle", **changes}
-    return TrialConfig(**settings)  # type: ignore[arg-type]
+    settings: dict[str, object] = {"task": task, "world": "symbolic", "vlm": "oracle"}
+    settings |= {"monitor": "tpvqa", **changes}
+    return configured(**settings)
 
 
 def run(config: TrialConfig, planner: Planner) -> tuple[Ended, list[Event]]:
@@ -80,8 +81,8 @@ def test_another_monitor_meets_the_same_faults(planner: Planner) -> None:
                 attempts[action] += 1
             elif isinstance(event, Acted):
                 assert event.truth is not None
-                if event.truth["reason"] != "a precondition did not hold":
-                    failed[action, attempts[action]] = not event.truth["succeeded"]
+                if event.truth.failure is not Failure.PRECONDITION:
+                    failed[action, attempts[action]] = not event.truth.succeeded
         return failed
 
     shared: list[bool] = []
@@ -162,12 +163,8 @@ def test_a_planner_that_fails_ends_the_trial_with_its_reason(result: object, bec
 def test_no_plan_from_the_corrected_state_is_said(planner: Planner, tmp_path: Path) -> None:
     with Trial(symbolic("clean_dishes"), planner=planner) as trial:
         hopeless = frozenset(atom for atom in trial.task.init if atom.predicate != "near")
-        ended = run_episode(
-            Parts(trial.task.with_init(hopeless), trial.book, planner, trial.world, trial.vlm),
-            TPVQA(),
-            MemoryWriter(),
-            trial.started(),
-        )
+        trial.task = trial.task.with_init(hopeless)
+        ended = trial.run(MemoryWriter())
     assert ended.because == "no plan"
 
 
@@ -197,7 +194,7 @@ def test_a_trial_killed_after_any_event_resumes_to_the_same_end(
         (folder / LOG).write_bytes(b"".join(lines[:cut]) + torn)
         events = read_episode(folder)
         assert len(events) == cut
-        with Trial(config_of(events[0]), planner=planner) as trial:  # type: ignore[arg-type]
+        with trial_of(events[0], planner=planner) as trial:  # type: ignore[arg-type]
             writer = EpisodeWriter(folder, resume=cut, durable=False)
             trial.run(writer, started=events[0], recorded=events, folder=folder)  # type: ignore[arg-type]
             writer.close()

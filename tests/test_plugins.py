@@ -3,16 +3,22 @@
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tpvqa.errors import MissingExtraError, PluginError, UnknownNameError
 from tpvqa.plugins import Kind, load, make, names
+from tpvqa.vlm.making import make_vlm
 from tpvqa.vlm.oracle import Oracle
+from tpvqa.worlds.making import make_world
 
 Install = Callable[..., None]
 
 COLOURS = '''
+from tpvqa.vlm.capabilities import NoiseModel
+from tpvqa.worlds.capabilities import Simulated
+
 class ColourVLM:
     """Says yes to questions about its colour."""
 
@@ -29,8 +35,11 @@ class Curious:
     def __init__(self, truth=None, simulation=None, **rest):
         self.truth, self.simulation, self.rest = truth, simulation, rest
 
-class Noise(Curious):
-    noise_model = True
+class Noise(Curious, NoiseModel):
+    """Declares that it is one."""
+
+class Simulation(Curious, Simulated):
+    """Declares that it is simulated."""
 
 class Demanding:
     def __init__(self, camera):
@@ -74,18 +83,27 @@ def test_a_misspelt_name_gets_a_suggestion() -> None:
         make(Kind.MONITOR, "zzz")
 
 
-def test_the_truth_is_withheld_from_all_but_noise_models_and_worlds(install: Install) -> None:
+def test_the_truth_is_withheld_from_all_that_do_not_declare_what_they_are(
+    install: Install,
+) -> None:
     install("colours", COLOURS, "curious = colours:Curious", "noise = colours:Noise")
     install("more", COLOURS, "curious = more:Curious", group="tpvqa.monitors")
-    install("worlds", COLOURS, "curious = worlds:Curious", group="tpvqa.worlds")
+    points = ("curious = worlds:Curious", "simulated = worlds:Simulation")
+    install("worlds", COLOURS, *points, group="tpvqa.worlds")
     context = {"truth": "the truth", "simulation": "too", "seed": 1}
-    for kind in (Kind.VLM, Kind.MONITOR):
-        plugin = make(kind, "curious", **context)
+    curious: list[Any] = [
+        make_vlm("curious", context)[0],
+        make(Kind.MONITOR, "curious", **context),
+        make_world("curious", context)[0],
+    ]
+    for plugin in curious:
         assert (plugin.truth, plugin.simulation, plugin.rest) == (None, None, {"seed": 1})
-    assert make(Kind.WORLD, "curious", **context).simulation == "too"
-    assert make(Kind.VLM, "noise", **context).truth == "the truth"
+    simulated: Any = make_world("simulated", context)[0]
+    assert (simulated.truth, simulated.simulation) == (None, "too")
+    noise: Any = make_vlm("noise", context)[0]
+    assert noise.truth == "the truth"
     with pytest.raises(PluginError, match="noise model"):
-        make(Kind.VLM, "noise", seed=1)
+        make_vlm("noise", {"seed": 1})
 
 
 def test_arguments_that_a_plug_in_does_not_take_are_an_error(install: Install) -> None:

@@ -9,7 +9,6 @@ from tpvqa.config import TrialConfig
 from tpvqa.drivers import Parts
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.events import Ended, Event, Resumed
-from tpvqa.loop import run_episode
 from tpvqa.monitors import Monitor
 from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.monitors.none import NoMonitor
@@ -67,11 +66,10 @@ def go_on(
     """Begin an episode or go on with it, until it ends or is killed after so many events."""
     recorded = read_episode(folder) if (folder / "episode.jsonl").exists() else []
     config = TrialConfig(task="clean_dishes", world="symbolic", vlm="oracle")
-    with Trial(config, task=room.task, planner=planner) as trial:
-        started = trial.started()
-        book = trial.book
+    trial = Trial(config, task=room.task, planner=planner)
     robot = Robot(room, f"run from event {len(recorded)}")
-    parts = Parts(room.task, book, planner, robot, Oracle(robot.truth))
+    trial.parts = Parts(room.task, trial.book, planner, robot, Oracle(robot.truth))
+    trial.monitor = monitor
     writer = EpisodeWriter(folder, resume=len(recorded), durable=False)
 
     def watch(event: Event) -> None:
@@ -79,9 +77,7 @@ def go_on(
             raise Killed
 
     try:
-        run_episode(
-            parts, monitor, writer, started, recorded=recorded, folder=folder, listeners=[watch]
-        )
+        trial.run(writer, recorded=recorded, folder=folder, listeners=[watch])
     except Killed:
         pass
     finally:

@@ -1,11 +1,11 @@
 """From names to a trial: what is refused, what is chosen, what a resumed trial is."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tests.doubles import configured
 from tpvqa import Trial, TrialConfig
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
@@ -25,7 +25,9 @@ def planner() -> Iterator[Planner]:
 
 
 def symbolic(**changes: object) -> TrialConfig:
-    return replace(TrialConfig(task="clean_dishes", world="symbolic"), **changes)
+    return configured(
+        **{"task": "clean_dishes", "world": "symbolic", "monitor": "tpvqa", **changes}
+    )
 
 
 def test_an_option_that_nothing_takes_is_refused(planner: Planner) -> None:

@@ -61,6 +61,7 @@ class Trial:
         calibration: What the VLM's answers are worth; goes before the file that `config` names,
             and that before the one that is shipped for this VLM.
         experience: What was learned in earlier trials; goes before the file that `config` names.
+        reading: Whether to read the files of these two that `config` names.
         person: Answers where the monitor asks a person.
 
     Example:
@@ -82,6 +83,7 @@ class Trial:
         model: FaultModel | None = None,
         calibration: Calibration | None = None,
         experience: Experience | None = None,
+        reading: bool = True,
         person: VLM | None = None,
     ):
         self.config, self._run = config, False
@@ -91,6 +93,8 @@ class Trial:
             self.task = task or load_task(self.domain, self.problem)
             self.book = book or QuestionBook.load(self.questions, self.task)
             self.rules = rules or load_world_file(self.world_file, self.task)
+            if reading:
+                calibration, experience = self._read(calibration, experience)
             self._make(planner, vlm, model, calibration, experience, person)
         except BaseException:
             self.close()
@@ -121,8 +125,6 @@ class Trial:
         if planner is None:
             planner = make(Kind.PLANNER, config.planner.spec)
             self._closing.append(planner.close)
-        self.calibration: Calibration | None = None
-        self.known: Experience | None = None
         self.world_spec = config.world.spec or (
             "symbolic" if config.task.name is None else "images"
         )
@@ -143,7 +145,8 @@ class Trial:
         self._closing.append(world.close)
         context |= {"truth": truth_of(world), "views": tuple(world.views())}
         self.vlm_spec = config.vlm.spec or ("embedded" if has_pictures(world) else "oracle")
-        self._know(calibration, experience)
+        self.known = experience
+        self.calibration = calibration or shipped_calibration(self.vlm_spec)
         context |= {
             "calibration": self.calibration,
             "experience": None
@@ -181,14 +184,15 @@ class Trial:
             episode=config.episode,
         )
 
-    def _know(self, calibration: Calibration | None, experience: Experience | None) -> None:
+    def _read(
+        self, calibration: Calibration | None, experience: Experience | None
+    ) -> tuple[Calibration | None, Experience | None]:
         files = self.config.monitor
         if calibration is None and files.calibration is not None:
             calibration = Calibration.load(Path(files.calibration))
         if experience is None and files.experience is not None:
             experience = Experience.load(Path(files.experience))
-        self.calibration = calibration or shipped_calibration(self.vlm_spec)
-        self.known = experience
+        return calibration, experience
 
     @property
     def world(self) -> World:

@@ -37,6 +37,7 @@ def trial_of(started: Started, *, person: VLM | None = None, **shared: Any) -> T
         config_of(started),
         calibration=_read(Calibration, started.calibration),
         experience=_read(Experience, started.experience),
+        reading=False,
         person=person,
         **shared,
     )

@@ -37,10 +37,11 @@ from tpvqa.bench.belief.targets import Check, targets
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.ledger import ROWS, Ledger
+from tpvqa.bench.paper import PAPER
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import batches
 from tpvqa.bench.stage import run_batch
-from tpvqa.config import TrialConfig
+from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.errors import BenchError, CalibrationError
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
@@ -171,7 +172,7 @@ def test_published_trials_make_the_same_tables_and_are_not_run_again(
 
 def test_other_settings_need_another_folder(ran: Path) -> None:
     with pytest.raises(BenchError, match=r"other settings \(seed 0 there, 1 here\)"):
-        run_belief_bench(bench(common=TrialConfig(seed=1)), ran)
+        run_belief_bench(bench(common=PAPER.but(seed=1)), ran)
 
 
 def test_calibrations_are_learnt_under_another_seed(
@@ -212,7 +213,7 @@ def test_recorded_vlms_are_calibrated_on_the_other_half() -> None:
 def test_a_condition_sets_the_true_rates_and_is_kept(tmp_path: Path) -> None:
     cell = replace(CELL, monitor="tp", condition="failure=1,spontaneous=0.05")
     config = cell.config(TrialConfig(), 7)
-    assert (config.failure, config.disturbance, config.spontaneous) == (1.0, 0.25, 0.05)
+    assert config.simulation == SimulationConfig(failure=1.0, spontaneous=0.05)
     (row,) = run_batch(cell, TrialConfig(), (0,))
     assert row["completed"] is False
     with_ledger = Ledger(tmp_path, {})
@@ -226,15 +227,17 @@ def test_a_condition_sets_the_true_rates_and_is_kept(tmp_path: Path) -> None:
 
 def test_what_is_learned_is_carried_through_a_run_of_episodes_and_no_further() -> None:
     calibration = Calibration.default()
-    told = TrialConfig(calibration=calibration)
+    common = TrialConfig()
     plain = replace(CELL, vlm="oracle:0.7")
-    alone = [row["trust"] for row in run_batch(plain, told, tuple(range(4)))]
-    carrying = run_batch(replace(plain, condition="carried=2"), told, tuple(range(4)))
+    alone = [row["trust"] for row in run_batch(plain, common, tuple(range(4)), calibration)]
+    cell = replace(plain, condition="carried=2")
+    carrying = run_batch(cell, common, tuple(range(4)), calibration)
     carried = [row["trust"] for row in carrying]
     assert (carried[0], carried[2]) == (alone[0], alone[2])
     assert carried[1] != alone[1]
     assert carried[3] != alone[3]
-    assert [row["trust"] for row in run_batch(replace(CELL, monitor="tpvqa"), told, (0,))] == [None]
+    (row,) = run_batch(replace(CELL, monitor="tpvqa"), common, (0,))
+    assert row["trust"] is None
 
 
 def test_a_run_of_episodes_is_one_batch_and_is_begun_anew(tmp_path: Path) -> None:

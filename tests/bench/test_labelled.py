@@ -2,11 +2,11 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tests.doubles import configured
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.labelled_episodes import label_episodes
@@ -22,15 +22,20 @@ from tpvqa.questions import Question, Way
 from tpvqa.vlm import Answer, Reply
 from tpvqa.worlds.images.manifest import Manifest, PictureSet, load_pictures
 
-CONFIG = TrialConfig(
-    task="serve_breakfast", world="symbolic", vlm="oracle:0.8", spontaneous=0.2, seed=2
+CONFIG = configured(
+    monitor="tpvqa",
+    task="serve_breakfast",
+    world="symbolic",
+    vlm="oracle:0.8",
+    spontaneous=0.2,
+    seed=2,
 )
 
 
 def recorded(config: TrialConfig, folder: Path) -> list[LabelledAnswer]:
     """Run a trial into a folder: its answers, labelled as it ran."""
-    assert config.task is not None
-    here: Stage = stage(config.task)
+    assert config.task.name is not None
+    here: Stage = stage(config.task.name)
     with here.trial(config) as trial:
         labeller = Labeller(true_simulation(trial), here.actions, str(folder))
         writer = EpisodeWriter(folder, durable=False)
@@ -44,7 +49,7 @@ def recorded(config: TrialConfig, folder: Path) -> list[LabelledAnswer]:
 def test_a_log_gives_the_labels_that_the_running_trial_gave(
     monitor: str, episode: int, tmp_path: Path
 ) -> None:
-    live = recorded(replace(CONFIG, monitor=monitor, episode=episode), tmp_path / "e")
+    live = recorded(CONFIG.but(monitor=monitor, episode=episode), tmp_path / "e")
     again = label_episodes([tmp_path / "e"])
     assert again.vlm == "oracle:0.8"
     assert again.rows == live
@@ -53,9 +58,9 @@ def test_a_log_gives_the_labels_that_the_running_trial_gave(
 
 def test_labels_are_the_truth_at_the_time_of_asking(tmp_path: Path) -> None:
     """An oracle that never errs agrees with every label, through failures and disturbances."""
-    config = replace(CONFIG, vlm="oracle", monitor="palmevqa")
+    config = CONFIG.but(vlm="oracle", monitor="palmevqa")
     for episode in range(4):
-        rows = recorded(replace(config, episode=episode), tmp_path / str(episode))
+        rows = recorded(config.but(episode=episode), tmp_path / str(episode))
         assert rows
         assert all((row.reply is Reply.YES) == row.truth for row in rows)
 
@@ -84,7 +89,7 @@ def test_one_action_without_truth_is_enough_to_refuse_it(tmp_path: Path) -> None
 
 def test_two_vlms_do_not_mix(tmp_path: Path) -> None:
     recorded(CONFIG, tmp_path / "a")
-    recorded(replace(CONFIG, vlm="oracle:0.9"), tmp_path / "b")
+    recorded(CONFIG.but(vlm="oracle:0.9"), tmp_path / "b")
     with pytest.raises(CalibrationError, match=r"oracle:0\.9 answered in it, not oracle:0\.8"):
         label_episodes([tmp_path / "a", tmp_path / "b"])
 

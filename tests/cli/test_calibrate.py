@@ -13,6 +13,7 @@ from tpvqa.belief.experience import Experience
 from tpvqa.episodes import read_episode
 from tpvqa.events.events import Acted
 from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
+from tpvqa.worlds.outcome import Failure
 
 TRIALS = ["--trials", "10", "--tasks", "clean_dishes", "--vlm", "oracle:0.9:0.4"]
 
@@ -73,12 +74,12 @@ def test_recorded_episodes_say_how_often_actions_fail(tpvqa: Run) -> None:
     assert known.trials == 4
     failures, successes = known.failure[0] - 3, known.failure[1] - 9
     told = [
-        event.truth["reason"]
+        event.truth.failure
         for folder in folders
         for event in read_episode(folder)
         if isinstance(event, Acted) and event.truth is not None
     ]
-    assert failures == told.count("the action failed")
+    assert failures == told.count(Failure.CHANCE)
     assert 0.35 < failures / (failures + successes) < 0.8
     code, _, err = tpvqa("calibrate", "--trials", 2, "--experience", "known.json")
     assert code == 2

@@ -2,11 +2,13 @@
 
 from pathlib import Path
 
-from tpvqa.events import Event, Limits, Started
-from tpvqa.events.events import Acted, Acting, ActionRecord, Decided, Ended, PlanMade
+from tpvqa.config import TrialConfig
+from tpvqa.events import Event, Started
+from tpvqa.events.events import Acted, Acting, ActionRecord, Decided, Ended, OutcomeRecord, PlanMade
 from tpvqa.monitors import Decision
 from tpvqa.tasks import find_task
 from tpvqa.worlds import Report
+from tpvqa.worlds.outcome import Failure
 
 FLIPPED = "(near bread)"
 DOUBTED = "(in_hand bread left)"
@@ -35,9 +37,7 @@ def started(*, domain: str | None = None) -> Started:
         vlm="oracle",
         world="symbolic",
         planner="fast-downward",
-        seed=0,
-        episode=0,
-        limits=Limits(),
+        config=TrialConfig(task="serve_breakfast"),
     )
 
 
@@ -68,14 +68,7 @@ def done(
     step: int, attempt: int, *, added: tuple[str, ...] = (), removed: tuple[str, ...] = ()
 ) -> list[Event]:
     """An action with what truly came of it."""
-    truth = {
-        "succeeded": bool(added),
-        "reason": "" if added else "the action failed",
-        "undone": None,
-        "undoing": "",
-        "added": added,
-        "removed": removed,
-    }
+    truth = OutcomeRecord(failure=None if added else Failure.CHANCE, added=added, removed=removed)
     return [
         Acting(step=step, action=(FIND, PICK)[step], attempt=attempt),
         Acted(report=Report.DONE, seconds=0.0, truth=truth),

@@ -1,14 +1,19 @@
 """The belief monitor, at the seam a user touches: whole trials."""
 
 import re
+import sys
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
+from tests.doubles import configured, known_truth
 from tpvqa.assembly import Trial
-from tpvqa.belief import Calibration, Group, Rates, faults
+from tpvqa.belief import Calibration, Group, Rates
 from tpvqa.belief.calibration import Curve
+from tpvqa.belief.faults import FaultModel
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import PluginError
@@ -21,9 +26,11 @@ from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
 from tpvqa.questions import Question
+from tpvqa.tasks import find_task
 from tpvqa.vlm import Answer, Reply
 from tpvqa.vlm.protocol import TruthSource
 from tpvqa.worlds.symbolic import SymbolicWorld
+from tpvqa.worlds.world_file import load_world_file
 
 
 @pytest.fixture(scope="module")
@@ -54,13 +61,18 @@ def run(
         "task": "serve_breakfast",
         "world": "symbolic",
         "vlm": f"oracle:{accuracy}",
-        "calibration": right_in(accuracy),
         "monitor": monitor,
+        "limits": Limits(actions=60),
         **changes,
+    }
+    told: dict[str, Any] = {
+        "calibration": settings.pop("calibration", right_in(accuracy)),
+        "experience": settings.pop("experience", None),
+        "model": settings.pop("model", None),
     }
     writer = MemoryWriter()
     task = TASK if settings["task"] == "serve_breakfast" else None
-    with Trial(TrialConfig(**settings), planner=planner, task=task) as trial:  # type: ignore[arg-type]
+    with Trial(configured(**settings), planner=planner, task=task, **told) as trial:
         return trial.run(writer), writer.events, trial
 
 
@@ -82,17 +94,29 @@ def test_the_same_seed_gives_the_same_trial(planner: Planner) -> None:
     assert story(one) != story(run(planner, seed=5)[1])
 
 
-def test_what_is_worked_out_is_shared_up_to_a_limit_and_decides_nothing(
-    planner: Planner, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    shared = [run(planner, accuracy=0.7, episode=n) for n in range(4)]
-    models = [trial.monitor.belief.model for _, _, trial in shared]  # type: ignore[attr-defined]
-    assert all(model is models[0] for model in models)
-    monkeypatch.setattr(faults, "MOST_FACTS", len(TASK.init))
+def test_trials_that_share_an_action_model_decide_as_those_that_do_not(planner: Planner) -> None:
+    model = FaultModel(TASK, load_world_file(find_task("serve_breakfast").world, TASK))
+    shared = [run(planner, accuracy=0.7, episode=n, model=model) for n in range(4)]
+    assert all(trial.monitor.belief.model is model for _, _, trial in shared)  # type: ignore[attr-defined]
     alone = [run(planner, accuracy=0.7, episode=n) for n in range(4)]
     models = [trial.monitor.belief.model for _, _, trial in alone]  # type: ignore[attr-defined]
-    assert len({id(model) for model in models}) == len(models)
+    assert len({id(each) for each in models}) == len(models)
     assert [story(events) for _, events, _ in alone] == [story(events) for _, events, _ in shared]
+
+
+def test_trials_in_several_threads_decide_as_trials_alone(planner: Planner) -> None:
+    def decided(episode: int) -> list[dict[str, object]]:
+        return story(run(planner, accuracy=0.7, episode=episode)[1])
+
+    alone = [decided(episode) for episode in range(8)]
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)  # so that threads take turns often
+    try:
+        with ThreadPoolExecutor(8) as threads:
+            together = list(threads.map(decided, range(8)))
+    finally:
+        sys.setswitchinterval(before)
+    assert together == alone
 
 
 def test_dear_questions_are_not_asked_and_cheap_ones_are(planner: Planner) -> None:
@@ -247,11 +271,11 @@ def test_a_person_who_answers_is_asked_instead_of_a_poor_vlm(planner: Planner) -
             task="serve_breakfast",
             world="symbolic",
             vlm="oracle:0.6",
-            calibration=right_in(0.6),
             monitor=f"belief:person={person}",
         )
-        with Trial(config, planner=planner, task=TASK, person=bystander) as trial:
-            bystander.truth = trial.world.truth  # type: ignore[attr-defined]
+        told = right_in(0.6)
+        with Trial(config, planner=planner, task=TASK, person=bystander, calibration=told) as trial:
+            bystander.truth = known_truth(trial.world)
             end = trial.run(writer)
         asked = sum(isinstance(event, Asked) and event.person for event in writer.events)
         return end, asked
@@ -295,16 +319,15 @@ class FromTheSide:
 
 def test_what_cannot_be_seen_from_one_view_is_asked_from_another(planner: Planner) -> None:
     made: list[Trial] = []
-    config = TrialConfig(
-        task="serve_breakfast", world="symbolic", vlm="oracle", calibration=right_in(0.95)
-    )
+    config = TrialConfig(task="serve_breakfast", world="symbolic", vlm="oracle")
     for views in (1, 2):
         simulation = Trial(config, planner=planner, task=TASK).simulation
+        assert simulation is not None
         world = TwoViews(simulation)
         seen = world.views()[:views]
         monitor = BeliefMonitor(TASK, calibration=right_in(0.95), views=seen)
         trial = Trial(config, planner=planner, task=TASK)
-        trial.monitor, trial.world = monitor, world
+        trial.monitor = monitor
         trial.parts = replace(trial.parts, world=world, vlm=FromTheSide(world.truth))
         made.append(trial)
     blind, seeing = (trial.run(MemoryWriter(resumable=False)) for trial in made)
@@ -349,7 +372,7 @@ def test_each_part_can_be_left_out(planner: Planner, part: str) -> None:
 def test_a_vlm_that_never_answers_keeps_nothing_going(planner: Planner, spec: str) -> None:
     config = TrialConfig(task="clean_dishes", world="symbolic", vlm="oracle", monitor=spec)
     with Trial(config, planner=planner) as trial:
-        silent = FromTheSide(trial.world.truth)  # type: ignore[attr-defined]
+        silent = FromTheSide(known_truth(trial.world))
         trial.parts = replace(trial.parts, vlm=silent)
         ended = trial.run(MemoryWriter(resumable=False))
     assert ended.actions > 0
@@ -382,16 +405,12 @@ def test_it_learns_from_trial_to_trial_that_the_vlm_is_worse_than_it_was_told(
 
 def test_what_is_found_done_is_not_done_again(planner: Planner) -> None:
     """Luck: the fridge is open though nobody opened it, and an answer says so."""
-    config = TrialConfig(
-        task="eat_apple",
-        world="symbolic",
-        vlm="oracle:0.95",
-        failure=0.0,
-        monitor="belief",
-        calibration=right_in(0.95),
+    config = configured(
+        task="eat_apple", world="symbolic", vlm="oracle:0.95", failure=0.0, monitor="belief"
     )
-    with Trial(config, planner=planner) as trial:
+    with Trial(config, planner=planner, calibration=right_in(0.95)) as trial:
         assert isinstance(trial.monitor, BeliefMonitor)
+        assert trial.simulation is not None
         opening = trial.task.action("open", ["fridge"])
         trial.simulation.state = trial.task.apply(trial.task.init, opening)
         (opened,) = trial.simulation.state - trial.task.init

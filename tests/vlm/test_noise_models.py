@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
+from tests.doubles import made
 from tpvqa.errors import PluginError, UnknownNameError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, Task, load_task
-from tpvqa.plugins import Kind, make
 from tpvqa.questions import Question, QuestionBook, Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM, Reply
@@ -56,7 +56,7 @@ def asked(vlm: VLM, question: Question, looks: int = LOOKS) -> list[tuple[Reply,
 def test_the_papers_table_is_met_in_every_way_of_asking(
     yes: bool, task: Task, book: QuestionBook
 ) -> None:
-    vlm = make(Kind.VLM, "paper-table", truth=Truth(yes=yes), task=task)
+    vlm = made("paper-table", truth=Truth(yes=yes), task=task)
     on = Literal(Atom("on", ("bread", "plate")))
     place = task.action("place", ("bread", "plate", "left"))
     for question, row in (
@@ -73,10 +73,10 @@ def test_the_papers_table_is_met_in_every_way_of_asking(
 
 
 def test_the_table_has_no_column_for_other_tasks(task: Task) -> None:
-    other = make(Kind.VLM, "paper-table", truth=Truth(yes=True), task=task)
+    other = made("paper-table", truth=Truth(yes=True), task=task)
     assert other.name == "paper-table"
     with pytest.raises(PluginError, match="no column"):
-        make(Kind.VLM, "paper-table", truth=Truth(yes=True), task=replace(task, name="mow"))
+        made("paper-table", truth=Truth(yes=True), task=replace(task, name="mow"))
 
 
 @pytest.mark.parametrize("model", ["qwen2.5-vl-72b", "internvl3-8b", "gemma-3-12b"])
@@ -84,7 +84,7 @@ def test_the_table_has_no_column_for_other_tasks(task: Task) -> None:
 def test_a_recorded_model_errs_as_often_as_it_did(
     model: str, yes: bool, task: Task, book: QuestionBook
 ) -> None:
-    vlm = make(Kind.VLM, f"recorded:{model}", truth=Truth(yes=yes), task=task)
+    vlm = made(f"recorded:{model}", truth=Truth(yes=yes), task=task)
     question = book.fact(Literal(Atom("in_hand", ("bread", "left"))), way=Way.PRECONDITION)
     told = recordings(model, "igibson").of("precondition", "holding", truth=yes)
     expected = sum(r.count for r in told if r.yes) / sum(r.count for r in told)
@@ -98,7 +98,7 @@ def test_a_recorded_model_errs_as_often_as_it_did(
 def test_the_same_question_about_the_same_look_gets_the_same_answer(
     task: Task, book: QuestionBook
 ) -> None:
-    vlm = make(Kind.VLM, "recorded:internvl3-8b", truth=Truth(yes=True), task=task)
+    vlm = made("recorded:internvl3-8b", truth=Truth(yes=True), task=task)
     question = book.fact(Literal(Atom("near", ("bread",))), way=Way.EFFECT)
     for look in range(20):
         answers = vlm.ask(Observation(look, 0.0), [question, question])
@@ -106,7 +106,7 @@ def test_the_same_question_about_the_same_look_gets_the_same_answer(
 
 
 def test_about_whole_actions_nothing_was_recorded(task: Task, book: QuestionBook) -> None:
-    vlm = make(Kind.VLM, "recorded:internvl3-8b", truth=Truth(yes=True), task=task)
+    vlm = made("recorded:internvl3-8b", truth=Truth(yes=True), task=task)
     action = task.action("turn_on", ("tv",))
     questions = [book.possible(action), book.successful(action), book.did(action)]
     answers = vlm.ask(Observation(0, 0.0), questions)
@@ -116,12 +116,12 @@ def test_about_whole_actions_nothing_was_recorded(task: Task, book: QuestionBook
 @pytest.mark.parametrize("spec", ["recorded", "recorded:internvl3-8b:2", "paper-table:x"])
 def test_arguments_that_mean_nothing(spec: str, task: Task) -> None:
     with pytest.raises(PluginError):
-        make(Kind.VLM, spec, truth=Truth(yes=True), task=task)
+        made(spec, truth=Truth(yes=True), task=task)
 
 
 def test_an_unknown_model_is_named_with_the_nearest(task: Task) -> None:
     with pytest.raises(UnknownNameError, match="Did you mean 'internvl3-8b'"):
-        make(Kind.VLM, "recorded:internvl3", truth=Truth(yes=True), task=task)
+        made("recorded:internvl3", truth=Truth(yes=True), task=task)
 
 
 def test_blocksworld_and_igibson_are_never_pooled() -> None:

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.doubles import made
 from tpvqa.errors import EpisodeError, PluginError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Conjunction
-from tpvqa.plugins import Kind, make
 from tpvqa.questions import Question, Way
 from tpvqa.vlm import VLM, Reply, TruthSource
 from tpvqa.vlm.oracle import Oracle
@@ -191,7 +191,7 @@ def test_a_damaged_snapshot_is_an_error(damaged: dict[str, object]) -> None:
     ],
 )
 def test_its_specifications(spec: str, accuracy: float, rho: float, name: str) -> None:
-    oracle = make(Kind.VLM, spec, truth=Truth(), seed=1, episode=2, base_url=None)
+    oracle = made(spec, truth=Truth(), seed=1, episode=2, base_url=None)
     assert (oracle.accuracy, oracle.rho, oracle.name) == (accuracy, rho, name)
 
 
@@ -200,9 +200,9 @@ def test_its_specifications(spec: str, accuracy: float, rho: float, name: str) -
 )
 def test_a_wrong_specification_says_what_to_write(spec: str) -> None:
     with pytest.raises(PluginError, match="oracle:ACCURACY"):
-        make(Kind.VLM, spec, truth=Truth())
+        made(spec, truth=Truth())
 
 
 def test_without_a_simulated_world_there_is_no_truth() -> None:
     with pytest.raises(PluginError, match="noise model"):
-        make(Kind.VLM, "oracle:0.8")
+        made("oracle:0.8")

@@ -22,6 +22,7 @@ from tpvqa.plugins import Kind, load, load_spec, make
 from tpvqa.questions import Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm.capabilities import answers_facts_only, is_noise_model
+from tpvqa.vlm.making import make_vlm
 from tpvqa.vlm.metrics import measure
 from tpvqa.vlm.paper_table import PAPER_TABLE
 
@@ -169,7 +170,7 @@ def _results(bench: PaperBench, ledger: Ledger) -> Results:
 
 def balanced_lines(vlm_spec: str, tasks: Sequence[str], common: TrialConfig) -> list[AnswerLine]:
     """How right a VLM is on the balanced set of each task."""
-    vlm = make(Kind.VLM, vlm_spec, **common.plugin_options())
+    vlm, _ = make_vlm(vlm_spec, common.plugin_options())
     planner = FastDownward()
     lines = []
     try:

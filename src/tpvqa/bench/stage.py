@@ -68,7 +68,11 @@ class Stage:
             self._model = FaultModel(self.task, self.rules)
         return self._model
 
-    def run(
+    def run(self, cell: Cell, common: TrialConfig, episode: int) -> EpisodeRow:
+        """Run one episode. Whatever goes wrong in it is in its row, and the rest go on."""
+        return self.run_learning(cell, common, episode)[0]
+
+    def run_learning(
         self,
         cell: Cell,
         common: TrialConfig,
@@ -77,7 +81,7 @@ class Stage:
         calibration: Calibration | None = None,
         experience: Experience | None = None,
     ) -> tuple[EpisodeRow, Experience | None]:
-        """Run one episode. Whatever goes wrong in it is in its row, and the rest go on.
+        """The same with what the monitor is told, and what it has learned.
 
         Args:
             cell: Which.
@@ -215,6 +219,8 @@ def run_batch(
     learned: Experience | None = None
     for episode in episodes:
         known = learned if carried and episode % carried else None
-        row, learned = here.run(cell, common, episode, calibration=calibration, experience=known)
+        row, learned = here.run_learning(
+            cell, common, episode, calibration=calibration, experience=known
+        )
         rows.append(row.model_dump())
     return rows

@@ -140,11 +140,11 @@ def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list
 
 def _from_pictures(vlm: str, where: str, *, hidden: bool) -> tuple[str, "list[LabelledAnswer]"]:
     from tpvqa.bench.labelled_pictures import ask_pictures
-    from tpvqa.plugins import Kind, make
+    from tpvqa.vlm.making import make_vlm
     from tpvqa.worlds.images.manifest import load_pictures
 
     opened = load_pictures(None if where == "shipped" else Path(where))
-    asked = make(Kind.VLM, vlm)
+    asked, _ = make_vlm(vlm, {})
     with _progress("pictures", len(opened.manifest.pictures)) as done:
         return asked.name, ask_pictures(asked, opened, hidden=hidden, done=done)
 

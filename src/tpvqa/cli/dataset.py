@@ -185,15 +185,15 @@ def score(
     false positive and negative rate, AUROC, calibration error, hard negatives, and how often
     "cannot see" is said rightly.
     """
-    from tpvqa.plugins import Kind, make
     from tpvqa.training import scoring
     from tpvqa.training.asking import Asking
     from tpvqa.training.picture_cases import picture_cases
     from tpvqa.training.recipe import Recipe
+    from tpvqa.vlm.making import make_vlm
     from tpvqa.worlds.images.manifest import load_pictures
 
     asking = Asking.about(Recipe.read().task)
-    asked = make(Kind.VLM, vlm, **({} if base_url is None else {"base_url": base_url}))
+    asked, _ = make_vlm(vlm, {} if base_url is None else {"base_url": base_url})
     cases = picture_cases(load_pictures(pictures))
     rows = list(scoring.score(asked, cases, asking, every_wording=every_wording))
     if as_json:

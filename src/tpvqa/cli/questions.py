@@ -92,17 +92,18 @@ def ask(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Ask about a picture: prints each answer and P(yes)."""
-    from tpvqa.plugins import Kind, make
     from tpvqa.questions import Question, Way
+    from tpvqa.vlm.making import make_vlm
     from tpvqa.vlm.pictures import observe_file
 
     observation = observe_file(image)
-    model = make(Kind.VLM, vlm, base_url=base_url)
+    model, _ = make_vlm(vlm, {"base_url": base_url})
     asked = [Question(text, Way.PRECONDITION) for text in question]
     try:
         answers = model.ask(observation, asked)
     finally:
-        getattr(model, "close", lambda: None)()
+        if isinstance(model, Closing):
+            model.close()
     if as_json:
         rows = [_answer_as_json(answer) for answer in answers]
         print(json.dumps({"image": str(image), "vlm": model.name, "answers": rows}, indent=1))

@@ -5,7 +5,7 @@ that, `tpvqa config` prints it, `started` stores it, and `resume` and the bench 
 """
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
@@ -191,6 +191,23 @@ class TrialConfig(_Part):
     options: dict[str, Any] = setting(
         "--option", "NAME=VALUE for plug-ins of your own; may be given several times.", {}
     )
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            task: TaskConfig | str = ...,
+            world: WorldConfig | str = ...,
+            vlm: VLMConfig | str = ...,
+            monitor: MonitorConfig | Mapping[str, Any] | str = ...,
+            planner: PlannerConfig | str = ...,
+            limits: Limits = ...,
+            simulation: SimulationConfig | None = ...,
+            seed: int = ...,
+            episode: int = ...,
+            options: dict[str, Any] = ...,
+        ) -> None: ...
 
     def but(self, **changes: Any) -> Self:
         """The same with some parts or settings changed.
