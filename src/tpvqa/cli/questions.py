@@ -92,6 +92,7 @@ def ask(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Ask about a picture: prints each answer and P(yes)."""
+    from tpvqa.plugins import Closing
     from tpvqa.questions import Question, Way
     from tpvqa.vlm.making import make_vlm
     from tpvqa.vlm.pictures import observe_file
