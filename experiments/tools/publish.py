@@ -14,13 +14,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tpvqa.bench.belief import Part
-from tpvqa.bench.belief.parts import Extent
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import ROWS, SETTINGS, Ledger, merged
 from tpvqa.bench.published import read_published, write_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError, TpvqaError
+from tpvqa_experiments.belief import Part
+from tpvqa_experiments.belief.parts import Extent
 
 
 def main() -> None:

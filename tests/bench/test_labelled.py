@@ -20,7 +20,7 @@ from tpvqa.pddl import Atom
 from tpvqa.questions import Question, Way
 from tpvqa.trial import TrialConfig
 from tpvqa.vlm import Answer, Reply
-from tpvqa.worlds.images.manifest import Manifest, PictureSet, load_pictures
+from tpvqa_household.images.manifest import Manifest, PictureSet, load_pictures
 
 CONFIG = TrialConfig(
     task="serve_breakfast", world="symbolic", vlm="oracle:0.8", spontaneous=0.2, seed=2

@@ -12,28 +12,6 @@ from typing import Any
 import pytest
 
 from tpvqa.belief.calibration import Calibration
-from tpvqa.bench.belief import BeliefBench, BeliefResults, Part, run_belief_bench
-from tpvqa.bench.belief.calibrations import (
-    OTHER_SEEDS,
-    Source,
-    by_replies,
-    calibrations,
-    source_of,
-)
-from tpvqa.bench.belief.comparison import Lies, against, together
-from tpvqa.bench.belief.learning import BLOCK, after_learning, blocks, episodes_until_learned
-from tpvqa.bench.belief.markdown import results_markdown, targets_markdown
-from tpvqa.bench.belief.parts import (
-    CHAIN,
-    KNOWING,
-    LEARNING,
-    RIVALS,
-    VOTES,
-    WRONG_VLM,
-    Extent,
-)
-from tpvqa.bench.belief.resampling import difference, ratio
-from tpvqa.bench.belief.targets import Check, targets
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.ledger import ROWS, Ledger
@@ -44,6 +22,28 @@ from tpvqa.errors import BenchError, CalibrationError
 from tpvqa.questions import Way
 from tpvqa.trial import TrialConfig
 from tpvqa.vlm import Reply
+from tpvqa_experiments.belief import BeliefBench, BeliefResults, Part, run_belief_bench
+from tpvqa_experiments.belief.calibrations import (
+    OTHER_SEEDS,
+    Source,
+    by_replies,
+    calibrations,
+    source_of,
+)
+from tpvqa_experiments.belief.comparison import Lies, against, together
+from tpvqa_experiments.belief.learning import BLOCK, after_learning, blocks, episodes_until_learned
+from tpvqa_experiments.belief.markdown import results_markdown, targets_markdown
+from tpvqa_experiments.belief.parts import (
+    CHAIN,
+    KNOWING,
+    LEARNING,
+    RIVALS,
+    VOTES,
+    WRONG_VLM,
+    Extent,
+)
+from tpvqa_experiments.belief.resampling import difference, ratio
+from tpvqa_experiments.belief.targets import Check, targets
 
 CELL = Cell("clean_dishes", "belief", "oracle:0.8", "symbolic")
 SMALL = Extent(
@@ -183,7 +183,7 @@ def test_calibrations_are_learnt_under_another_seed(
         seeds.append(common.seed)
         return gather(cell, common, episodes)
 
-    monkeypatch.setattr("tpvqa.bench.belief.calibrations.gather", noted)
+    monkeypatch.setattr("tpvqa_experiments.belief.calibrations.gather", noted)
     source = Source("clean_dishes", "oracle:0.7", "symbolic")
     found = calibrations(tmp_path, [source], TrialConfig(seed=5), 3)
     assert seeds == [5 + OTHER_SEEDS]

@@ -19,9 +19,9 @@ from tpvqa.questions import Question, QuestionBook, Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM, Reply
 from tpvqa.vlm.metrics import Scored
-from tpvqa.worlds.images.manifest import OUTCOMES, Picture, PictureSet, load_pictures
-from tpvqa.worlds.images.reachable import kind, say_kind
-from tpvqa.worlds.images.visible import mirrored
+from tpvqa_household.images.manifest import OUTCOMES, Picture, PictureSet, load_pictures
+from tpvqa_household.images.reachable import kind, say_kind
+from tpvqa_household.images.visible import mirrored
 
 OBSERVATIONS = 10
 """Of every outcome of every action."""

@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tpvqa.bench.balanced import Judged, balanced
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.curve import curve_cells, curves
 from tpvqa.bench.ledger import Ledger
@@ -15,13 +14,15 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.settings import common_settings
 from tpvqa.bench.tables import write_tables
+from tpvqa.defaults import looks
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.plugins import Kind, load, make
 from tpvqa.questions import Way
 from tpvqa.tasks import find_task
 from tpvqa.trial import TrialConfig
 from tpvqa.vlm.metrics import measure
-from tpvqa.vlm.paper_table import PAPER_TABLE
+from tpvqa_experiments.balanced import Judged, balanced
+from tpvqa_experiments.paper_table import PAPER_TABLE
 
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 MONITORS = ("tpvqa", "effectvqa", "tp", "palmevqa", "successvqa")
@@ -80,11 +81,6 @@ class PaperBench:
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""
         return common_settings(self.common)
-
-
-def looks(vlm: str) -> bool:
-    """Whether a VLM looks at pictures; noise models do not."""
-    return not getattr(load(Kind.VLM, vlm.partition(":")[0]), "noise_model", False)
 
 
 def can_answer(vlm: str, monitor: str) -> bool:
@@ -159,6 +155,7 @@ def _results(bench: PaperBench, ledger: Ledger) -> Results:
         rows=rows,
         balanced=lines,
         curves=curves(curve, bench.tasks, bench.monitors) if bench.curve else {},
+        published=PAPER_TABLE,
     )
 
 

@@ -13,13 +13,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from tests.worlds.images.sources.images_server import Act, ImagesServer, picture, refusal
+from tests.household.images.sources.images_server import Act, ImagesServer, picture, refusal
 from tpvqa.cli import main
-from tpvqa.cli.dataset import dataset
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.events import Observed
 from tpvqa.errors import MissingExtraError, PictureSetError, PluginError, UnknownNameError
-from tpvqa.worlds.images.manifest import load_pictures
+from tpvqa_household.cli.dataset import dataset
+from tpvqa_household.images.manifest import load_pictures
 
 FEW = ("--task", "clean_dishes", "--per-outcome", "5", "--no-fill")
 REMOTE = 8 * 4  # of 5 pictures of each outcome, 3 are variations and 1 comes from a prompt

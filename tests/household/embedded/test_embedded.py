@@ -16,10 +16,10 @@ from tpvqa.observation import Frame, Observation
 from tpvqa.plugins import Kind, make
 from tpvqa.questions import Question, Way
 from tpvqa.vlm import VLM, Reply
-from tpvqa.vlm.embedded import EmbeddedVLM
-from tpvqa.vlm.embedded.vlm import combine
-from tpvqa.vlm.embedded.weights import DESCRIPTION, HEAD, SHIPPED
 from tpvqa.vlm.pictures import observe_file
+from tpvqa_household.embedded import EmbeddedVLM
+from tpvqa_household.embedded.vlm import combine
+from tpvqa_household.embedded.weights import DESCRIPTION, HEAD, SHIPPED
 
 REFERENCE = Path(__file__).with_name("embedded_reference")
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.vlm.embedded.lexicon import Lexicon, Unknown, words
+from tpvqa_household.embedded.lexicon import Lexicon, Unknown, words
 
 LEXICON = Lexicon.of(
     [

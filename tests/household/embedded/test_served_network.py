@@ -10,9 +10,9 @@ from tpvqa.pddl import load_task
 from tpvqa.questions import Question, QuestionBook, Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm import Answer, Reply
-from tpvqa.vlm.embedded import EmbeddedVLM
 from tpvqa.vlm.openai_compatible import OpenAICompatibleVLM
-from tpvqa.worlds.images.manifest import load_pictures
+from tpvqa_household.embedded import EmbeddedVLM
+from tpvqa_household.images.manifest import load_pictures
 
 NETWORK = EmbeddedVLM()
 

@@ -11,13 +11,14 @@ from PIL import Image
 from tpvqa.pddl import Task, load_task
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.tasks import find_task
-from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Picture, digest
-from tpvqa.worlds.images.reachable import Reachable, reachable
-from tpvqa.worlds.images.recipe import FACTS, jobs
-from tpvqa.worlds.images.shipped_tasks import all_reachable
-from tpvqa.worlds.images.verify import settled
+from tpvqa.worlds.pictures import MANIFEST, digest
 from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
+from tpvqa_household.images.manifest import Manifest, Picture
+from tpvqa_household.images.reachable import Reachable, reachable
+from tpvqa_household.images.recipe import FACTS, jobs
+from tpvqa_household.images.shipped_tasks import all_reachable
+from tpvqa_household.images.verify import settled
 
 
 def task_and_rules(name: str) -> tuple[Task, WorldRules]:

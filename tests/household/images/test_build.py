@@ -9,14 +9,15 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from tpvqa.cli.dataset import dataset
 from tpvqa.errors import PictureSetError, WorldError
-from tpvqa.worlds.images.blender import VARIABLE, Cycles, find_blender_python
-from tpvqa.worlds.images.build import Settings, build
-from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.recipe import FACTS, Job, jobs, objection
-from tpvqa.worlds.images.verify import verify
+from tpvqa.worlds.pictures import MANIFEST
+from tpvqa_household.cli.dataset import dataset
+from tpvqa_household.images.blender import VARIABLE, Cycles, find_blender_python
+from tpvqa_household.images.build import Settings, build
+from tpvqa_household.images.manifest import load_pictures
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.recipe import FACTS, Job, jobs, objection
+from tpvqa_household.images.verify import verify
 
 
 @pytest.fixture

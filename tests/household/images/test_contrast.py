@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tpvqa.worlds.images.contrast import DISTINCT, distinctness
+from tpvqa_household.images.contrast import DISTINCT, distinctness
 
 
 def thing(side: int) -> np.ndarray:

@@ -1,7 +1,7 @@
 from collections.abc import Callable
 
-from tpvqa.worlds.images.paper import PaperSimulation
 from tpvqa.worlds.simulation import Simulation
+from tpvqa_household.images.paper import PaperSimulation
 
 
 def test_a_disturbing_failure_returns_to_what_an_earlier_action_showed(

@@ -3,11 +3,11 @@ from collections.abc import Callable
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.worlds.images.conftest import task_and_rules
+from tests.household.images.conftest import task_and_rules
 from tpvqa.chance import chance
-from tpvqa.worlds.images.reachable import Reachable, kind
-from tpvqa.worlds.images.visible import describe, visible_state
 from tpvqa.worlds.simulation import Simulation
+from tpvqa_household.images.reachable import Reachable, kind
+from tpvqa_household.images.visible import describe, visible_state
 
 
 def test_the_plans_are_those_of_the_papers_table(shipped_reachable: list[Reachable]) -> None:

@@ -3,10 +3,11 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
-from tpvqa.cli.dataset import dataset
-from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.verify import PER_OUTCOME, PER_STATE, verify
+from tpvqa.worlds.pictures import MANIFEST
+from tpvqa_household.cli.dataset import dataset
+from tpvqa_household.images.manifest import load_pictures
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.verify import PER_OUTCOME, PER_STATE, verify
 
 
 def edit(folder: Path, number: int, **changes: object) -> None:

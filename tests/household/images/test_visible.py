@@ -2,8 +2,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.visible import describe, mirrored, visible_state
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.visible import describe, mirrored, visible_state
 
 
 def state(*facts: str) -> State:

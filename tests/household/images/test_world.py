@@ -6,11 +6,12 @@ import pytest
 
 from tpvqa.errors import PictureSetError, PluginError, UnknownNameError
 from tpvqa.worlds import Report, Restorable, World
-from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
-from tpvqa.worlds.images.paper import PaperSimulation
-from tpvqa.worlds.images.visible import describe, visible_state
-from tpvqa.worlds.images.world import ImageWorld
+from tpvqa.worlds.pictures import MANIFEST
 from tpvqa.worlds.simulation import Simulation
+from tpvqa_household.images.manifest import load_pictures
+from tpvqa_household.images.paper import PaperSimulation
+from tpvqa_household.images.visible import describe, visible_state
+from tpvqa_household.images.world import ImageWorld
 
 PLAN = (
     ("find", "plate", "tv"),

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tpvqa.errors import UnknownNameError
-from tpvqa.worlds.kitchen.assets import (
+from tpvqa_household.kitchen.assets import (
     OFF,
     ON,
     Model,
@@ -26,11 +26,11 @@ from tpvqa.worlds.kitchen.assets import (
     pack,
     soiled,
 )
-from tpvqa.worlds.kitchen.assets.families import FAMILIES
-from tpvqa.worlds.kitchen.assets.family import Family
-from tpvqa.worlds.kitchen.assets.library import LOOKALIKES, MAIN
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Mesh, cut, encode
-from tpvqa.worlds.kitchen.assets.shapes import box, lathe, slab, tube
+from tpvqa_household.kitchen.assets.families import FAMILIES
+from tpvqa_household.kitchen.assets.family import Family
+from tpvqa_household.kitchen.assets.library import LOOKALIKES, MAIN
+from tpvqa_household.kitchen.assets.mesh import Floats, Mesh, cut, encode
+from tpvqa_household.kitchen.assets.shapes import box, lathe, slab, tube
 
 ROOT = Path(__file__).parents[3]
 HANDLED = ("plate", "bread", "apple", "knife", "tv", "fridge", "sink", "gripper")
@@ -137,7 +137,7 @@ def test_no_scanned_model_of_a_pack_is_in_both_splits() -> None:
 
 
 def test_styles_of_dirt_pictures_and_textures_are_split() -> None:
-    from tpvqa.worlds.kitchen.assets import pictures, textures
+    from tpvqa_household.kitchen.assets import pictures, textures
 
     assert not set(dirt.styles(held_out=True)) & set(dirt.styles(held_out=False))
     assert not set(pictures.TRAIN) & set(pictures.HELD_OUT)

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from tpvqa.errors import MissingExtraError
-from tpvqa.worlds.kitchen.gl import load_mujoco
+from tpvqa_household.kitchen.gl import load_mujoco
 
 
 def test_a_missing_package_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -17,7 +17,7 @@ def test_a_missing_package_is_named_with_its_extra(monkeypatch: pytest.MonkeyPat
 
 
 def test_missing_graphics_say_what_to_install() -> None:
-    program = "from tpvqa.worlds.kitchen.gl import load_mujoco; load_mujoco()"
+    program = "from tpvqa_household.kitchen.gl import load_mujoco; load_mujoco()"
     done = subprocess.run(
         [sys.executable, "-c", program],
         env={**os.environ, "MUJOCO_GL": "nonsense"},
@@ -34,7 +34,7 @@ def test_missing_graphics_say_what_to_install() -> None:
 def test_it_draws_also_where_mujoco_was_imported_before() -> None:
     program = (
         "import mujoco\n"
-        "from tpvqa.worlds.kitchen.drawing import Drawing\n"
+        "from tpvqa_household.kitchen.drawing import Drawing\n"
         'model = mujoco.MjModel.from_xml_string(\'<mujoco><worldbody><geom size="1"/>'
         '<camera name="c" pos="0 -5 0" xyaxes="1 0 0 0 0 1"/></worldbody></mujoco>\')\n'
         "data = mujoco.MjData(model)\n"

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from tpvqa.chance import chance_array
 from tpvqa.errors import WorldError
 from tpvqa.pddl import Atom
-from tpvqa.worlds.kitchen.household import HANDS, ITEMS, Household
-from tpvqa.worlds.kitchen.states import sample_state
+from tpvqa_household.kitchen.household import HANDS, ITEMS, Household
+from tpvqa_household.kitchen.states import sample_state
 
 
 @given(st.integers(0, 10_000), st.floats(0, 1))

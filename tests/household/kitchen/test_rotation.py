@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.worlds.kitchen.rotation import (
+from tpvqa_household.kitchen.rotation import (
     about_x,
     about_y,
     about_z,

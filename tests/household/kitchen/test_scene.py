@@ -8,10 +8,10 @@ import pytest
 from tpvqa.chance import chance_array
 from tpvqa.errors import UnknownNameError, WorldError
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.kitchen.household import Household, atoms_of_interest
-from tpvqa.worlds.kitchen.sample import pictures
-from tpvqa.worlds.kitchen.scene import KitchenScene
-from tpvqa.worlds.kitchen.states import sample_state
+from tpvqa_household.kitchen.household import Household, atoms_of_interest
+from tpvqa_household.kitchen.sample import pictures
+from tpvqa_household.kitchen.scene import KitchenScene
+from tpvqa_household.kitchen.states import sample_state
 
 pytestmark = pytest.mark.rendering
 

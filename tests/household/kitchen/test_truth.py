@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from tpvqa.pddl import Atom
-from tpvqa.worlds.kitchen.household import Household
-from tpvqa.worlds.kitchen.truth import Shown, objections, shown
+from tpvqa_household.kitchen.household import Household
+from tpvqa_household.kitchen.truth import Shown, objections, shown
 
 SEEN = {"left": 500, "right": 500, "table": 20_000, "floor": 9000, "plate": 900, "dirt": 200}
 

@@ -10,9 +10,9 @@ from tpvqa.errors import PluginError, UnknownNameError
 from tpvqa.pddl import Action, Atom, Task, load_task
 from tpvqa.tasks import find_task
 from tpvqa.worlds import Report, Restorable, World
-from tpvqa.worlds.kitchen.world import KitchenWorld
 from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import load_world_file
+from tpvqa_household.kitchen.world import KitchenWorld
 
 pytestmark = pytest.mark.rendering
 

@@ -1,8 +1,8 @@
 """Facts of pictures, written short."""
 
 from tpvqa.pddl import Atom
-from tpvqa.training.facts import Facts
-from tpvqa.worlds.kitchen.household import Household, atoms_of_interest
+from tpvqa_household.kitchen.household import Household, atoms_of_interest
+from tpvqa_household.training.facts import Facts
 
 
 def facts(household: Household, *, hidden: tuple[str, ...] = ()) -> Facts:

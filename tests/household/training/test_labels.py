@@ -5,13 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
-from tests.training.household import facts, shows
+from tests.household.training.household import facts, shows
 from tpvqa.pddl import Atom
-from tpvqa.training.asking import Asking
-from tpvqa.training.facts import FactTable
-from tpvqa.training.labels import Label, Labels
-from tpvqa.training.subjects import Subject
-from tpvqa.worlds.kitchen.household import Household
+from tpvqa_household.kitchen.household import Household
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.facts import FactTable
+from tpvqa_household.training.labels import Label, Labels
+from tpvqa_household.training.subjects import Subject
 
 AT_HOME = {"plate": "table", "bread": "counter", "apple": "fridge", "knife": "counter"}
 ASKING = Asking.about("clean_dishes")

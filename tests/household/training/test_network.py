@@ -5,17 +5,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tpvqa.training.asking import Asking
+from tpvqa_household.training.asking import Asking
 
 torch = pytest.importorskip("torch", reason="training needs torch")
 pytest.importorskip("onnx")
 
 
 def test_an_exported_network_answers_as_torch_does(tmp_path: Path) -> None:
-    from tpvqa.training.export import describe, export, logits, rounded
-    from tpvqa.training.network import Network
-    from tpvqa.vlm.embedded.sessions import Sessions
-    from tpvqa.vlm.embedded.weights import Weights
+    from tpvqa_household.embedded.sessions import Sessions
+    from tpvqa_household.embedded.weights import Weights
+    from tpvqa_household.training.export import describe, export, rounded
+    from tpvqa_household.training.network import Network
+    from tpvqa_household.training.reference import logits
 
     torch.manual_seed(3)
     asking = Asking.about("clean_dishes")
@@ -39,7 +40,7 @@ def test_an_exported_network_answers_as_torch_does(tmp_path: Path) -> None:
 def test_the_folded_backbone_has_the_gradient_of_its_convolutions() -> None:
     import torch.nn.functional as F  # noqa: N812
 
-    from tpvqa.training.backbone import Backbone
+    from tpvqa_household.training.backbone import Backbone
 
     torch.manual_seed(0)
     block = Backbone(frozen=0).blocks[11]  # strided, 5 × 5
@@ -55,7 +56,7 @@ def test_the_folded_backbone_has_the_gradient_of_its_convolutions() -> None:
 
 
 def test_augmented_pictures_keep_their_shape_and_their_chance() -> None:
-    from tpvqa.training.augment import augmented
+    from tpvqa_household.training.augment import augmented
 
     pixels = np.random.default_rng(0).integers(0, 256, (3, 224, 224, 3), dtype=np.uint8)
     one, two = (augmented(pixels, np.random.default_rng(7)) for _ in range(2))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tpvqa.training.asking import Asking
-from tpvqa.training.data import Pictures
-from tpvqa.training.labels import Label
-from tpvqa.training.photographs import FIRST, PART, main
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.data import Pictures
+from tpvqa_household.training.labels import Label
+from tpvqa_household.training.photographs import FIRST, PART, main
 
 ASKING = Asking.about("clean_dishes")
 

@@ -4,16 +4,16 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.training.household import facts, shows
+from tests.household.training.household import facts, shows
 from tpvqa.chance import chance_array
-from tpvqa.training import shards
-from tpvqa.training.asking import Asking
-from tpvqa.training.data import Pictures
-from tpvqa.training.facts import FactTable
-from tpvqa.training.labels import Label
-from tpvqa.training.sampling import Sampler, answer_class
-from tpvqa.training.states import random_household
-from tpvqa.worlds.kitchen.household import FIXTURES, ITEMS, Household
+from tpvqa_household.kitchen.household import FIXTURES, ITEMS, Household
+from tpvqa_household.training import shards
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.data import Pictures
+from tpvqa_household.training.facts import FactTable
+from tpvqa_household.training.labels import Label
+from tpvqa_household.training.sampling import Sampler, answer_class
+from tpvqa_household.training.states import random_household
 
 ASKING = Asking.about("clean_dishes")
 

@@ -2,16 +2,16 @@
 
 from collections.abc import Sequence
 
-from tests.training.household import facts, shows
+from tests.household.training.household import facts, shows
 from tpvqa.observation import Observation
 from tpvqa.questions import Question
-from tpvqa.training.asking import Asking
-from tpvqa.training.facts import FactTable
-from tpvqa.training.labels import Label, Labels
-from tpvqa.training.scoring import Case, report, score, tables
-from tpvqa.training.wordings import wordings
 from tpvqa.vlm import Answer, Reply
-from tpvqa.worlds.kitchen.household import Household
+from tpvqa_household.kitchen.household import Household
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.facts import FactTable
+from tpvqa_household.training.labels import Label, Labels
+from tpvqa_household.training.scoring import Case, report, score, tables
+from tpvqa_household.training.wordings import wordings
 
 ASKING = Asking.about("clean_dishes")
 HOUSEHOLD = Household(

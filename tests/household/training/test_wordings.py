@@ -5,9 +5,9 @@ import pytest
 from tpvqa.pddl import Literal, load_task
 from tpvqa.questions import QuestionBook, Way
 from tpvqa.tasks import find_task
-from tpvqa.training.asking import Asking
-from tpvqa.training.subjects import ACTION_WAYS, Subject, action_subject, subject_of
-from tpvqa.training.wordings import wordings
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.subjects import ACTION_WAYS, Subject, action_subject, subject_of
+from tpvqa_household.training.wordings import wordings
 
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 ASKING = Asking.about("clean_dishes")

@@ -7,21 +7,21 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.belief.calibration import Calibration
-from tpvqa.bench.belief import calibrations as learnt
-from tpvqa.bench.belief.parts import Extent, Part, believes
-from tpvqa.bench.belief.results import BeliefResults
-from tpvqa.bench.belief.tables import write_results
-from tpvqa.bench.belief.targets import Check
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
-from tpvqa.bench.paper import looks
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.settings import common_settings
 from tpvqa.bench.stage import stage
+from tpvqa.defaults import looks
 from tpvqa.errors import BenchError
 from tpvqa.plugins import Kind, load, make
 from tpvqa.tasks import find_task
 from tpvqa.trial import TrialConfig
+from tpvqa_experiments.belief import calibrations as learnt
+from tpvqa_experiments.belief.parts import Extent, Part, believes
+from tpvqa_experiments.belief.results import BeliefResults
+from tpvqa_experiments.belief.tables import write_results
+from tpvqa_experiments.belief.targets import Check
 
 Told = Callable[[int, int], None]
 SPEED_FILE = "speed.json"

@@ -10,8 +10,8 @@ from tpvqa.belief.labelled_answer import LabelledAnswer
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.labelled_recordings import label_recordings
-from tpvqa.bench.paper import looks
 from tpvqa.bench.stage import stage
+from tpvqa.defaults import looks
 from tpvqa.trial import TrialConfig
 from tpvqa.vlm.recorded.vlm import told_by
 

@@ -6,11 +6,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from tpvqa.bench.belief.parts import BELIEF, VOTES, Extent, priced
-from tpvqa.bench.belief.resampling import Estimate, Resampled, interval
-from tpvqa.bench.belief.results import BeliefResults
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
+from tpvqa_experiments.belief.parts import BELIEF, VOTES, Extent, priced
+from tpvqa_experiments.belief.resampling import Estimate, Resampled, interval
+from tpvqa_experiments.belief.results import BeliefResults
 
 
 class Lies(StrEnum):

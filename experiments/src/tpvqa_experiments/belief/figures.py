@@ -6,9 +6,13 @@ from typing import Any
 import numpy as np
 
 from tpvqa.belief.ablations import PARTS
-from tpvqa.bench.belief.comparison import curve_of
-from tpvqa.bench.belief.learning import BLOCK, RIGHT_TRUST, blocks
-from tpvqa.bench.belief.parts import (
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.figures import Figure, styled_pyplot
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.statistics import wilson
+from tpvqa_experiments.belief.comparison import curve_of
+from tpvqa_experiments.belief.learning import BLOCK, RIGHT_TRUST, blocks
+from tpvqa_experiments.belief.parts import (
     BASELINES,
     BELIEF,
     BELIEVED,
@@ -19,12 +23,8 @@ from tpvqa.bench.belief.parts import (
     noise,
     without,
 )
-from tpvqa.bench.belief.resampling import difference
-from tpvqa.bench.belief.results import BeliefResults
-from tpvqa.bench.cell import Cell
-from tpvqa.bench.figures import Figure, styled_pyplot
-from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.statistics import wilson
+from tpvqa_experiments.belief.resampling import difference
+from tpvqa_experiments.belief.results import BeliefResults
 
 MOST = 20_000
 """Questions at the right end of the axis."""

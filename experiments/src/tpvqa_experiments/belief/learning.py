@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from math import log
 from statistics import fmean
 
-from tpvqa.bench.belief.parts import BELIEF, CHAIN, KNOWING, LEARNING, SYMBOLIC, WRONG_VLM
-from tpvqa.bench.belief.resampling import Estimate, difference
-from tpvqa.bench.belief.results import BeliefResults
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
+from tpvqa_experiments.belief.parts import BELIEF, CHAIN, KNOWING, LEARNING, SYMBOLIC, WRONG_VLM
+from tpvqa_experiments.belief.resampling import Estimate, difference
+from tpvqa_experiments.belief.results import BeliefResults
 
 WITHIN = 20
 """Episodes after which it must have been learned."""

@@ -4,9 +4,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from tpvqa.belief.ablations import PARTS
 from tpvqa.belief.costs import Costs
-from tpvqa.bench.belief.comparison import Lies, together, votes_beside_curve
-from tpvqa.bench.belief.learning import BLOCK, blocks
-from tpvqa.bench.belief.parts import (
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.summary import summarise
+from tpvqa_experiments.belief.comparison import Lies, together, votes_beside_curve
+from tpvqa_experiments.belief.learning import BLOCK, blocks
+from tpvqa_experiments.belief.parts import (
     BELIEF,
     RIVALS,
     SYMBOLIC,
@@ -17,12 +20,9 @@ from tpvqa.bench.belief.parts import (
     priced,
     without,
 )
-from tpvqa.bench.belief.resampling import Estimate, difference
-from tpvqa.bench.belief.results import BeliefResults
-from tpvqa.bench.belief.targets import Check
-from tpvqa.bench.cell import Cell
-from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.summary import summarise
+from tpvqa_experiments.belief.resampling import Estimate, difference
+from tpvqa_experiments.belief.results import BeliefResults
+from tpvqa_experiments.belief.targets import Check
 
 REACHED = {True: "yes", False: "**no**", None: "not measured"}
 

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from tpvqa.belief.ablations import PARTS
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.paper import TASKS
+from tpvqa_experiments.paper import TASKS
 
 BELIEF = "belief"
 VOTES = ("tpvqa", "tpvqa:3", "tpvqa:5", "tpvqa:strict", "tpvqa:3:strict", "tpvqa:5:strict")

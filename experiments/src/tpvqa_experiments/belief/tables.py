@@ -5,15 +5,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tpvqa.bench.belief.figures import draw
-from tpvqa.bench.belief.markdown import results_markdown, targets_markdown
-from tpvqa.bench.belief.parts import Extent
-from tpvqa.bench.belief.results import BeliefResults
-from tpvqa.bench.belief.targets import Check, targets
 from tpvqa.bench.figures import close, saved
 from tpvqa.bench.summary import summarise
 from tpvqa.bench.tables import write_table
 from tpvqa.errors import BenchError
+from tpvqa_experiments.belief.figures import draw
+from tpvqa_experiments.belief.markdown import results_markdown, targets_markdown
+from tpvqa_experiments.belief.parts import Extent
+from tpvqa_experiments.belief.results import BeliefResults
+from tpvqa_experiments.belief.targets import Check, targets
 
 
 def write_results(folder: Path, results: BeliefResults, extent: Extent) -> list[Check]:

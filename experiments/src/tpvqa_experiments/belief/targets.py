@@ -4,8 +4,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from tpvqa.bench.belief.comparison import Lies, together, votes_beside_curve
-from tpvqa.bench.belief.learning import (
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.statistics import wilson
+from tpvqa_experiments.belief.comparison import Lies, together, votes_beside_curve
+from tpvqa_experiments.belief.learning import (
     LOST,
     RIGHT_TRUST,
     WITHIN,
@@ -13,7 +16,7 @@ from tpvqa.bench.belief.learning import (
     blocks,
     episodes_until_learned,
 )
-from tpvqa.bench.belief.parts import (
+from tpvqa_experiments.belief.parts import (
     BELIEF,
     BELIEVED,
     RECORDED_RIVALS,
@@ -27,11 +30,8 @@ from tpvqa.bench.belief.parts import (
     knowing,
     noise,
 )
-from tpvqa.bench.belief.resampling import Estimate, difference, ratio
-from tpvqa.bench.belief.results import BeliefResults
-from tpvqa.bench.cell import Cell
-from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.statistics import wilson
+from tpvqa_experiments.belief.resampling import Estimate, difference, ratio
+from tpvqa_experiments.belief.results import BeliefResults
 
 RATES: dict[tuple[float, float], tuple[float, float, float]] = {
     (0.8, 0.0): (0.96, 0.96, 0.96),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tpvqa.cli.bench_belief import belief
+from tpvqa_experiments.cli.bench_belief import belief
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -84,10 +84,10 @@ def paper(
     """Run the paper's experiment: TPVQA against its baselines, with statistics and figures."""
     import os
 
-    from tpvqa.bench.paper import PaperBench, as_rows, run_paper_bench
     from tpvqa.cli.progress import CountBar
     from tpvqa.episodes import Limits
     from tpvqa.trial import TrialConfig
+    from tpvqa_experiments.paper import PaperBench, as_rows, run_paper_bench
 
     bench = PaperBench(
         tasks=_list(tasks),

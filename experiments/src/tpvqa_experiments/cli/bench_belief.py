@@ -10,8 +10,8 @@ import typer
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from tpvqa.bench.belief import Part
-    from tpvqa.bench.belief.targets import Check
+    from tpvqa_experiments.belief import Part
+    from tpvqa_experiments.belief.targets import Check
 
 
 def belief(
@@ -75,11 +75,11 @@ def belief(
     """Measure the belief monitor against votes over several looks and the paper's baselines."""
     import os
 
-    from tpvqa.bench.belief import BeliefBench, run_belief_bench
-    from tpvqa.bench.belief.parts import Extent
-    from tpvqa.bench.belief.tables import summary_rows
     from tpvqa.cli.progress import CountBar
     from tpvqa.trial import TrialConfig
+    from tpvqa_experiments.belief import BeliefBench, run_belief_bench
+    from tpvqa_experiments.belief.parts import Extent
+    from tpvqa_experiments.belief.tables import summary_rows
 
     bench = BeliefBench(
         parts=[_part(name) for name in _list(parts)],
@@ -175,8 +175,8 @@ def _numbers(text: str, option: str) -> tuple[float, ...]:
 
 
 def _part(name: str) -> "Part":
-    from tpvqa.bench.belief import Part
     from tpvqa.errors import UnknownNameError
+    from tpvqa_experiments.belief import Part
 
     if name not in set(Part):
         raise UnknownNameError("part of the belief bench", name, [part.value for part in Part])

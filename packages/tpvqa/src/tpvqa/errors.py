@@ -130,13 +130,21 @@ class CalibrationError(TpvqaError):
 
 
 class UnknownNameError(TpvqaError):
-    """No plug-in, task or view of that name; the message suggests the nearest one."""
+    """No plug-in, task or view of that name; the message suggests the nearest one.
 
-    def __init__(self, kind: str, name: str, known: Iterable[str]):
+    Args:
+        kind: What was looked for.
+        name: The name.
+        known: The names that there are.
+        remedy: What to do about it, where that is known; a sentence.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str], *, remedy: str = ""):
         known = sorted(known)
+        near = "." if remedy else suggestion(name, known)
         super().__init__(
-            f"There is no {kind} {name!r}{suggestion(name, known)} "
-            f"Known: {', '.join(known) or 'none'}."
+            f"There is no {kind} {name!r}{near} Known: {', '.join(known) or 'none'}."
+            + (f" {remedy}" if remedy else "")
         )
 
 
@@ -145,9 +153,17 @@ class PluginError(TpvqaError):
 
 
 class MissingExtraError(TpvqaError):
-    """An optional package is needed."""
+    """An optional package is needed.
 
-    def __init__(self, package: str, extra: str, purpose: str):
+    Args:
+        package: What is missing.
+        extra: The extra that installs it.
+        purpose: What needs it.
+        distribution: Whose extra it is.
+    """
+
+    def __init__(self, package: str, extra: str, purpose: str, *, distribution: str = "tpvqa"):
         super().__init__(
-            f"{purpose} needs the package {package!r}. Install it: pip install 'tpvqa[{extra}]'"
+            f"{purpose} needs the package {package!r}. "
+            f"Install it: pip install '{distribution}[{extra}]'"
         )

@@ -3,6 +3,10 @@
 A package offers one by an entry point in the group of its kind, `tpvqa.planners`, `tpvqa.vlms`,
 `tpvqa.worlds` or `tpvqa.monitors`. Nothing is imported before it is asked for by name.
 
+Three more groups hold functions, which `load` finds and their readers call: `tpvqa.tasks` (families
+of tasks, see `tpvqa.tasks`), `tpvqa.calibrations` (of a VLM, by the name of its specification, see
+`tpvqa.belief.shipped`) and `tpvqa.commands` (of the command line, see `tpvqa.cli.plugged`).
+
 A *specification* is what users write: a name, or a name and what follows its first colon, such
 as "oracle:0.8:0.5" or "openai:llama3:8b". The convention for what stands behind an entry point:
 
@@ -25,6 +29,7 @@ from functools import lru_cache
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires
 from typing import Any
 
+from tpvqa.distributions import remedy
 from tpvqa.errors import MissingExtraError, PluginError, TpvqaError, UnknownNameError
 
 _TRUTH = frozenset({"truth", "simulation"})
@@ -37,36 +42,46 @@ class Kind(StrEnum):
     VLM = "VLM"
     WORLD = "world"
     MONITOR = "monitor"
+    FAMILY = "family of tasks"
+    CALIBRATION = "calibration"
+    COMMANDS = "set of commands"
 
     @property
     def group(self) -> str:
         """The group of entry points."""
-        return f"tpvqa.{self.value.lower()}s"
+        other = {Kind.FAMILY: "tpvqa.tasks", Kind.COMMANDS: "tpvqa.commands"}
+        return other.get(self, f"tpvqa.{self.value.lower()}s")
 
 
 @lru_cache
-def _points(group: str, path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
-    """The entry points of a group; finding them reads the metadata of every package on the path."""
-    return tuple(entry_points(group=group))
+def _points(path: tuple[str, ...]) -> Mapping[Kind, tuple[EntryPoint, ...]]:
+    """The entry points of every kind; to find them reads the metadata of all packages on the path.
+
+    So that is done once for all kinds.
+    """
+    found = entry_points()
+    return {kind: tuple(found.select(group=kind.group)) for kind in Kind}
 
 
 def names(kind: Kind) -> list[str]:
     """The names that can be asked for, sorted."""
-    return sorted({point.name for point in _points(kind.group, tuple(sys.path))})
+    return sorted({point.name for point in _points(tuple(sys.path))[kind]})
 
 
 def load(kind: Kind, name: str) -> Callable[..., Any]:
     """Import what stands behind a name.
 
     Raises:
-        UnknownNameError: Nothing of that name; the message suggests the nearest one.
-        MissingExtraError: A package is missing that one of tpvqa's extras installs.
+        UnknownNameError: Nothing of that name; the message suggests the nearest one, or says what
+            to install.
+        MissingExtraError: A package is missing that an extra of the plug-in's package installs, or
+            one of tpvqa's.
         PluginError: The plug-in cannot be imported, or two packages offer the name.
     """
-    points = _points(kind.group, tuple(sys.path))
+    points = _points(tuple(sys.path))[kind]
     found = {point.value: point for point in points if point.name == name}
     if not found:
-        raise UnknownNameError(kind.value, name, names(kind))
+        raise UnknownNameError(kind.value, name, names(kind), remedy=remedy(kind.value, name))
     if len(found) > 1:
         packages = " and ".join(sorted(_package(point) for point in found.values()))
         raise PluginError(
@@ -137,7 +152,7 @@ def _construct(
     if noise_model and context.get("truth") is None:
         raise PluginError(
             f"The VLM {name!r} is a noise model: it answers from the truth of a simulated world, "
-            "and there is none here. Choose one that looks at pictures, e.g. 'embedded'."
+            "and there is none here. Choose one that looks at pictures, e.g. 'openai:MODEL'."
         )
     if not noise_model and kind is not Kind.WORLD:
         context = {key: value for key, value in context.items() if key not in _TRUTH}
@@ -169,19 +184,21 @@ def _package(point: EntryPoint) -> str:
 def _cannot_import(kind: Kind, point: EntryPoint, error: Exception) -> Exception:
     missing = (getattr(error, "name", None) or "").partition(".")[0]
     if isinstance(error, ModuleNotFoundError) and missing != _root(point):
-        extra = extra_that_installs(missing) if missing else None
-        if extra is not None:
-            return MissingExtraError(missing, extra, f"The {kind.value} {point.name!r}")
+        for distribution in dict.fromkeys((_package(point), "tpvqa") if missing else ()):
+            extra = extra_that_installs(missing, distribution)
+            if extra is not None:
+                purpose = f"The {kind.value} {point.name!r}"
+                return MissingExtraError(missing, extra, purpose, distribution=distribution)
     return PluginError(
         f"The {kind.value} {point.name!r} of the package {_package(point)} cannot be imported: "
         f"{error}. Install that package again, with what it needs."
     )
 
 
-def extra_that_installs(module: str) -> str | None:
-    """The smallest extra of tpvqa that installs a package, by its metadata; None for none."""
+def extra_that_installs(module: str, distribution: str = "tpvqa") -> str | None:
+    """The smallest extra of a distribution that installs a package, by its metadata."""
     try:
-        requirements = requires("tpvqa") or []
+        requirements = requires(distribution) or []
     except PackageNotFoundError:
         return None
     extras: dict[str, list[str]] = {}

@@ -13,6 +13,7 @@ from tpvqa import __version__
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.shipped import shipped_calibration
+from tpvqa.defaults import default_vlm, default_world
 from tpvqa.episodes import Ended, Event, Limits, Parts, Started
 from tpvqa.episodes.plugged import called
 from tpvqa.episodes.recorder import Writer
@@ -42,9 +43,9 @@ class TrialConfig:
         questions: The user's questions file; without one every question is a fallback.
         world_file: What disturbances can undo, for simulated worlds.
         monitor: Specification of the monitor.
-        vlm: Specification of the VLM; unused by monitors that never ask. None is "embedded", or
-            "oracle" in a world that has no pictures.
-        world: Specification of the world.
+        vlm: Specification of the VLM; unused by monitors that never ask. None is "embedded", if
+            it is installed, or "oracle" in a world that has no pictures.
+        world: Specification of the world. None is the shipped task's own, or "symbolic".
         planner: Specification of the planner.
         seed: Decides, with `episode`, every random number.
         episode: Number of the episode under this seed.
@@ -68,7 +69,7 @@ class TrialConfig:
     world_file: str | None = None
     monitor: str = "tpvqa"
     vlm: str | None = None
-    world: str = "images"
+    world: str | None = None
     planner: str = "fast-downward"
     seed: int = 0
     episode: int = 0
@@ -158,15 +159,17 @@ class Trial:
             "seed": config.seed,
             "episode": config.episode,
         }
+        self.world_spec = config.world or default_world(files)
         self.world: World
-        self.world, taken = make_from(Kind.WORLD, config.world, context)
+        self.world, taken = make_from(Kind.WORLD, self.world_spec, context)
         self._closing.append(self.world.close)
         truth = getattr(self.world, "truth", None)
         if truth is not None:
             context["truth"] = truth
         context["views"] = tuple(self.world.views())
         pictures = getattr(self.world, "has_pictures", True)
-        self.vlm_spec = config.vlm or ("embedded" if pictures else "oracle")
+        named = config.vlm or (None if vlm is None else vlm.name)
+        self.vlm_spec = named or default_vlm(pictures=pictures)
         calibration = config.calibration or shipped_calibration(self.vlm_spec)
         context["calibration"] = calibration
         context["experience"] = (
@@ -185,8 +188,8 @@ class Trial:
         self.vlm: VLM = made
         if not pictures and getattr(self.vlm, "needs_pictures", False):
             raise TpvqaError(
-                f"The VLM {self.vlm_spec!r} looks at pictures, and the world {config.world!r} has "
-                "none. Choose a noise model, e.g. 'oracle:0.9', or a world with pictures."
+                f"The VLM {self.vlm_spec!r} looks at pictures, and the world {self.world_spec!r} "
+                "has none. Choose a noise model, e.g. 'oracle:0.9', or a world with pictures."
             )
         _all_taken(config.options, taken | by_monitor | by_vlm, context)
         if vlm is None and hasattr(self.vlm, "close"):
@@ -212,7 +215,7 @@ class Trial:
             monitor=config.monitor,
             vlm=self.vlm_spec,
             noise_model=getattr(self.vlm, "noise_model", False),
-            world=config.world,
+            world=self.world_spec,
             planner=self.parts.planner.name,
             seed=config.seed,
             episode=config.episode,

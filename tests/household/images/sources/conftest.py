@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.worlds.images.sources.images_server import picture
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.sources.labels import Label, labels
+from tests.household.images.sources.images_server import picture
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.sources.labels import Label, labels
 
 
 @pytest.fixture(scope="session")

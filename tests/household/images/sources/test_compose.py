@@ -8,20 +8,21 @@ from pathlib import Path
 
 import pytest
 
-from tests.worlds.images.sources.images_server import Act, ImagesServer, refusal
+from tests.household.images.sources.images_server import Act, ImagesServer, refusal
 from tpvqa.errors import GeneratorError, PictureSetError
-from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Picture, load_pictures
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.sources.compose import Composed, compose, pending, rejected
-from tpvqa.worlds.images.sources.labels import Label
-from tpvqa.worlds.images.sources.openai_images import OpenAIImages
-from tpvqa.worlds.images.sources.photos import read_photos
-from tpvqa.worlds.images.sources.plan import Ingredients, Wanted, plan
-from tpvqa.worlds.images.sources.prompts import read_prompts
-from tpvqa.worlds.images.sources.shares import Shares
-from tpvqa.worlds.images.verify import verify
-from tpvqa.worlds.images.world import ImageWorld
+from tpvqa.worlds.pictures import MANIFEST
 from tpvqa.worlds.simulation import Simulation
+from tpvqa_household.images.manifest import Manifest, Picture, load_pictures
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.sources.compose import Composed, compose, pending, rejected
+from tpvqa_household.images.sources.labels import Label
+from tpvqa_household.images.sources.openai_images import OpenAIImages
+from tpvqa_household.images.sources.photos import read_photos
+from tpvqa_household.images.sources.plan import Ingredients, Wanted, plan
+from tpvqa_household.images.sources.prompts import read_prompts
+from tpvqa_household.images.sources.shares import Shares
+from tpvqa_household.images.verify import verify
+from tpvqa_household.images.world import ImageWorld
 
 Add = Callable[[str, int], Path]
 

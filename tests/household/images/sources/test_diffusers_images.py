@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.worlds.images.sources.images_server import picture
+from tests.household.images.sources.images_server import picture
 from tpvqa.errors import GeneratorError
-from tpvqa.worlds.images.sources.diffusers_images import DiffusersImages
-from tpvqa.worlds.images.sources.generator import Original
-from tpvqa.worlds.images.sources.picture_file import read_picture
+from tpvqa_household.images.sources.diffusers_images import DiffusersImages
+from tpvqa_household.images.sources.generator import Original
+from tpvqa_household.images.sources.picture_file import read_picture
 
 diffusers = pytest.importorskip("diffusers")
 transformers = pytest.importorskip("transformers")

@@ -11,11 +11,11 @@ from itertools import pairwise
 import pytest
 from PIL import Image
 
-from tests.worlds.images.sources.images_server import Act, ImagesServer, Script, picture, refusal
+from tests.household.images.sources.images_server import Act, ImagesServer, Script, picture, refusal
 from tpvqa.errors import GeneratorError, PictureRefused
-from tpvqa.worlds.images.sources.generator import Original
-from tpvqa.worlds.images.sources.images_reply import seconds_to_wait
-from tpvqa.worlds.images.sources.openai_images import OpenAIImages
+from tpvqa_household.images.sources.generator import Original
+from tpvqa_household.images.sources.images_reply import seconds_to_wait
+from tpvqa_household.images.sources.openai_images import OpenAIImages
 
 ORIGINAL = Original(picture(200), "the same kitchen in other light")
 

@@ -5,9 +5,9 @@ from io import BytesIO
 import numpy as np
 from PIL import Image
 
-from tpvqa.worlds.images.manifest import load_pictures
-from tpvqa.worlds.images.sources.photographic import photographed
-from tpvqa.worlds.images.sources.picture_file import LONGEST, as_jpeg, read_picture
+from tpvqa_household.images.manifest import load_pictures
+from tpvqa_household.images.sources.photographic import photographed
+from tpvqa_household.images.sources.picture_file import LONGEST, as_jpeg, read_picture
 
 
 def test_a_seed_is_a_camera() -> None:

@@ -7,9 +7,9 @@ import pytest
 
 from tpvqa.errors import PhotosError
 from tpvqa.pddl import Atom
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.sources.labels import Label, labels
-from tpvqa.worlds.images.sources.photos import read_photos, stock
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.sources.labels import Label, labels
+from tpvqa_household.images.sources.photos import read_photos, stock
 
 Add = Callable[[str, int], Path]
 

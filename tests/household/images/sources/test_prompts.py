@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from tpvqa.errors import PhotosError
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.sources.labels import Label, labels
-from tpvqa.worlds.images.sources.prompts import read_prompts, shipped_prompts
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.sources.labels import Label, labels
+from tpvqa_household.images.sources.prompts import read_prompts, shipped_prompts
 
 
 def test_every_action_and_outcome_has_a_prompt(shipped_reachable: list[Reachable]) -> None:

@@ -5,20 +5,20 @@ from pathlib import Path
 
 import pytest
 
-from tests.worlds.images.sources.images_server import picture
+from tests.household.images.sources.images_server import picture
 from tpvqa.errors import GeneratorError, PictureRefused
-from tpvqa.worlds.images.manifest import Picture, load_pictures
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.recipe import jobs
-from tpvqa.worlds.images.sources.compose import compose
-from tpvqa.worlds.images.sources.generator import Original
-from tpvqa.worlds.images.sources.labels import labels
-from tpvqa.worlds.images.sources.picture_file import read_picture
-from tpvqa.worlds.images.sources.plan import Ingredients, plan
-from tpvqa.worlds.images.sources.prompts import read_prompts
-from tpvqa.worlds.images.sources.rerender import Rerender, jobs_by_visible
-from tpvqa.worlds.images.sources.shares import Shares
-from tpvqa.worlds.images.verify import verify
+from tpvqa_household.images.manifest import Picture, load_pictures
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.recipe import jobs
+from tpvqa_household.images.sources.compose import compose
+from tpvqa_household.images.sources.generator import Original
+from tpvqa_household.images.sources.labels import labels
+from tpvqa_household.images.sources.picture_file import read_picture
+from tpvqa_household.images.sources.plan import Ingredients, plan
+from tpvqa_household.images.sources.prompts import read_prompts
+from tpvqa_household.images.sources.rerender import Rerender, jobs_by_visible
+from tpvqa_household.images.sources.shares import Shares
+from tpvqa_household.images.verify import verify
 
 pytestmark = pytest.mark.rendering
 
@@ -60,7 +60,7 @@ def test_a_photo_is_only_taken_by_another_camera(rerender: Rerender) -> None:
 def test_where_no_other_view_serves_the_picture_is_taken_by_another_camera(
     rerender: Rerender, entry: Picture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tpvqa.worlds.images.sources.rerender.TRIES", 0)
+    monkeypatch.setattr("tpvqa_household.images.sources.rerender.TRIES", 0)
     data = load_pictures().read(entry)
     drawn = rerender.vary(Original(data, "", entry), seed=1)
     assert drawn.data != data

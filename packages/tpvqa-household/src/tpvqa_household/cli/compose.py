@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from tpvqa.worlds.images.sources.compose import Composed
-    from tpvqa.worlds.images.sources.photos import Shelf
-    from tpvqa.worlds.images.sources.plan import Wanted
+    from tpvqa_household.images.sources.compose import Composed
+    from tpvqa_household.images.sources.photos import Shelf
+    from tpvqa_household.images.sources.plan import Wanted
 
 
 class TaskName(StrEnum):
@@ -83,17 +83,17 @@ def compose(
     refused.
     """
     from tpvqa.errors import PhotosError, PictureSetError
-    from tpvqa.worlds.images.manifest import load_pictures
-    from tpvqa.worlds.images.recipe import jobs
-    from tpvqa.worlds.images.shipped_tasks import all_reachable
-    from tpvqa.worlds.images.sources import compose as making
-    from tpvqa.worlds.images.sources.choice import Options, generator
-    from tpvqa.worlds.images.sources.labels import labels
-    from tpvqa.worlds.images.sources.photos import read_photos, stock
-    from tpvqa.worlds.images.sources.plan import Ingredients, plan
-    from tpvqa.worlds.images.sources.prompts import read_prompts
-    from tpvqa.worlds.images.sources.rerender import jobs_by_visible
-    from tpvqa.worlds.images.sources.shares import Shares
+    from tpvqa_household.images.manifest import load_pictures
+    from tpvqa_household.images.recipe import jobs
+    from tpvqa_household.images.shipped_tasks import all_reachable
+    from tpvqa_household.images.sources import compose as making
+    from tpvqa_household.images.sources.choice import Options, generator
+    from tpvqa_household.images.sources.labels import labels
+    from tpvqa_household.images.sources.photos import read_photos, stock
+    from tpvqa_household.images.sources.plan import Ingredients, plan
+    from tpvqa_household.images.sources.prompts import read_prompts
+    from tpvqa_household.images.sources.rerender import jobs_by_visible
+    from tpvqa_household.images.sources.shares import Shares
 
     split = Shares.parse(shares)
     if photo_labels is not None and photos is None:
@@ -228,7 +228,7 @@ def _with_progress(
 ) -> "Composed":
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 
-    from tpvqa.worlds.images.sources.compose import compose as make
+    from tpvqa_household.images.sources.compose import compose as make
 
     columns = ("pictures", BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, disable=not shown) as bar:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tpvqa.cli.compose import compose
+from tpvqa_household.cli.compose import compose
 
 dataset = typer.Typer(help="The pictures that `--world images` draws from.", no_args_is_help=True)
 
@@ -65,13 +65,13 @@ def build(
         TimeRemainingColumn,
     )
 
-    from tpvqa.worlds.images.blender import find_blender_python
-    from tpvqa.worlds.images.build import Settings
-    from tpvqa.worlds.images.build import build as make
-    from tpvqa.worlds.images.manifest import load_pictures
-    from tpvqa.worlds.images.recipe import jobs
-    from tpvqa.worlds.images.shipped_tasks import all_reachable
-    from tpvqa.worlds.images.verify import verify as check
+    from tpvqa_household.images.blender import find_blender_python
+    from tpvqa_household.images.build import Settings
+    from tpvqa_household.images.build import build as make
+    from tpvqa_household.images.manifest import load_pictures
+    from tpvqa_household.images.recipe import jobs
+    from tpvqa_household.images.shipped_tasks import all_reachable
+    from tpvqa_household.images.verify import verify as check
 
     python = find_blender_python(blender_python) if renderer is RendererName.CYCLES else None
     tasks = all_reachable()
@@ -101,9 +101,9 @@ def build(
 @dataset.command()
 def verify(pictures: Folder = None, as_json: AsJson = False) -> None:
     """Check files, hashes, counts and truth of a set. Exit code 1: something is wrong."""
-    from tpvqa.worlds.images.manifest import ORIGINS, load_pictures
-    from tpvqa.worlds.images.shipped_tasks import all_reachable
-    from tpvqa.worlds.images.verify import verify as check
+    from tpvqa_household.images.manifest import ORIGINS, load_pictures
+    from tpvqa_household.images.shipped_tasks import all_reachable
+    from tpvqa_household.images.verify import verify as check
 
     opened = load_pictures(pictures)
     report = check(opened, all_reachable())
@@ -156,8 +156,8 @@ def show(
 ) -> None:
     """Write one page with all pictures by action and outcome."""
     from tpvqa.errors import PictureSetError
-    from tpvqa.worlds.images.manifest import load_pictures
-    from tpvqa.worlds.images.sheet import contact_sheet
+    from tpvqa_household.images.manifest import load_pictures
+    from tpvqa_household.images.sheet import contact_sheet
 
     page = contact_sheet(load_pictures(pictures))
     try:
@@ -186,11 +186,11 @@ def score(
     "cannot see" is said rightly.
     """
     from tpvqa.plugins import Kind, make
-    from tpvqa.training import scoring
-    from tpvqa.training.asking import Asking
-    from tpvqa.training.picture_cases import picture_cases
-    from tpvqa.training.recipe import Recipe
-    from tpvqa.worlds.images.manifest import load_pictures
+    from tpvqa_household.images.manifest import load_pictures
+    from tpvqa_household.training import scoring
+    from tpvqa_household.training.asking import Asking
+    from tpvqa_household.training.picture_cases import picture_cases
+    from tpvqa_household.training.recipe import Recipe
 
     asking = Asking.about(Recipe.read().task)
     asked = make(Kind.VLM, vlm, **({} if base_url is None else {"base_url": base_url}))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from tpvqa.vlm.embedded.weights import HEAD, IMAGE, Weights
+from tpvqa_household.embedded.weights import HEAD, IMAGE, Weights
 
 Floats = NDArray[np.float32]
 

@@ -14,9 +14,9 @@ from tpvqa.errors import AnswerError
 from tpvqa.observation import Frame, Observation
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
-from tpvqa.vlm.embedded.lexicon import Unknown
-from tpvqa.vlm.embedded.sessions import Floats, Sessions
-from tpvqa.vlm.embedded.weights import SHIPPED, Weights
+from tpvqa_household.embedded.lexicon import Unknown
+from tpvqa_household.embedded.sessions import Floats, Sessions
+from tpvqa_household.embedded.weights import SHIPPED, Weights
 
 REMEMBERED = 8
 """Pictures whose maps are kept, 0.1 MB each."""

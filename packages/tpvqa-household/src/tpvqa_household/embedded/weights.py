@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import AnswerError
-from tpvqa.vlm.embedded.lexicon import Lexicon
+from tpvqa_household.embedded.lexicon import Lexicon
 
 SHIPPED = Path(__file__).with_name("weights")
 DESCRIPTION, IMAGE, HEAD = "network.json", "image.onnx", "head.onnx"
@@ -39,7 +39,10 @@ class Weights:
         Raises:
             AnswerError: Something is missing or damaged.
         """
-        remedy = "Install tpvqa again, or export the weights: python -m tpvqa.training.export"
+        remedy = (
+            "Install tpvqa-household again, or export the weights: "
+            "python -m tpvqa_household.training.export"
+        )
         try:
             data = json.loads((folder / DESCRIPTION).read_text(encoding="utf-8"))
             for name, expected in data["sha256"].items():

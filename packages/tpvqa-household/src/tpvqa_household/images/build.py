@@ -21,14 +21,15 @@ from PIL import Image
 
 from tpvqa.chance import chance
 from tpvqa.errors import PictureSetError
-from tpvqa.worlds.images.contrast import overlooked
-from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Origin, Picture, Renderer, digest
-from tpvqa.worlds.images.recipe import FACTS, TRIES, Job, objection
-from tpvqa.worlds.images.writing import alone, replace, write_manifest
-from tpvqa.worlds.kitchen.layout import Split
+from tpvqa.worlds.pictures import MANIFEST, digest
+from tpvqa_household.images.contrast import overlooked
+from tpvqa_household.images.manifest import Manifest, Origin, Picture, Renderer
+from tpvqa_household.images.recipe import FACTS, TRIES, Job, objection
+from tpvqa_household.images.writing import alone, replace, write_manifest
+from tpvqa_household.kitchen.layout import Split
 
 if TYPE_CHECKING:
-    from tpvqa.worlds.kitchen.scene import KitchenScene
+    from tpvqa_household.kitchen.scene import KitchenScene
 
 SIDE = 224
 QUALITY = 85
@@ -243,7 +244,7 @@ class _Maker:
 
     def _kitchen(self, seed: int, job: Job) -> "KitchenScene":
         """The last kitchen, or another: jobs that share one come after each other."""
-        from tpvqa.worlds.kitchen.scene import KitchenScene
+        from tpvqa_household.kitchen.scene import KitchenScene
 
         split: Split = "train" if job.meshes == "known" else "held_out"
         if self._scene is None or (self._scene.seed, self._scene.split) != (seed, split):
@@ -277,8 +278,8 @@ class _Maker:
         if self._settings.renderer == "mujoco":
             pixels: NDArray[np.uint8] = scene.render()
             return pixels
-        from tpvqa.worlds.images.blender import Cycles, find_blender_python
-        from tpvqa.worlds.images.scene_file import scene_arrays
+        from tpvqa_household.images.blender import Cycles, find_blender_python
+        from tpvqa_household.images.scene_file import scene_arrays
 
         if self._cycles is None:
             self._cycles = Cycles(

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageFilter
 
-from tpvqa.worlds.kitchen.household import ITEMS
+from tpvqa_household.kitchen.household import ITEMS
 
 if TYPE_CHECKING:
-    from tpvqa.worlds.kitchen.scene import KitchenScene
+    from tpvqa_household.kitchen.scene import KitchenScene
 
 AROUND = 9
 """Width of the box, pixels, that grows a thing by its surroundings."""

@@ -1,19 +1,20 @@
 """The manifest of a set of pictures: one JSON file beside them, checked when it is read."""
 
-import hashlib
 from collections import defaultdict
 from functools import cached_property
 from importlib.resources import files
 from pathlib import Path
+from typing import ClassVar
 from typing import Literal as Choice
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict
 
-from tpvqa.errors import PictureSetError
-from tpvqa.pddl import Atom, State
-from tpvqa.worlds.images.visible import VisibleState, describe, visible_state
+from tpvqa.worlds.pictures import Manifest as AnyManifest
+from tpvqa.worlds.pictures import Picture as AnyPicture
+from tpvqa.worlds.pictures import PictureSet as AnyPictureSet
+from tpvqa.worlds.pictures.manifest import Fact, read_manifest
+from tpvqa_household.images.visible import VisibleState, describe, visible_state
 
-MANIFEST = "manifest.json"
 Meshes = Choice["known", "held_out"]
 Renderer = Choice["cycles", "mujoco"]
 Outcome = Choice["success", "failure"]
@@ -66,12 +67,10 @@ class Origin(_Model):
     cost: float | None = None
 
 
-class Picture(_Model):
-    """One picture and what is true in it.
+class Picture(AnyPicture):
+    """One picture of the household and what is true in it.
 
     Attributes:
-        file: Its name, beside the manifest.
-        sha256: Of the file.
         width: Pixels.
         height: Pixels.
         renderer: What rendered it; None where nothing did.
@@ -79,16 +78,15 @@ class Picture(_Model):
             and dirt that training never saw, as on every photo.
         seed: Of the kitchen; None where it was not rendered.
         look: Of the arrangement and the camera in it.
-        visible: What the camera shows, as `visible.describe` writes it.
+        visible: What the camera shows, as `visible.describe` writes it. Pictures look alike that
+            are of the same.
         number: Tells it from others that show the same, from 0.
-        state: The facts that are true in it, as PDDL atoms; all others are false.
-        seen: The facts, true or false, that can be told from it.
         shows: The actions that it is an observation of.
         origin: Where it comes from.
     """
 
-    file: str
-    sha256: str
+    model_config = ConfigDict(extra="forbid")
+
     width: int
     height: int
     renderer: Renderer | None = None
@@ -97,47 +95,25 @@ class Picture(_Model):
     look: int = 0
     visible: str
     number: int
-    state: tuple[str, ...]
-    seen: frozenset[str]
     shows: tuple[Shows, ...]
     origin: Origin = Origin()
-
-    @cached_property
-    def true_state(self) -> State:
-        """The true state it was made from."""
-        return frozenset(map(Atom.parse, self.state))
 
     @cached_property
     def visible_state(self) -> VisibleState:
         """What the camera shows of that state."""
         return visible_state(self.true_state)
 
-    def holds(self, atom: Atom) -> bool:
-        """Whether a fact is true in it."""
-        return atom in self.true_state
 
-    def shows_fact(self, atom: Atom) -> bool:
-        """Whether the picture shows if a fact is true."""
-        return atom.pddl() in self.seen
+class Manifest(AnyManifest[Picture]):
+    """All pictures of a set of the household, by file name."""
 
+    model_config = ConfigDict(extra="forbid")
 
-class Manifest(_Model):
-    """All pictures of a set.
-
-    Attributes:
-        version: Of this format.
-        domain: The PDDL domain that the facts belong to.
-        facts: Every fact that a picture tells about, as PDDL atoms.
-        pictures: The pictures, by file name.
-    """
-
-    version: Choice[1] = 1
     domain: str = "household"
-    facts: tuple[str, ...]
-    pictures: tuple[Picture, ...] = Field(min_length=1)
+    facts: tuple[Fact, ...]
 
 
-class PictureSet:
+class PictureSet(AnyPictureSet[Picture]):
     """Pictures on disk, indexed by what they show.
 
     Args:
@@ -145,8 +121,13 @@ class PictureSet:
         manifest: What the manifest says.
     """
 
+    gone: ClassVar[str] = (
+        "`tpvqa dataset verify` lists what is missing, `tpvqa dataset build` makes it again"
+    )
+    lacking: ClassVar[str] = "`tpvqa dataset verify` lists what the set lacks"
+
     def __init__(self, folder: Path, manifest: Manifest):
-        self.folder, self.manifest = folder, manifest
+        super().__init__(folder, manifest)
         self._by_visible: dict[str, list[Picture]] = defaultdict(list)
         for picture in manifest.pictures:
             self._by_visible[picture.visible].append(picture)
@@ -155,24 +136,10 @@ class PictureSet:
         """The pictures of a visible state, in the manifest's order; empty where there are none."""
         return list(self._by_visible.get(describe(visible), ()))
 
-    def read(self, picture: Picture) -> bytes:
-        """The encoded picture.
-
-        Raises:
-            PictureSetError: Its file is missing.
-        """
-        try:
-            return (self.folder / picture.file).read_bytes()
-        except OSError as error:
-            raise PictureSetError(
-                f"{self.folder / picture.file}: cannot be read ({error.strerror}). "
-                "`tpvqa dataset verify` lists what is missing, `tpvqa dataset build` makes it again"
-            ) from error
-
 
 def shipped() -> Path:
     """The folder of the pictures that come with the package."""
-    return Path(str(files("tpvqa.worlds.images") / "data"))
+    return Path(str(files("tpvqa_household.images") / "data"))
 
 
 def load_pictures(folder: Path | None = None) -> PictureSet:
@@ -182,26 +149,11 @@ def load_pictures(folder: Path | None = None) -> PictureSet:
         PictureSetError: There is no manifest, or it is broken.
     """
     folder = folder or shipped()
-    path = folder / MANIFEST
-    try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise PictureSetError(
-            f"{path}: cannot be read ({error.strerror}). Make them with "
-            "`tpvqa dataset compose` or `tpvqa dataset build`, or name the folder that holds them"
-        ) from error
-    try:
-        manifest = Manifest.model_validate_json(text)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(map(str, first["loc"]))
-        raise PictureSetError(
-            f"{path}: {place or 'the file'}: {first['msg']} ({error.error_count()} faults in all). "
-            "Make it again with `tpvqa dataset build`"
-        ) from error
+    manifest = read_manifest(
+        folder,
+        Manifest,
+        missing="Make them with `tpvqa dataset compose` or `tpvqa dataset build`, or name the "
+        "folder that holds them",
+        broken="Make it again with `tpvqa dataset build`",
+    )
     return PictureSet(folder, manifest)
-
-
-def digest(data: bytes) -> str:
-    """SHA-256, as the manifest writes it."""
-    return hashlib.sha256(data).hexdigest()

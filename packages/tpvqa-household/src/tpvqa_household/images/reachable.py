@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from tpvqa.errors import PictureSetError
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.planning import Plan, Planner, Unsolvable
-from tpvqa.worlds.images.visible import VisibleState, visible_state
 from tpvqa.worlds.world_file import WorldRules
+from tpvqa_household.images.visible import VisibleState, visible_state
 
 Kind = tuple[str, ...]
 """An action without its hands and without where it starts from: `("find", "plate")`."""

@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.images.manifest import Meshes, Shows
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.verify import PER_OUTCOME, PER_STATE, observations, settled
-from tpvqa.worlds.images.visible import VisibleState, describe, without_hands
-from tpvqa.worlds.kitchen.household import atoms_of_interest
+from tpvqa_household.images.manifest import Meshes, Shows
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.verify import PER_OUTCOME, PER_STATE, observations, settled
+from tpvqa_household.images.visible import VisibleState, describe, without_hands
+from tpvqa_household.kitchen.household import atoms_of_interest
 
 TEST_SEEDS = 1_000_000_000
 """Kitchens from this seed on are for the test pictures: training uses lower ones only."""

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from tpvqa.chance import chance
-from tpvqa.worlds.kitchen.furniture import Furniture
-from tpvqa.worlds.kitchen.gl import load_mujoco
-from tpvqa.worlds.kitchen.scene import KitchenScene
+from tpvqa_household.kitchen.furniture import Furniture
+from tpvqa_household.kitchen.gl import load_mujoco
+from tpvqa_household.kitchen.scene import KitchenScene
 
 mujoco = load_mujoco()
 SHAPES = {

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from tpvqa.worlds.images.manifest import ORIGINS, OUTCOMES, Picture, PictureSet, Shows
+from tpvqa_household.images.manifest import ORIGINS, OUTCOMES, Picture, PictureSet, Shows
 
 STYLE = """
 body { font: 14px/1.4 system-ui, sans-serif; margin: 1.5rem; color: #222; }

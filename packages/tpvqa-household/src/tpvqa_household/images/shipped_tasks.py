@@ -5,8 +5,8 @@ from functools import cache
 from tpvqa.pddl import load_task
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.tasks import find_task
-from tpvqa.worlds.images.reachable import Reachable, reachable
 from tpvqa.worlds.world_file import load_world_file
+from tpvqa_household.images.reachable import Reachable, reachable
 
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 """The paper's, which the pictures are made for."""

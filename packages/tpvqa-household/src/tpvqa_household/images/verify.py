@@ -9,17 +9,16 @@ from PIL import Image, UnidentifiedImageError
 
 from tpvqa.errors import PictureSetError
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.images.manifest import (
-    MANIFEST,
+from tpvqa.worlds.pictures import MANIFEST, digest
+from tpvqa_household.images.manifest import (
     OUTCOMES,
     Outcome,
     Picture,
     PictureSet,
     Shows,
-    digest,
 )
-from tpvqa.worlds.images.reachable import Reachable, say_kind
-from tpvqa.worlds.images.visible import VisibleState, describe, mirrored
+from tpvqa_household.images.reachable import Reachable, say_kind
+from tpvqa_household.images.visible import VisibleState, describe, mirrored
 
 PER_STATE = 6
 PER_OUTCOME = 10

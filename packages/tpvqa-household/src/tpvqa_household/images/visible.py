@@ -10,7 +10,7 @@ robot looks for it there, and what else lies beside the thing looked at stays ou
 from functools import lru_cache
 
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.kitchen.household import ITEMS, Household
+from tpvqa_household.kitchen.household import ITEMS, Household
 
 VisibleState = frozenset[Atom]
 """The facts shown that hold, without hands. A fact about a thing in view that is not in it is

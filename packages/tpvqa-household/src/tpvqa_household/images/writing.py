@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from tpvqa.errors import PictureSetError
-from tpvqa.worlds.images.manifest import MANIFEST, Manifest, Origin
+from tpvqa.worlds.pictures import MANIFEST
+from tpvqa_household.images.manifest import Manifest, Origin
 
 
 @contextmanager

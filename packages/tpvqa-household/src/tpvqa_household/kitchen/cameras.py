@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.worlds.kitchen.layout import Footprint, Layout, Stand
-from tpvqa.worlds.kitchen.rotation import Array, about_x, about_y, looking
+from tpvqa_household.kitchen.layout import Footprint, Layout, Stand
+from tpvqa_household.kitchen.rotation import Array, about_x, about_y, looking
 
 LEAN = 0.1
 """How far the robot's head may be over low furniture, metres; so far from it when bent down."""

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.worlds.kitchen.gl import cannot_draw, load_mujoco, new_context
+from tpvqa_household.kitchen.gl import cannot_draw, load_mujoco, new_context
 
 
 class Drawing:

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.assets import Model
-from tpvqa.worlds.kitchen.gl import load_mujoco
-from tpvqa.worlds.kitchen.rotation import Array, about_x, about_y, about_z, matrix, quaternion
+from tpvqa_household.kitchen.assets import Model
+from tpvqa_household.kitchen.gl import load_mujoco
+from tpvqa_household.kitchen.rotation import Array, about_x, about_y, about_z, matrix, quaternion
 
 SECONDS = 2.5
 """A fall is not followed longer than this."""

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.assets import Model, distractors, draw, soiled
-from tpvqa.worlds.kitchen.assets.textures import Use, draw_texture
-from tpvqa.worlds.kitchen.household import HANDS, ITEMS
-from tpvqa.worlds.kitchen.layout import Layout, Split, Stand, draw_layout
+from tpvqa_household.kitchen.assets import Model, distractors, draw, soiled
+from tpvqa_household.kitchen.assets.textures import Use, draw_texture
+from tpvqa_household.kitchen.household import HANDS, ITEMS
+from tpvqa_household.kitchen.layout import Layout, Split, Stand, draw_layout
 
 DISTRACTORS = 7
 COVER = 0.6

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from tpvqa.errors import MissingExtraError, WorldError
+from tpvqa_household import DISTRIBUTION
 
 _REMEDY = (
     "Software rendering needs the library OSMesa: `apt-get install libosmesa6`, then set the "
@@ -29,7 +30,9 @@ def load_mujoco() -> Any:
     except ModuleNotFoundError as error:
         if error.name and error.name.split(".")[0] != "mujoco":
             raise WorldError(f"MuJoCo cannot draw ({error}). {_REMEDY}") from error
-        raise MissingExtraError("mujoco", "sim", "The live kitchen") from error
+        raise MissingExtraError(
+            "mujoco", "sim", "The live kitchen", distribution=DISTRIBUTION
+        ) from error
     except (ImportError, AttributeError, RuntimeError, OSError) as error:
         raise WorldError(f"MuJoCo cannot draw ({error}). {_REMEDY}") from error
     return mujoco

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tpvqa.worlds.kitchen.assets import Grasp, Model
-from tpvqa.worlds.kitchen.rotation import Array, about_z
+from tpvqa_household.kitchen.assets import Grasp, Model
+from tpvqa_household.kitchen.rotation import Array, about_z
 
 OPEN = (0.045, 0.075)
 """Range of the opening of a hand that holds nothing, metres."""

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.worlds.kitchen.rotation import Array, about_z
+from tpvqa_household.kitchen.rotation import Array, about_z
 
 Split = Literal["train", "held_out"]
 GAP = 0.12

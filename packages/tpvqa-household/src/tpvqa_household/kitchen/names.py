@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.worlds.kitchen.assets import Model, Part
-from tpvqa.worlds.kitchen.gl import load_mujoco
-from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, ITEMS
+from tpvqa_household.kitchen.assets import Model, Part
+from tpvqa_household.kitchen.gl import load_mujoco
+from tpvqa_household.kitchen.household import FIXTURES, HANDS, ITEMS
 
 LABELS = ("nothing", *ITEMS, *FIXTURES, "screen", "dirt", "inside", "room", *HANDS)
 DRAWN = 3

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.furniture import ROOM, ROOM_CHOICE
-from tpvqa.worlds.kitchen.rotation import Array
+from tpvqa_household.kitchen.furniture import ROOM, ROOM_CHOICE
+from tpvqa_household.kitchen.rotation import Array
 
 
 def colour(

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from tpvqa.chance import chance_array
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.kitchen.layout import Split
-from tpvqa.worlds.kitchen.scene import KitchenScene
-from tpvqa.worlds.kitchen.states import sample_state
-from tpvqa.worlds.kitchen.truth import Shown
+from tpvqa_household.kitchen.layout import Split
+from tpvqa_household.kitchen.scene import KitchenScene
+from tpvqa_household.kitchen.states import sample_state
+from tpvqa_household.kitchen.truth import Shown
 
 KITCHEN = 40
 """Pictures of one kitchen before the next is built."""

@@ -9,19 +9,19 @@ from numpy.typing import NDArray
 from tpvqa.chance import chance_array
 from tpvqa.errors import UnknownNameError, WorldError
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.kitchen.cameras import Shot, Wanted, choose, faults, overview
-from tpvqa.worlds.kitchen.drawing import Drawing
-from tpvqa.worlds.kitchen.furniture import furnish
-from tpvqa.worlds.kitchen.gl import load_mujoco
-from tpvqa.worlds.kitchen.grippers import Hand, empty_hand, forearm, holding
-from tpvqa.worlds.kitchen.household import HANDS, ITEMS, Household
-from tpvqa.worlds.kitchen.layout import Split
-from tpvqa.worlds.kitchen.names import Names
-from tpvqa.worlds.kitchen.paintwork import Paintwork
-from tpvqa.worlds.kitchen.rotation import Array, quaternion
-from tpvqa.worlds.kitchen.spots import Pose, Spots, halves
-from tpvqa.worlds.kitchen.truth import Shown, objections, shown
-from tpvqa.worlds.kitchen.viewpoints import approach
+from tpvqa_household.kitchen.cameras import Shot, Wanted, choose, faults, overview
+from tpvqa_household.kitchen.drawing import Drawing
+from tpvqa_household.kitchen.furniture import furnish
+from tpvqa_household.kitchen.gl import load_mujoco
+from tpvqa_household.kitchen.grippers import Hand, empty_hand, forearm, holding
+from tpvqa_household.kitchen.household import HANDS, ITEMS, Household
+from tpvqa_household.kitchen.layout import Split
+from tpvqa_household.kitchen.names import Names
+from tpvqa_household.kitchen.paintwork import Paintwork
+from tpvqa_household.kitchen.rotation import Array, quaternion
+from tpvqa_household.kitchen.spots import Pose, Spots, halves
+from tpvqa_household.kitchen.truth import Shown, objections, shown
+from tpvqa_household.kitchen.viewpoints import approach
 
 ATTEMPTS = 12
 """Arrangements that are tried for one picture."""

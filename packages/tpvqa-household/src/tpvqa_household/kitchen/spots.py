@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from tpvqa.chance import chance_array
-from tpvqa.worlds.kitchen.assets import Model
-from tpvqa.worlds.kitchen.falling import come_to_rest
-from tpvqa.worlds.kitchen.furniture import Furniture, hinge_side
-from tpvqa.worlds.kitchen.household import Household
-from tpvqa.worlds.kitchen.layout import Area, Stand
-from tpvqa.worlds.kitchen.rotation import Array, about_y, about_z
+from tpvqa_household.kitchen.assets import Model
+from tpvqa_household.kitchen.falling import come_to_rest
+from tpvqa_household.kitchen.furniture import Furniture, hinge_side
+from tpvqa_household.kitchen.household import Household
+from tpvqa_household.kitchen.layout import Area, Stand
+from tpvqa_household.kitchen.rotation import Array, about_y, about_z
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from tpvqa.pddl import State
-from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, HOMES, ITEMS, Household
+from tpvqa_household.kitchen.household import FIXTURES, HANDS, HOMES, ITEMS, Household
 
 PLACES = ("table", "counter", "floor", "sink", "fridge")
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from tpvqa.pddl import Atom
-from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, ITEMS, SUPPORTS, Household
+from tpvqa_household.kitchen.household import FIXTURES, HANDS, ITEMS, SUPPORTS, Household
 
 ENOUGH: Mapping[str, int] = {
     "plate": 120,

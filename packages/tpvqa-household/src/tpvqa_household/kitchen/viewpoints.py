@@ -5,11 +5,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.cameras import Approach, Ball, Wanted, front_of
-from tpvqa.worlds.kitchen.furniture import Furniture, hinge_side
-from tpvqa.worlds.kitchen.household import HOMES, ITEMS, Household
-from tpvqa.worlds.kitchen.rotation import Array
-from tpvqa.worlds.kitchen.spots import Pose, Spots, radius
+from tpvqa_household.kitchen.cameras import Approach, Ball, Wanted, front_of
+from tpvqa_household.kitchen.furniture import Furniture, hinge_side
+from tpvqa_household.kitchen.household import HOMES, ITEMS, Household
+from tpvqa_household.kitchen.rotation import Array
+from tpvqa_household.kitchen.spots import Pose, Spots, radius
 
 
 def ball(pose: Pose, furniture: Furniture, item: str) -> Ball:

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from tpvqa.errors import PluginError, UnknownNameError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Atom
-from tpvqa.worlds.kitchen.household import Household
-from tpvqa.worlds.kitchen.layout import Split
-from tpvqa.worlds.kitchen.rotation import matrix, quaternion
-from tpvqa.worlds.kitchen.scene import VIEWS, KitchenScene
-from tpvqa.worlds.kitchen.spots import Pose
-from tpvqa.worlds.kitchen.truth import Shown
 from tpvqa.worlds.protocol import Execution, Report
 from tpvqa.worlds.simulation import Outcome, SimulatedTruth, Simulation
+from tpvqa_household.kitchen.household import Household
+from tpvqa_household.kitchen.layout import Split
+from tpvqa_household.kitchen.rotation import matrix, quaternion
+from tpvqa_household.kitchen.scene import VIEWS, KitchenScene
+from tpvqa_household.kitchen.spots import Pose
+from tpvqa_household.kitchen.truth import Shown
 
 QUALITY = 92
 """Of the JPEG pictures."""

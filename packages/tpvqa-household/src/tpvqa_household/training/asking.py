@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tpvqa.pddl import Action, Atom, Task, load_task
-from tpvqa.training.subjects import Subject, catalogue
-from tpvqa.training.wordings import wordings
-from tpvqa.vlm.embedded.lexicon import Lexicon
+from tpvqa_household.embedded.lexicon import Lexicon
+from tpvqa_household.training.subjects import Subject, catalogue
+from tpvqa_household.training.wordings import wordings
 
 
 @dataclass(frozen=True)

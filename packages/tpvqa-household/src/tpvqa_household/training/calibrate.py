@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.training.asking import Asking
-from tpvqa.training.data import Pictures
-from tpvqa.training.labels import Label
-from tpvqa.training.network import Network
-from tpvqa.training.validate import logits
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.data import Pictures
+from tpvqa_household.training.labels import Label
+from tpvqa_household.training.network import Network
+from tpvqa_household.training.validate import logits
 
 _MOST = 100
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from tpvqa.errors import TpvqaError
 from tpvqa.observation import Frame, Observation
-from tpvqa.training.picture_cases import GROUPS
-from tpvqa.training.scoring import Case
+from tpvqa_household.training.picture_cases import GROUPS
+from tpvqa_household.training.scoring import Case
 
 
 def rendered(folder: Path, seeds: range) -> Iterator[Case]:
@@ -19,8 +19,8 @@ def rendered(folder: Path, seeds: range) -> Iterator[Case]:
     """
     from PIL import Image
 
-    from tpvqa.training import shards
-    from tpvqa.training.data import in_words
+    from tpvqa_household.training import shards
+    from tpvqa_household.training.data import in_words
 
     for split, group in (("train", GROUPS["known"]), ("held_out", GROUPS["held_out"])):
         for path in shards.finished(folder, split):

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from tpvqa.pddl import Action
 from tpvqa.questions.question import Way
-from tpvqa.training import shards
-from tpvqa.training.facts import FactTable
-from tpvqa.training.labels import Label, Labels
-from tpvqa.training.subjects import Subject
+from tpvqa_household.training import shards
+from tpvqa_household.training.facts import FactTable
+from tpvqa_household.training.labels import Label, Labels
+from tpvqa_household.training.subjects import Subject
 
 
 def in_words(shard: shards.Shard) -> FactTable:
@@ -20,7 +20,7 @@ def in_words(shard: shards.Shard) -> FactTable:
     The robot is near one thing only, but asked "Is there a table in the image?" of a table in the
     background the right word is yes.
     """
-    from tpvqa.worlds.kitchen.truth import ENOUGH, NOTHING
+    from tpvqa_household.kitchen.truth import ENOUGH, NOTHING
 
     true, visible = shard.table.true.copy(), shard.table.visible.copy()
     for i, atom in enumerate(shard.table.atoms):

@@ -1,4 +1,4 @@
-"""Score the embedded network: `python -m tpvqa.training.evaluate --help`.
+"""Score the embedded network: `python -m tpvqa_household.training.evaluate --help`.
 
 By default on the pictures that come with the package. Needs no torch.
 """
@@ -10,19 +10,20 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tpvqa.errors import TpvqaError
-from tpvqa.training.asking import Asking
-from tpvqa.training.cases import photographs, rendered
-from tpvqa.training.picture_cases import picture_cases
-from tpvqa.training.recipe import Recipe
-from tpvqa.training.scoring import as_json, no_household_answers, report, score
-from tpvqa.vlm.embedded import EmbeddedVLM
-from tpvqa.worlds.images.manifest import load_pictures
+from tpvqa_household.embedded import EmbeddedVLM
+from tpvqa_household.images.manifest import load_pictures
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.cases import photographs, rendered
+from tpvqa_household.training.picture_cases import picture_cases
+from tpvqa_household.training.recipe import Recipe
+from tpvqa_household.training.scoring import as_json, no_household_answers, report, score
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Score the embedded network."""
     parser = argparse.ArgumentParser(
-        prog="python -m tpvqa.training.evaluate", description=(__doc__ or "").splitlines()[0]
+        prog="python -m tpvqa_household.training.evaluate",
+        description=(__doc__ or "").splitlines()[0],
     )
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--pictures", type=Path, help="a picture set instead of the shipped one")

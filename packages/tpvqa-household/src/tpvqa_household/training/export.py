@@ -1,4 +1,4 @@
-"""Export a trained network for onnxruntime: `python -m tpvqa.training.export --help`.
+"""Export a trained network for onnxruntime: `python -m tpvqa_household.training.export --help`.
 
 Weights are stored as 16-bit floats. They are rounded before the export, so that what runs is what
 torch computes with the rounded weights; the export checks that on real pictures.
@@ -12,19 +12,18 @@ import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from tpvqa.errors import TpvqaError
-from tpvqa.training.asking import Asking
-from tpvqa.training.calibrate import temperature
-from tpvqa.training.data import Pictures
-from tpvqa.training.graphs import tidy
-from tpvqa.training.memory import keep_memory
-from tpvqa.training.network import SIDE, ImageEncoder, Network, QuestionHead, normalise
-from tpvqa.vlm.embedded.weights import DESCRIPTION, HEAD, IMAGE, SHIPPED
+from tpvqa_household.embedded.weights import DESCRIPTION, HEAD, IMAGE, SHIPPED
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.calibrate import temperature
+from tpvqa_household.training.data import Pictures
+from tpvqa_household.training.graphs import tidy
+from tpvqa_household.training.memory import keep_memory
+from tpvqa_household.training.network import SIDE, ImageEncoder, Network, QuestionHead, normalise
+from tpvqa_household.training.reference import write_reference
 
 _TOLERANCE = 1e-3
 
@@ -109,14 +108,6 @@ def describe(
     (folder / DESCRIPTION).write_text(text, encoding="utf-8")
 
 
-def logits(network: Network, pixels: NDArray[np.uint8], tokens: NDArray[np.int64]) -> Tensor:
-    """What torch answers to questions about one picture, without reduced precision."""
-    with torch.no_grad():
-        picture = normalise(torch.from_numpy(np.array(pixels))[None].permute(0, 3, 1, 2))
-        out: Tensor = network(picture, torch.from_numpy(tokens)[None])[0]
-    return out
-
-
 def load(checkpoint: Path, asking: Asking) -> tuple[Network, dict[str, object]]:
     """The averaged network of a checkpoint, and how it was trained.
 
@@ -138,10 +129,9 @@ def load(checkpoint: Path, asking: Asking) -> tuple[Network, dict[str, object]]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Export, calibrate and check."""
-    from tpvqa.training.reference import write_reference
-
     parser = argparse.ArgumentParser(
-        prog="python -m tpvqa.training.export", description=(__doc__ or "").splitlines()[0]
+        prog="python -m tpvqa_household.training.export",
+        description=(__doc__ or "").splitlines()[0],
     )
     parser.add_argument("checkpoint", type=Path, help="that `train` wrote")
     parser.add_argument("pictures", type=Path, help="the folder that `render` filled")

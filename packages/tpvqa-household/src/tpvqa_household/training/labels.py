@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from tpvqa.pddl import Action, Atom, Condition, Conjunction, Disjunction, Literal
 from tpvqa.questions.question import Way
-from tpvqa.training.facts import FactTable
-from tpvqa.training.subjects import Subject, action_subject
+from tpvqa_household.training.facts import FactTable
+from tpvqa_household.training.subjects import Subject, action_subject
 
 Values = NDArray[np.float32]
 

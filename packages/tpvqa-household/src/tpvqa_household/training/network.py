@@ -4,7 +4,7 @@ import torch
 import torch.nn.functional as F  # noqa: N812
 from torch import Tensor, nn
 
-from tpvqa.training.backbone import CHANNELS, Backbone
+from tpvqa_household.training.backbone import CHANNELS, Backbone
 
 SIDE = 224
 """Side of the square picture in pixels."""

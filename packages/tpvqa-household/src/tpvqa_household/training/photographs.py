@@ -1,6 +1,7 @@
 """Pieces of photographs that show no household, to learn *no* and *cannot see* from.
 
-`python -m tpvqa.training.photographs PHOTOGRAPHS DATA` adds them to a folder that `render` fills.
+`python -m tpvqa_household.training.photographs PHOTOGRAPHS DATA` adds them to a folder that
+`render` fills.
 """
 
 import argparse
@@ -14,9 +15,9 @@ from PIL import Image
 
 from tpvqa.chance import chance_array
 from tpvqa.errors import TpvqaError
-from tpvqa.training import shards
-from tpvqa.training.facts import FactTable
-from tpvqa.worlds.kitchen.household import atoms_of_interest
+from tpvqa_household.kitchen.household import atoms_of_interest
+from tpvqa_household.training import shards
+from tpvqa_household.training.facts import FactTable
 
 FIRST = 800_000
 """Seed of the first part; those of rendered parts are below."""
@@ -64,7 +65,8 @@ def _piece(photograph: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[n
 def main(arguments: Sequence[str] | None = None) -> int:
     """Add parts with pieces of photographs."""
     parser = argparse.ArgumentParser(
-        prog="python -m tpvqa.training.photographs", description=(__doc__ or "").splitlines()[0]
+        prog="python -m tpvqa_household.training.photographs",
+        description=(__doc__ or "").splitlines()[0],
     )
     parser.add_argument("photographs", type=Path, help="a folder of photographs of other things")
     parser.add_argument("folder", type=Path, help="the folder that `render` fills")

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Atom
-from tpvqa.training.scoring import Case
-from tpvqa.worlds.images.manifest import PictureSet
+from tpvqa_household.images.manifest import PictureSet
+from tpvqa_household.training.scoring import Case
 
 GROUPS = {"known": "known meshes", "held_out": "held-out meshes"}
 

@@ -5,15 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from PIL import Image
+from torch import Tensor
 
-from tpvqa.training.asking import Asking
-from tpvqa.training.data import Pictures
-from tpvqa.training.export import logits
-from tpvqa.training.network import Network
-from tpvqa.training.wordings import wordings
-from tpvqa.vlm.embedded.sessions import Sessions
-from tpvqa.vlm.embedded.weights import Weights
+from tpvqa_household.embedded.sessions import Sessions
+from tpvqa_household.embedded.weights import Weights
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.data import Pictures
+from tpvqa_household.training.network import Network, normalise
+from tpvqa_household.training.wordings import wordings
 
 _PICTURES = 4
 
@@ -58,6 +59,14 @@ def write_reference(
         data = {"questions": texts, "cases": cases}
         (folder / "reference.json").write_text(json.dumps(data) + "\n", encoding="utf-8")
     return worst
+
+
+def logits(network: Network, pixels: NDArray[np.uint8], tokens: NDArray[np.int64]) -> Tensor:
+    """What torch answers to questions about one picture, without reduced precision."""
+    with torch.no_grad():
+        picture = normalise(torch.from_numpy(np.array(pixels))[None].permute(0, 3, 1, 2))
+        out: Tensor = network(picture, torch.from_numpy(tokens)[None])[0]
+    return out
 
 
 def _chances(out: torch.Tensor, temperature: float) -> torch.Tensor:

@@ -1,4 +1,4 @@
-"""Render training pictures: `python -m tpvqa.training.render --help`.
+"""Render training pictures: `python -m tpvqa_household.training.render --help`.
 
 Every part of the set has a seed of its own and is written whole, so that the command can be
 stopped and started again, and any number of processes gives the same pictures.
@@ -18,10 +18,10 @@ import numpy as np
 
 from tpvqa.chance import chance_array
 from tpvqa.errors import TpvqaError
-from tpvqa.training import shards
-from tpvqa.training.facts import FactTable
-from tpvqa.training.states import random_state
-from tpvqa.worlds.kitchen.layout import Split
+from tpvqa_household.kitchen.layout import Split
+from tpvqa_household.training import shards
+from tpvqa_household.training.facts import FactTable
+from tpvqa_household.training.states import random_state
 
 PART = 200
 """Pictures a part."""
@@ -48,7 +48,7 @@ def pictures(seed: int, split: Split, count: int) -> shards.Shard:
         split: "train", or "held_out" for meshes and layouts that training never sees.
         count: How many pictures.
     """
-    from tpvqa.worlds.kitchen.scene import KitchenScene
+    from tpvqa_household.kitchen.scene import KitchenScene
 
     pixels, facts, info = [], [], []
     for first in range(0, count, PER_KITCHEN):
@@ -92,7 +92,7 @@ def _missing(folder: Path, split: Split, seeds: Sequence[int]) -> Iterator[Part]
 def main(arguments: Sequence[str] | None = None) -> int:
     """Render the parts that are missing."""
     parser = argparse.ArgumentParser(
-        prog="python -m tpvqa.training.render", description=__doc__.splitlines()[0]
+        prog="python -m tpvqa_household.training.render", description=__doc__.splitlines()[0]
     )
     parser.add_argument("folder", type=Path, help="where the parts go, outside the repository")
     parser.add_argument("--pictures", type=int, default=20_000, help="how many in all")

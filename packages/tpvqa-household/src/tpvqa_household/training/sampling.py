@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.training.labels import Label
-from tpvqa.training.subjects import ACTION_WAYS, Subject
-from tpvqa.training.wordings import wordings
-from tpvqa.vlm.embedded.lexicon import Lexicon
+from tpvqa_household.embedded.lexicon import Lexicon
+from tpvqa_household.training.labels import Label
+from tpvqa_household.training.subjects import ACTION_WAYS, Subject
+from tpvqa_household.training.wordings import wordings
 
 _AS_PRECONDITION = {"near": 0.35, "in_hand": 0.35, "on": 0.2, "opened": 0.1}
 _AS_EFFECT = {

@@ -9,14 +9,14 @@ from dataclasses import asdict, dataclass
 from tpvqa.observation import Observation
 from tpvqa.pddl import literals
 from tpvqa.questions.question import Question, Way
-from tpvqa.training.asking import Asking
-from tpvqa.training.facts import Facts, FactTable
-from tpvqa.training.labels import Label, Labels
-from tpvqa.training.subjects import Subject, subject_of
-from tpvqa.training.wordings import wordings
 from tpvqa.vlm import VLM
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.metrics import Metrics, Scored, measure
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.facts import Facts, FactTable
+from tpvqa_household.training.labels import Label, Labels
+from tpvqa_household.training.subjects import Subject, subject_of
+from tpvqa_household.training.wordings import wordings
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.pddl import Atom
-from tpvqa.training.facts import FactTable
+from tpvqa_household.training.facts import FactTable
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from tpvqa.pddl import State
-from tpvqa.worlds.kitchen.household import FIXTURES, HANDS, HOMES, ITEMS, SUPPORTS, Household
+from tpvqa_household.kitchen.household import FIXTURES, HANDS, HOMES, ITEMS, SUPPORTS, Household
 
 _NEAR = {"table": 0.9, "counter": 1.2, "floor": 1.0, "sink": 1.3, "fridge": 1.6, "tv": 1.3}
 _PLACES = {"table": 1.0, "counter": 1.0, "floor": 0.8, "sink": 0.7, "fridge": 0.8, "plate": 1.0}

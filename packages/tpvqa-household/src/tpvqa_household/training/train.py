@@ -1,4 +1,4 @@
-"""Train the embedded network: `python -m tpvqa.training.train --help`.
+"""Train the embedded network: `python -m tpvqa_household.training.train --help`.
 
 Writes a checkpoint every few minutes and goes on from it when started again. With --follow it
 takes in pictures while another process still renders them.
@@ -20,15 +20,15 @@ import torch.nn.functional as F  # noqa: N812
 from torch import Tensor, nn
 
 from tpvqa.errors import TpvqaError
-from tpvqa.training.asking import Asking
-from tpvqa.training.augment import augmented
-from tpvqa.training.backbone import pretrained
-from tpvqa.training.data import Pictures
-from tpvqa.training.memory import keep_memory
-from tpvqa.training.network import Network
-from tpvqa.training.recipe import DEFAULT, Recipe
-from tpvqa.training.sampling import Sampler
-from tpvqa.training.validate import validate
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.augment import augmented
+from tpvqa_household.training.backbone import pretrained
+from tpvqa_household.training.data import Pictures
+from tpvqa_household.training.memory import keep_memory
+from tpvqa_household.training.network import Network
+from tpvqa_household.training.recipe import DEFAULT, Recipe
+from tpvqa_household.training.sampling import Sampler
+from tpvqa_household.training.validate import validate
 
 _SAVE_EVERY = 180.0
 _FEWEST = 1000
@@ -237,7 +237,7 @@ def _check(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Train, or go on training."""
     parser = argparse.ArgumentParser(
-        prog="python -m tpvqa.training.train", description=(__doc__ or "").splitlines()[0]
+        prog="python -m tpvqa_household.training.train", description=(__doc__ or "").splitlines()[0]
     )
     parser.add_argument("pictures", type=Path, help="the folder that `render` filled")
     parser.add_argument("out", type=Path, help="where checkpoints and the log go")

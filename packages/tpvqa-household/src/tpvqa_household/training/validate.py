@@ -4,11 +4,11 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from tpvqa.training.asking import Asking
-from tpvqa.training.data import Pictures
-from tpvqa.training.labels import Label
-from tpvqa.training.network import Network, normalise
-from tpvqa.training.wordings import wordings
+from tpvqa_household.training.asking import Asking
+from tpvqa_household.training.data import Pictures
+from tpvqa_household.training.labels import Label
+from tpvqa_household.training.network import Network, normalise
+from tpvqa_household.training.wordings import wordings
 
 _MOST = 200
 _BATCH = 4

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tpvqa.training.subjects import Subject
+from tpvqa_household.training.subjects import Subject
 
 NAMES = {"tv": ("TV", "television"), "fridge": ("fridge", "refrigerator")}
 _INSIDE = ("sink", "fridge")

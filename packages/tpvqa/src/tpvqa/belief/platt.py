@@ -224,5 +224,5 @@ def regression() -> Any:
     try:
         from sklearn.linear_model import LogisticRegression
     except ImportError as error:
-        raise MissingExtraError("scikit-learn", "bench", "Learning a calibration") from error
+        raise MissingExtraError("scikit-learn", "calibrate", "Learning a calibration") from error
     return LogisticRegression(C=1.0, fit_intercept=False, solver="newton-cholesky", max_iter=200)

@@ -4,9 +4,9 @@ import sys
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
 
-from tpvqa.cli import bench, calibrate, dataset, plan, questions, run
+from tpvqa.cli import calibrate, plan, questions, run
+from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.errors import TpvqaError
 
 
@@ -14,7 +14,7 @@ class _Interrupted(Exception):  # noqa: N818 — Ctrl-C, not an error
     """Ctrl-C, in a form that Typer leaves alone: it would end the process without a word."""
 
 
-class _Commands(TyperGroup):
+class _Commands(PluggedGroup):
     def invoke(self, ctx: Any) -> Any:
         try:
             return super().invoke(ctx)
@@ -53,8 +53,6 @@ def _options(
 plan.register(app)
 questions.register(app)
 run.register(app)
-dataset.register(app)
-bench.register(app)
 calibrate.register(app)
 
 

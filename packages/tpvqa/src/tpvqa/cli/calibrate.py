@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tpvqa.belief import Calibration, LabelledAnswer
     from tpvqa.belief.held_out import HeldOut
     from tpvqa.bench.reliability import Line
+    from tpvqa.questions import QuestionBook
 
 _EXIT = "Exit codes: 0 written, 2 bad input, 130 interrupted."
 _SOURCES = (
@@ -50,13 +51,25 @@ def calibrate(
     trials: Annotated[
         int | None, typer.Option(help="Run so many trials of every task.", min=1)
     ] = None,
+    domain: Annotated[
+        Path | None, typer.Option(help="With --pictures: your own domain, which they are of.")
+    ] = None,
+    problem: Annotated[Path | None, typer.Option(help="With --domain: your own problem.")] = None,
+    questions: Annotated[
+        Path | None, typer.Option(help="With --domain: your questions; fallbacks without it.")
+    ] = None,
     tasks: Annotated[
-        str, typer.Option(help="With --trials: shipped tasks, with commas.")
-    ] = "clean_dishes,serve_breakfast,eat_apple",
+        str | None,
+        typer.Option(
+            help="With --trials: shipped tasks, with commas. Default: those of the household, if "
+            "it is installed."
+        ),
+    ] = None,
     world: Annotated[
         str | None,
         typer.Option(
-            help="With --trials. Default: images for VLMs that look, symbolic for noise models."
+            help="With --trials. Default: the task's own for VLMs that look, symbolic for noise "
+            "models."
         ),
     ] = None,
     monitor: Annotated[
@@ -84,6 +97,7 @@ def calibrate(
     from tpvqa.belief.held_out import held_out
     from tpvqa.bench.recorded_faults import experience_from
     from tpvqa.bench.reliability import lines
+    from tpvqa.defaults import default_vlm
     from tpvqa.errors import TpvqaError
 
     given = [bool(episodes), pictures is not None, trials is not None]
@@ -91,6 +105,9 @@ def calibrate(
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
     if experience is not None and not episodes:
         raise TpvqaError("--experience counts the faults of recorded episodes: name their folders.")
+    own = (domain, problem, questions)
+    if any(own) and (pictures is None or domain is None or problem is None):
+        raise TpvqaError("Give --domain and --problem (and --questions) beside --pictures FOLDER.")
     image = curves or out.with_suffix(".png")
     _check(out, image)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
@@ -100,10 +117,10 @@ def calibrate(
         if experience is not None:
             experience_from(episodes).save(experience)
     elif pictures is not None:
-        name, rows = _from_pictures(vlm or "embedded", pictures, hidden=hidden)
+        name, rows = _from_pictures(vlm or default_vlm(), pictures, own, hidden=hidden)
     else:
         assert trials is not None
-        name = vlm or "embedded"
+        name = vlm or default_vlm()
         rows = _from_trials(name, tasks, world, monitor, seed, trials)
     calibration = fit(rows, name, chosen_looks=chosen_looks)
     judged = held_out(rows, name, chosen_looks=chosen_looks)
@@ -138,36 +155,77 @@ def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list
     return found.vlm, found.rows
 
 
-def _from_pictures(vlm: str, where: str, *, hidden: bool) -> tuple[str, "list[LabelledAnswer]"]:
+def _from_pictures(
+    vlm: str, where: str, own: tuple[Path | None, Path | None, Path | None], *, hidden: bool
+) -> tuple[str, "list[LabelledAnswer]"]:
     from tpvqa.bench.labelled_pictures import ask_pictures
     from tpvqa.plugins import Kind, make
-    from tpvqa.worlds.images.manifest import load_pictures
+    from tpvqa.worlds.pictures import load_set
 
-    opened = load_pictures(None if where == "shipped" else Path(where))
+    opened = load_set(_shipped_set() if where == "shipped" else Path(where))
+    books = _own_book(*own)
     asked = make(Kind.VLM, vlm)
     with _progress("pictures", len(opened.manifest.pictures)) as done:
-        return asked.name, ask_pictures(asked, opened, hidden=hidden, done=done)
+        return asked.name, ask_pictures(asked, opened, books, hidden=hidden, done=done)
+
+
+def _shipped_set() -> Path:
+    """The pictures that come with the shipped tasks."""
+    from tpvqa.distributions import HOUSEHOLD, how_to_install
+    from tpvqa.errors import CalibrationError
+    from tpvqa.tasks import shipped_tasks
+
+    found = sorted({files.pictures for files in shipped_tasks() if files.pictures is not None})
+    if not found:
+        raise CalibrationError(
+            "No pictures are shipped with what is installed. Those of the household come with "
+            f"{HOUSEHOLD}: {how_to_install(HOUSEHOLD)}."
+        )
+    if len(found) > 1:
+        folders = ", ".join(map(str, found))
+        raise CalibrationError(f"Several sets of pictures are installed: name one of {folders}.")
+    return found[0]
+
+
+def _own_book(
+    domain: Path | None, problem: Path | None, questions: Path | None
+) -> "list[QuestionBook] | None":
+    from tpvqa.pddl import load_task
+    from tpvqa.questions import QuestionBook
+
+    if domain is None or problem is None:
+        return None
+    return [QuestionBook.load(questions, load_task(domain, problem))]
 
 
 def _from_trials(
-    vlm: str, tasks: str, world: str | None, monitor: str, seed: int, trials: int
+    vlm: str, tasks: str | None, world: str | None, monitor: str, seed: int, trials: int
 ) -> "list[LabelledAnswer]":
     from tpvqa.bench.cell import Cell
     from tpvqa.bench.labelled import gather
-    from tpvqa.bench.paper import looks
+    from tpvqa.defaults import default_world
     from tpvqa.errors import TpvqaError
+    from tpvqa.tasks import find_task
     from tpvqa.trial import TrialConfig
 
-    names = [name.strip() for name in tasks.split(",") if name.strip()]
+    names = _tasks_with_pictures() if tasks is None else [part.strip() for part in tasks.split(",")]
+    names = [name for name in names if name]
     if not names:
-        raise TpvqaError("--tasks names no task; write for example --tasks eat_apple")
-    world = world or ("images" if looks(vlm) else "symbolic")
+        raise TpvqaError("--tasks names no task; write for example --tasks build_tower")
     rows: list[LabelledAnswer] = []
     with _progress("trials", trials * len(names)) as done:
         for task in names:
-            cell = Cell(task, monitor, vlm, world)
+            cell = Cell(task, monitor, vlm, world or default_world(find_task(task), vlm))
             rows += gather(cell, TrialConfig(seed=seed), range(trials), done=done)
     return rows
+
+
+def _tasks_with_pictures() -> list[str]:
+    """The shipped tasks that can be seen; all of them where none can."""
+    from tpvqa.tasks import shipped_tasks
+
+    found = shipped_tasks()
+    return [files.name for files in found if files.pictures] or [files.name for files in found]
 
 
 @contextmanager

@@ -85,19 +85,22 @@ def ask(
     image: Annotated[Path, typer.Argument(help="A picture.")],
     question: Annotated[list[str], typer.Argument(help="Questions with the answer yes or no.")],
     *,
-    vlm: Annotated[str, typer.Option(help="embedded, openai:MODEL or a plug-in.")] = "embedded",
+    vlm: Annotated[
+        str | None, typer.Option(help="embedded (the default), openai:MODEL or a plug-in.")
+    ] = None,
     base_url: Annotated[
         str | None, typer.Option(help="Address of an OpenAI-compatible server, with its path.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Ask about a picture: prints each answer and P(yes)."""
+    from tpvqa.defaults import default_vlm
     from tpvqa.plugins import Kind, make
     from tpvqa.questions import Question, Way
     from tpvqa.vlm.pictures import observe_file
 
     observation = observe_file(image)
-    model = make(Kind.VLM, vlm, base_url=base_url)
+    model = make(Kind.VLM, vlm or default_vlm(), base_url=base_url)
     asked = [Question(text, Way.PRECONDITION) for text in question]
     try:
         answers = model.ask(observation, asked)

@@ -37,7 +37,10 @@ def run(
     *,
     world: Annotated[
         str | None,
-        typer.Option(help="images, kitchen or symbolic (the default for your own domain)."),
+        typer.Option(
+            help="symbolic (the default for your own domain), pictures:FOLDER, scripted:FILE or "
+            "a plug-in; the household's tasks: images (their default) or kitchen."
+        ),
     ] = None,
     monitor: Annotated[
         str | None,
@@ -83,7 +86,7 @@ def run(
         ),
     ] = None,
     pictures: Annotated[
-        Path | None, typer.Option(help="images world: folder of a set of your own.")
+        Path | None, typer.Option(help="pictures and images world: folder of a set of your own.")
     ] = None,
     failure: Annotated[float, typer.Option(help="P(an action fails).", min=0, max=1)] = 0.25,
     disturbance: Annotated[
@@ -123,7 +126,6 @@ def run(
         monitor = "belief" if majority is None else "tpvqa"
     if not monitor.strip() or (vlm is not None and not vlm.strip()):
         raise TpvqaError("--monitor and --vlm must not be empty.")
-    own = task is None
     options = {
         "majority": majority,
         "simulator": simulator,
@@ -138,7 +140,7 @@ def run(
         world_file=None if world_file is None else str(world_file.resolve()),
         monitor=monitor,
         vlm=vlm,
-        world=world or ("symbolic" if own else "images"),
+        world=world,
         seed=seed,
         episode=episode,
         failure=failure,

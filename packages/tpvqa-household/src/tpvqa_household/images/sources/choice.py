@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tpvqa.errors import PluginError, UnknownNameError
-from tpvqa.worlds.images.recipe import Job
-from tpvqa.worlds.images.sources.diffusers_images import STRENGTH, DiffusersImages
-from tpvqa.worlds.images.sources.generator import ImageGenerator
-from tpvqa.worlds.images.sources.openai_images import OpenAIImages
-from tpvqa.worlds.images.sources.rerender import Rerender
+from tpvqa_household.images.recipe import Job
+from tpvqa_household.images.sources.diffusers_images import STRENGTH, DiffusersImages
+from tpvqa_household.images.sources.generator import ImageGenerator
+from tpvqa_household.images.sources.openai_images import OpenAIImages
+from tpvqa_household.images.sources.rerender import Rerender
 
 NAMES = ("openai", "diffusers", "rerender", "none")
 

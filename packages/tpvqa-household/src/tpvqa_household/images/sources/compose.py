@@ -11,22 +11,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tpvqa.errors import GeneratorError, PictureRefused, PictureSetError
-from tpvqa.worlds.images.manifest import (
-    MANIFEST,
+from tpvqa.worlds.pictures import MANIFEST, digest
+from tpvqa_household.images.manifest import (
     Manifest,
     Origin,
     Picture,
     Shows,
-    digest,
 )
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.recipe import FACTS
-from tpvqa.worlds.images.sources.generator import Drawn, Original
-from tpvqa.worlds.images.sources.picture_file import as_jpeg, read_picture
-from tpvqa.worlds.images.sources.plan import Wanted
-from tpvqa.worlds.images.verify import observations
-from tpvqa.worlds.images.visible import VisibleState, describe
-from tpvqa.worlds.images.writing import alone, replace, write_manifest
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.recipe import FACTS
+from tpvqa_household.images.sources.generator import Drawn, Original
+from tpvqa_household.images.sources.picture_file import as_jpeg, read_picture
+from tpvqa_household.images.sources.plan import Wanted
+from tpvqa_household.images.verify import observations
+from tpvqa_household.images.visible import VisibleState, describe
+from tpvqa_household.images.writing import alone, replace, write_manifest
 
 UNUSED = "unused"
 """Folder, in that of a set, of pictures that are no longer wanted."""

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import GeneratorError, MissingExtraError, PictureRefused
-from tpvqa.worlds.images.sources.generator import Drawn, Original
-from tpvqa.worlds.images.sources.picture_file import as_png, read_picture, square
+from tpvqa_household import DISTRIBUTION
+from tpvqa_household.images.sources.generator import Drawn, Original
+from tpvqa_household.images.sources.picture_file import as_png, read_picture, square
 
 PACKAGES = ("diffusers", "transformers", "torch")
 STRENGTH = 0.45
@@ -42,7 +43,12 @@ class DiffusersImages:
     ) -> None:
         for package in PACKAGES:
             if importlib.util.find_spec(package) is None:
-                raise MissingExtraError(package, "diffusion", f"The generator 'diffusers:{model}'")
+                raise MissingExtraError(
+                    package,
+                    "diffusion",
+                    f"The generator 'diffusers:{model}'",
+                    distribution=DISTRIBUTION,
+                )
         self.model = model
         self._device, self._side, self._steps, self._strength = device, side, steps, strength
         self._from_image: Any = None

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from tpvqa.worlds.images.manifest import Picture, Renderer
+from tpvqa_household.images.manifest import Picture, Renderer
 
 
 @dataclass(frozen=True)

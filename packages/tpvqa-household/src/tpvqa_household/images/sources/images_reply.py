@@ -10,7 +10,7 @@ from email.utils import parsedate_to_datetime
 
 from pydantic import BaseModel, Field, ValidationError
 
-from tpvqa.worlds.images.sources.picture_file import read_picture
+from tpvqa_household.images.sources.picture_file import read_picture
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from tpvqa.pddl import State
-from tpvqa.worlds.images.manifest import OUTCOMES, Shows
-from tpvqa.worlds.images.reachable import Reachable, say_kind
-from tpvqa.worlds.images.visible import VisibleState
+from tpvqa_household.images.manifest import OUTCOMES, Shows
+from tpvqa_household.images.reachable import Reachable, say_kind
+from tpvqa_household.images.visible import VisibleState
 
 
 @dataclass(frozen=True)

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from tpvqa.chance import chance
 from tpvqa.errors import GeneratorError, MissingExtraError, PictureRefused
-from tpvqa.worlds.images.manifest import digest
-from tpvqa.worlds.images.sources.generator import Drawn, Original
-from tpvqa.worlds.images.sources.images_reply import (
+from tpvqa.worlds.pictures import digest
+from tpvqa_household.images.sources.generator import Drawn, Original
+from tpvqa_household.images.sources.images_reply import (
     Elsewhere,
     complaint,
     read_reply,
     seconds_to_wait,
     whole,
 )
-from tpvqa.worlds.images.sources.picture_file import as_png, read_picture, square
+from tpvqa_household.images.sources.picture_file import as_png, read_picture, square
 
 if TYPE_CHECKING:
     from openai import APIStatusError, OpenAI

@@ -8,11 +8,12 @@ from pathlib import Path
 
 from tpvqa.errors import PhotosError, WorldError, suggestion_or_list
 from tpvqa.pddl import Atom, State
-from tpvqa.worlds.images.manifest import OUTCOMES, digest
-from tpvqa.worlds.images.recipe import FACTS
-from tpvqa.worlds.images.sources.labels import Label, file_name
-from tpvqa.worlds.images.sources.picture_file import read_picture
-from tpvqa.worlds.images.visible import describe, visible_state
+from tpvqa.worlds.pictures import digest
+from tpvqa_household.images.manifest import OUTCOMES
+from tpvqa_household.images.recipe import FACTS
+from tpvqa_household.images.sources.labels import Label, file_name
+from tpvqa_household.images.sources.picture_file import read_picture
+from tpvqa_household.images.visible import describe, visible_state
 
 SUFFIXES = frozenset(
     (".jpg", ".jpeg", ".png", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".heic", ".heif")

@@ -8,16 +8,17 @@ from pathlib import Path
 
 from tpvqa.chance import chance
 from tpvqa.pddl import State
-from tpvqa.worlds.images.manifest import OriginKind, Picture, PictureSet, digest
-from tpvqa.worlds.images.reachable import Reachable
-from tpvqa.worlds.images.recipe import FACTS, needed
-from tpvqa.worlds.images.sources.generator import ImageGenerator
-from tpvqa.worlds.images.sources.labels import Label
-from tpvqa.worlds.images.sources.photos import Photo
-from tpvqa.worlds.images.sources.prompts import Prompts
-from tpvqa.worlds.images.sources.shares import Shares
-from tpvqa.worlds.images.verify import PER_OUTCOME, PER_STATE
-from tpvqa.worlds.images.visible import VisibleState, describe, visible_state, without_hands
+from tpvqa.worlds.pictures import digest
+from tpvqa_household.images.manifest import OriginKind, Picture, PictureSet
+from tpvqa_household.images.reachable import Reachable
+from tpvqa_household.images.recipe import FACTS, needed
+from tpvqa_household.images.sources.generator import ImageGenerator
+from tpvqa_household.images.sources.labels import Label
+from tpvqa_household.images.sources.photos import Photo
+from tpvqa_household.images.sources.prompts import Prompts
+from tpvqa_household.images.sources.shares import Shares
+from tpvqa_household.images.verify import PER_OUTCOME, PER_STATE
+from tpvqa_household.images.visible import VisibleState, describe, visible_state, without_hands
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from importlib.resources import files
 from pathlib import Path
 
 from tpvqa.errors import PhotosError, suggestion_or_list
-from tpvqa.worlds.images.manifest import OUTCOMES, Shows
-from tpvqa.worlds.images.sources.labels import Label, file_name
 from tpvqa.yaml_places import Place, read_yaml
+from tpvqa_household.images.manifest import OUTCOMES, Shows
+from tpvqa_household.images.sources.labels import Label, file_name
 
 STYLE = "style.yaml"
 
@@ -46,7 +46,7 @@ class Prompts:
 
 def shipped_prompts() -> Path:
     """The folder of the prompts that come with the package."""
-    return Path(str(files("tpvqa.worlds.images.sources") / "prompts"))
+    return Path(str(files("tpvqa_household.images.sources") / "prompts"))
 
 
 def read_prompts(labels: Sequence[Label], folder: Path | None = None) -> Prompts:

@@ -8,16 +8,16 @@ from PIL import Image
 
 from tpvqa.chance import chance
 from tpvqa.errors import GeneratorError, PictureRefused
-from tpvqa.worlds.images.contrast import overlooked
-from tpvqa.worlds.images.manifest import Picture
-from tpvqa.worlds.images.recipe import FACTS, Job, objection
-from tpvqa.worlds.images.sources.generator import Drawn, Original
-from tpvqa.worlds.images.sources.photographic import photographed
-from tpvqa.worlds.images.sources.picture_file import as_jpeg, read_picture
-from tpvqa.worlds.kitchen.layout import Split
+from tpvqa_household.images.contrast import overlooked
+from tpvqa_household.images.manifest import Picture
+from tpvqa_household.images.recipe import FACTS, Job, objection
+from tpvqa_household.images.sources.generator import Drawn, Original
+from tpvqa_household.images.sources.photographic import photographed
+from tpvqa_household.images.sources.picture_file import as_jpeg, read_picture
+from tpvqa_household.kitchen.layout import Split
 
 if TYPE_CHECKING:
-    from tpvqa.worlds.kitchen.scene import KitchenScene
+    from tpvqa_household.kitchen.scene import KitchenScene
 
 SIDE = 224
 TRIES = 24
@@ -47,7 +47,7 @@ class Rerender:
     requests = 0
 
     def __init__(self, jobs: Mapping[str, Job]):
-        from tpvqa.worlds.kitchen.gl import load_mujoco
+        from tpvqa_household.kitchen.gl import load_mujoco
 
         load_mujoco()
         self._jobs = jobs
@@ -99,7 +99,7 @@ class Rerender:
 
     def _kitchen(self, entry: Picture) -> "KitchenScene":
         """The last kitchen, or another: compiling one takes as long as some pictures."""
-        from tpvqa.worlds.kitchen.scene import KitchenScene
+        from tpvqa_household.kitchen.scene import KitchenScene
 
         wanted = (entry.seed, _SPLITS[entry.meshes])
         if self._scene is None or (self._scene.seed, self._scene.split) != wanted:

@@ -1,7 +1,7 @@
 """The things in the kitchen: meshes, materials and textures in many variants."""
 
-from tpvqa.worlds.kitchen.assets.dirt import soiled
-from tpvqa.worlds.kitchen.assets.library import (
+from tpvqa_household.kitchen.assets.dirt import soiled
+from tpvqa_household.kitchen.assets.library import (
     Split,
     distractors,
     draw,
@@ -10,7 +10,7 @@ from tpvqa.worlds.kitchen.assets.library import (
     lookalikes,
     models,
 )
-from tpvqa.worlds.kitchen.assets.model import (
+from tpvqa_household.kitchen.assets.model import (
     Grasp,
     Joint,
     Model,
@@ -19,8 +19,8 @@ from tpvqa.worlds.kitchen.assets.model import (
     Solid,
     Surface,
 )
-from tpvqa.worlds.kitchen.assets.television import OFF, ON
-from tpvqa.worlds.kitchen.assets.textures import Texture, draw_texture
+from tpvqa_household.kitchen.assets.television import OFF, ON
+from tpvqa_household.kitchen.assets.textures import Texture, draw_texture
 
 __all__ = [
     "OFF",

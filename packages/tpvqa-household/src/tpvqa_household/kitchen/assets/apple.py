@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Mesh
-from tpvqa.worlds.kitchen.assets.model import Grasp, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, clouds, mix, near, one_of, png
-from tpvqa.worlds.kitchen.assets.shapes import surface, tube
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Floats, Mesh
+from tpvqa_household.kitchen.assets.model import Grasp, Model
+from tpvqa_household.kitchen.assets.paint import Colour, clouds, mix, near, one_of, png
+from tpvqa_household.kitchen.assets.shapes import surface, tube
 
 RED: tuple[Colour, ...] = ((0.68, 0.08, 0.1), (0.78, 0.16, 0.12), (0.55, 0.05, 0.09))
 GREEN: tuple[Colour, ...] = ((0.5, 0.68, 0.18), (0.42, 0.6, 0.16))

@@ -1,6 +1,6 @@
 """Who made the scanned things, generated from the pack's index.
 
-    python -m tpvqa.worlds.kitchen.assets.attribution
+    python -m tpvqa_household.kitchen.assets.attribution
 
 writes the texts that stand in NOTICE and docs/assets.md; a test compares them.
 """
@@ -8,7 +8,7 @@ writes the texts that stand in NOTICE and docs/assets.md; a test compares them.
 from collections.abc import Iterable
 from typing import Any
 
-from tpvqa.worlds.kitchen.assets import pack
+from tpvqa_household.kitchen.assets import pack
 
 LICENCES = {
     "CC0-1.0": "https://creativecommons.org/publicdomain/zero/1.0/",
@@ -20,7 +20,7 @@ HOLDERS = {
     "Scopia": "Scopia Visual Interfaces Systems, s.l., and Emmanuel Puybaret / eTeks",
 }
 INTRODUCTION = """\
-The kitchen's scanned things (src/tpvqa/worlds/kitchen/assets/scanned.zip) were made by others
+The kitchen's scanned things (tpvqa_household/kitchen/assets/scanned.zip) were made by others
 and come from the furniture packs of Sweet Home 3D (https://www.sweethome3d.com). They were
 changed: turned upright, scaled to metres, split by material, simplified, their pictures made
 smaller. All other shapes and pictures are this project's own."""
@@ -82,7 +82,7 @@ def _source(entry: dict[str, Any]) -> str:
 
 def main() -> None:
     """Print all three."""
-    from tpvqa.worlds.kitchen.assets.families import FAMILIES
+    from tpvqa_household.kitchen.assets.families import FAMILIES
 
     print(notice(), table(), counts(FAMILIES), sep="\n")
 

@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Grasp, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, clouds, mix, near, one_of, png
-from tpvqa.worlds.kitchen.assets.shapes import surface
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Floats, Mesh, joined
+from tpvqa_household.kitchen.assets.model import Grasp, Model
+from tpvqa_household.kitchen.assets.paint import Colour, clouds, mix, near, one_of, png
+from tpvqa_household.kitchen.assets.shapes import surface
 
 GOLD: tuple[Colour, ...] = ((0.8, 0.56, 0.28), (0.72, 0.45, 0.2), (0.62, 0.37, 0.17))
 DARK: Colour = (0.4, 0.2, 0.08)
@@ -267,7 +267,7 @@ def plaited_loaf(rng: Generator) -> Model:
 
 
 def _strand(path: Floats, radius: Floats) -> Mesh:
-    from tpvqa.worlds.kitchen.assets.shapes import tube
+    from tpvqa_household.kitchen.assets.shapes import tube
 
     mesh = tube(path, radius, steps=9, flat=1.0)
     height = (mesh.points[:, 2] - mesh.low[2]) / np.ptp(mesh.points[:, 2])

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from tpvqa.worlds.kitchen.assets.mesh import Mesh, encode
-from tpvqa.worlds.kitchen.assets.model import (
+from tpvqa_household.kitchen.assets.mesh import Mesh, encode
+from tpvqa_household.kitchen.assets.model import (
     Grasp,
     Joint,
     Model,

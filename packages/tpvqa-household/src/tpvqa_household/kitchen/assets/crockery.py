@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Floats
-from tpvqa.worlds.kitchen.assets.model import Grasp, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, hsv, one_of, png
-from tpvqa.worlds.kitchen.assets.shapes import lathe
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Floats
+from tpvqa_household.kitchen.assets.model import Grasp, Model
+from tpvqa_household.kitchen.assets.paint import Colour, hsv, one_of, png
+from tpvqa_household.kitchen.assets.shapes import lathe
 
 GLAZES: tuple[Colour, ...] = (
     (0.95, 0.95, 0.94),

@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, near
-from tpvqa.worlds.kitchen.assets.shapes import blob, surface, tube
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Floats, Mesh, joined
+from tpvqa_household.kitchen.assets.model import Model
+from tpvqa_household.kitchen.assets.paint import Colour, near
+from tpvqa_household.kitchen.assets.shapes import blob, surface, tube
 
 COLOURS: tuple[Colour, ...] = (
     (0.36, 0.2, 0.09),

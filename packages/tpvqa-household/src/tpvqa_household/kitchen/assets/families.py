@@ -1,6 +1,6 @@
 """The list of all families, kind by kind."""
 
-from tpvqa.worlds.kitchen.assets import (
+from tpvqa_household.kitchen.assets import (
     apple,
     bread,
     crockery,
@@ -14,8 +14,8 @@ from tpvqa.worlds.kitchen.assets import (
     utensils,
     vessels,
 )
-from tpvqa.worlds.kitchen.assets.family import Family
-from tpvqa.worlds.kitchen.assets.scanned import scanned_families
+from tpvqa_household.kitchen.assets.family import Family
+from tpvqa_household.kitchen.assets.scanned import scanned_families
 
 FAMILIES: tuple[Family, ...] = (
     Family("plate", "plate-lathe", crockery.plate, fixed=6),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.model import Model
+from tpvqa_household.kitchen.assets.model import Model
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.mesh import Mesh, joined
-from tpvqa.worlds.kitchen.assets.shapes import blob, box, tube
+from tpvqa_household.kitchen.assets.mesh import Mesh, joined
+from tpvqa_household.kitchen.assets.shapes import blob, box, tube
 
 TIP = 0.012
 """How far fingers reach beyond the point between them, metres."""

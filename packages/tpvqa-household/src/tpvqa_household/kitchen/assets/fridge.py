@@ -11,11 +11,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Joint, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, one_of
-from tpvqa.worlds.kitchen.assets.shapes import box, tube
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Mesh, joined
+from tpvqa_household.kitchen.assets.model import Joint, Model
+from tpvqa_household.kitchen.assets.paint import Colour, one_of
+from tpvqa_household.kitchen.assets.shapes import box, tube
 
 COLOURS: tuple[Colour, ...] = (
     (0.74, 0.76, 0.78),

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, near, one_of
-from tpvqa.worlds.kitchen.assets.shapes import box, disc, tube
-from tpvqa.worlds.kitchen.assets.textures import PALE, WOODS, Use, draw_texture
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Mesh, joined
+from tpvqa_household.kitchen.assets.model import Model
+from tpvqa_household.kitchen.assets.paint import Colour, near, one_of
+from tpvqa_household.kitchen.assets.shapes import box, disc, tube
+from tpvqa_household.kitchen.assets.textures import PALE, WOODS, Use, draw_texture
 
 HEIGHT = 0.88
 DEPTH = 0.6

@@ -11,13 +11,13 @@ from collections.abc import Callable
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets import fingers
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.fingers import Finger
-from tpvqa.worlds.kitchen.assets.mesh import joined
-from tpvqa.worlds.kitchen.assets.model import Joint, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, hsv, near, one_of
-from tpvqa.worlds.kitchen.assets.shapes import box, tube
+from tpvqa_household.kitchen.assets import fingers
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.fingers import Finger
+from tpvqa_household.kitchen.assets.mesh import joined
+from tpvqa_household.kitchen.assets.model import Joint, Model
+from tpvqa_household.kitchen.assets.paint import Colour, hsv, near, one_of
+from tpvqa_household.kitchen.assets.shapes import box, tube
 
 METALS: tuple[Colour, ...] = (
     (0.12, 0.12, 0.13),

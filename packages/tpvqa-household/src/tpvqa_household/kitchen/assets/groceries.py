@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Grasp, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, clouds, hsv, mix, near, one_of, png
-from tpvqa.worlds.kitchen.assets.shapes import blob, box, lathe, tube
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Mesh, joined
+from tpvqa_household.kitchen.assets.model import Grasp, Model
+from tpvqa_household.kitchen.assets.paint import Colour, clouds, hsv, mix, near, one_of, png
+from tpvqa_household.kitchen.assets.shapes import blob, box, lathe, tube
 
 
 def _round(build: Builder, kind: str, radius: float, z: float, mass: float) -> Model:

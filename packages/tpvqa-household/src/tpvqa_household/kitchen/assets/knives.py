@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.knife import (
+from tpvqa_household.kitchen.assets.knife import (
     HANDLES,
     STEEL,
     Blade,
@@ -11,8 +11,8 @@ from tpvqa.worlds.kitchen.assets.knife import (
     build_knife,
     grip_colour,
 )
-from tpvqa.worlds.kitchen.assets.model import Model
-from tpvqa.worlds.kitchen.assets.paint import near, one_of
+from tpvqa_household.kitchen.assets.model import Model
+from tpvqa_household.kitchen.assets.paint import near, one_of
 
 
 def chef(rng: Generator) -> Model:

@@ -18,9 +18,9 @@ from numpy.random import Generator
 
 from tpvqa.chance import chance_array
 from tpvqa.errors import UnknownNameError
-from tpvqa.worlds.kitchen.assets.families import FAMILIES
-from tpvqa.worlds.kitchen.assets.family import Family
-from tpvqa.worlds.kitchen.assets.model import Model
+from tpvqa_household.kitchen.assets.families import FAMILIES
+from tpvqa_household.kitchen.assets.family import Family
+from tpvqa_household.kitchen.assets.model import Model
 
 Split = Literal["train", "held_out", "all"]
 

@@ -15,7 +15,7 @@ from zipfile import ZipFile
 import numpy as np
 from PIL import Image
 
-from tpvqa.worlds.kitchen.assets.mesh import Mesh, encode
+from tpvqa_household.kitchen.assets.mesh import Mesh, encode
 
 
 @cache

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from numpy.random import Generator
 from PIL import Image
 
-from tpvqa.worlds.kitchen.assets.mesh import Floats
+from tpvqa_household.kitchen.assets.mesh import Floats
 
 Colour = tuple[float, float, float]
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.random import Generator
 from PIL import Image, ImageDraw
 
-from tpvqa.worlds.kitchen.assets.mesh import Floats
-from tpvqa.worlds.kitchen.assets.paint import Colour, clouds, hsv, mix, png
+from tpvqa_household.kitchen.assets.mesh import Floats
+from tpvqa_household.kitchen.assets.paint import Colour, clouds, hsv, mix, png
 
 WIDTH, HEIGHT = 240, 136
 Ink = tuple[int, int, int]

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets import pack
-from tpvqa.worlds.kitchen.assets.apple import flesh
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.crockery import GLAZES, rim_grasp
-from tpvqa.worlds.kitchen.assets.family import Family
-from tpvqa.worlds.kitchen.assets.mesh import Mesh, cut, joined
-from tpvqa.worlds.kitchen.assets.model import Grasp, Model, Vec
-from tpvqa.worlds.kitchen.assets.paint import Colour, one_of
-from tpvqa.worlds.kitchen.assets.television import screen
+from tpvqa_household.kitchen.assets import pack
+from tpvqa_household.kitchen.assets.apple import flesh
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.crockery import GLAZES, rim_grasp
+from tpvqa_household.kitchen.assets.family import Family
+from tpvqa_household.kitchen.assets.mesh import Mesh, cut, joined
+from tpvqa_household.kitchen.assets.model import Grasp, Model, Vec
+from tpvqa_household.kitchen.assets.paint import Colour, one_of
+from tpvqa_household.kitchen.assets.television import screen
 
 WEIGHTS = {
     "plate": 0.4,

@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Ints, Mesh
+from tpvqa_household.kitchen.assets.mesh import Floats, Ints, Mesh
 
 
 def lathe(

@@ -7,12 +7,12 @@ ribbed side where there is one.
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.furniture import DEPTH, HEIGHT, TOP, cabinet, textured
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, near, one_of
-from tpvqa.worlds.kitchen.assets.shapes import box, lathe, tube
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.furniture import DEPTH, HEIGHT, TOP, cabinet, textured
+from tpvqa_household.kitchen.assets.mesh import Floats, Mesh, joined
+from tpvqa_household.kitchen.assets.model import Model
+from tpvqa_household.kitchen.assets.paint import Colour, near, one_of
+from tpvqa_household.kitchen.assets.shapes import box, lathe, tube
 
 STEEL: Colour = (0.7, 0.72, 0.74)
 

@@ -7,12 +7,12 @@ the material of the paint `ON`.
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, near, one_of
-from tpvqa.worlds.kitchen.assets.pictures import picture
-from tpvqa.worlds.kitchen.assets.shapes import box, quad, tube
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Mesh, joined
+from tpvqa_household.kitchen.assets.model import Model
+from tpvqa_household.kitchen.assets.paint import Colour, near, one_of
+from tpvqa_household.kitchen.assets.pictures import picture
+from tpvqa_household.kitchen.assets.shapes import box, quad, tube
 
 OFF, ON = "screen_off", "screen_on"
 CASES: tuple[Colour, ...] = (
@@ -82,7 +82,7 @@ def _stand(style: str, width: float, deep: float, lift: float) -> Mesh:
     if style == "pillar":
         return joined([box(width * 0.42, deep, 0.014, bevel=0.005), post])
     angle = np.linspace(0, 2 * np.pi, 28, endpoint=False)
-    from tpvqa.worlds.kitchen.assets.shapes import slab
+    from tpvqa_household.kitchen.assets.shapes import slab
 
     oval = np.stack([0.24 * width * np.cos(angle), deep / 2 * np.sin(angle)], 1)
     return joined([slab(oval, 0, 0.014, bevel=0.005), post])

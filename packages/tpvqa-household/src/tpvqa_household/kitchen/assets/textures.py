@@ -11,8 +11,8 @@ import numpy as np
 from numpy.random import Generator
 
 from tpvqa.errors import UnknownNameError
-from tpvqa.worlds.kitchen.assets.mesh import Floats
-from tpvqa.worlds.kitchen.assets.paint import Colour, clouds, hsv, mix, near, one_of, png
+from tpvqa_household.kitchen.assets.mesh import Floats
+from tpvqa_household.kitchen.assets.paint import Colour, clouds, hsv, mix, near, one_of, png
 
 SIZE = 192
 Use = Literal["wall", "floor", "table", "worktop", "cabinet"]

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Grasp, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, clouds, hsv, mix, near, one_of, png
-from tpvqa.worlds.kitchen.assets.shapes import blob, box, slab, surface, tube
-from tpvqa.worlds.kitchen.assets.textures import draw_texture
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Floats, Mesh, joined
+from tpvqa_household.kitchen.assets.model import Grasp, Model
+from tpvqa_household.kitchen.assets.paint import Colour, clouds, hsv, mix, near, one_of, png
+from tpvqa_household.kitchen.assets.shapes import blob, box, slab, surface, tube
+from tpvqa_household.kitchen.assets.textures import draw_texture
 
 STEEL: Colour = (0.76, 0.77, 0.79)
 HANDLES: tuple[Colour, ...] = (STEEL, (0.08, 0.08, 0.08), (0.5, 0.32, 0.18), (0.65, 0.1, 0.1))

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.random import Generator
 
-from tpvqa.worlds.kitchen.assets.builder import Builder
-from tpvqa.worlds.kitchen.assets.mesh import Floats, Mesh, joined
-from tpvqa.worlds.kitchen.assets.model import Grasp, Model
-from tpvqa.worlds.kitchen.assets.paint import Colour, clouds, hsv, mix, near, one_of, png
-from tpvqa.worlds.kitchen.assets.shapes import box, lathe, slab, tube
+from tpvqa_household.kitchen.assets.builder import Builder
+from tpvqa_household.kitchen.assets.mesh import Floats, Mesh, joined
+from tpvqa_household.kitchen.assets.model import Grasp, Model
+from tpvqa_household.kitchen.assets.paint import Colour, clouds, hsv, mix, near, one_of, png
+from tpvqa_household.kitchen.assets.shapes import box, lathe, slab, tube
 
 CERAMICS: tuple[Colour, ...] = (
     (0.94, 0.94, 0.92),

@@ -15,7 +15,6 @@ from tpvqa.bench.summary import Summary, summaries
 from tpvqa.errors import BenchError
 from tpvqa.questions import Way
 from tpvqa.vlm.metrics import Metrics
-from tpvqa.vlm.paper_table import PAPER_TABLE
 
 WAYS = (Way.PRECONDITION, Way.POSSIBLE, Way.EFFECT, Way.SUCCESSFUL, Way.DID)
 WORDS = {
@@ -49,12 +48,14 @@ class Results:
         rows: The episodes of every cell.
         balanced: Lines about the balanced set, by VLM.
         curves: Completion by task, monitor and accuracy.
+        published: Accuracies that others measured, by way of asking and task, to stand beside.
     """
 
     settings: Mapping[str, Any]
     rows: Mapping[Cell, Sequence[EpisodeRow]]
     balanced: Mapping[str, Sequence[AnswerLine]] = field(default_factory=dict)
     curves: Mapping[str, Mapping[str, Curve]] = field(default_factory=dict)
+    published: Mapping[Way, Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def summaries(self) -> list[Summary]:
@@ -82,7 +83,7 @@ class Results:
             for way in WORDS:
                 metrics = answers_of(rows, way)
                 if metrics is not None:
-                    paper = PAPER_TABLE.get(way, {}).get(task)
+                    paper = self.published.get(way, {}).get(task)
                     lines.append(AnswerLine(task, WORDS[way], "episodes", metrics, None, paper))
         return lines
 
