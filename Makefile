@@ -3,6 +3,7 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+PROJECTS := packages/tpvqa/pyproject.toml packages/tpvqa-household/pyproject.toml experiments/pyproject.toml
 DEMO := episodes/demo
 SEED ?= 20
 
@@ -36,14 +37,15 @@ $(VENV)/bin/python:
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 	  echo "Python's venv module is missing. Install it: apt-get install python3-venv"; exit 1; }
 
-$(VENV)/.installed: $(VENV)/bin/python pyproject.toml
-	@echo "installing tpvqa into $(VENV) …"
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+$(VENV)/.installed: $(VENV)/bin/python $(PROJECTS)
+	@echo "installing tpvqa and its household into $(VENV) …"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check \
+	  -e packages/tpvqa -e packages/tpvqa-household
 	@touch $@
 
-$(VENV)/.installed-dev: $(VENV)/bin/python pyproject.toml
-	@echo "installing tpvqa and its development tools into $(VENV) …"
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+$(VENV)/.installed-dev: $(VENV)/bin/python $(PROJECTS) requirements-dev.txt
+	@echo "installing tpvqa, its household, the experiments and development tools into $(VENV) …"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements-dev.txt
 	@touch $(VENV)/.installed $@
 
 # Software rendering needs Mesa's off-screen library, which is a system package.

@@ -23,6 +23,7 @@ from typing import cast
 
 from consistency import problem  # type: ignore[import-not-found]
 from household_problems import household_problem  # type: ignore[import-not-found]
+
 from tpvqa.assembly import Trial
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.consistency import most_probable

@@ -13,10 +13,10 @@ from pathlib import Path
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
-from tpvqa.bench.paper import MONITORS, TASKS
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
+from tpvqa_experiments.paper import MONITORS, TASKS
 
 
 def rate(cells: list[Cell], episodes: int, warm: int) -> tuple[float, float]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from tpvqa.observation import Frame, Observation
 from tpvqa.questions import Question, Way
-from tpvqa.vlm.embedded import EmbeddedVLM
+from tpvqa_household.embedded import EmbeddedVLM
 
 QUESTIONS = (
     "Is there a plate in the image?",
@@ -32,7 +32,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pictures", type=int, default=120)
     given = parser.parse_args()
-    import tpvqa.worlds.images as images
+    import tpvqa_household.images as images
 
     folder = Path(images.__file__).parent / "data"
     files = sorted(folder.rglob("*.jpg"))[: given.pictures]

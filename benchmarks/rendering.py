@@ -27,8 +27,8 @@ def main() -> None:
     parser.add_argument("--threads", type=int, default=2, help="of the software renderer")
     given = parser.parse_args()
     os.environ["LP_NUM_THREADS"] = str(given.threads)
-    from tpvqa.worlds.kitchen.scene import KitchenScene
-    from tpvqa.worlds.kitchen.states import sample_state
+    from tpvqa_household.kitchen.scene import KitchenScene
+    from tpvqa_household.kitchen.states import sample_state
 
     rng = np.random.default_rng(0)
     rows: dict[str, list[tuple[float, float]]] = {

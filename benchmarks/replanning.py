@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from household_problems import household_problem  # type: ignore[import-not-found]
+
 from tpvqa.pddl import Task, load_task, task_from_text
 from tpvqa.planning import Plan
 from tpvqa.planning.fast_downward import FastDownward

@@ -8,7 +8,7 @@ Run by hand, not at install time; the result is kept in the repository:
         src/tpvqa/worlds/kitchen/assets/scanned.zip
 
 Every thing becomes z up, in metres, standing on the origin, with at most about 3,000 triangles:
-one binary mesh a material (see `tpvqa.worlds.kitchen.assets.pack` for the format), its pictures
+one binary mesh a material (see `tpvqa_household.kitchen.assets.pack` for the format), its pictures
 as JPEG of at most 256 pixels, and an entry in `index.json` with creator, pack and licence.
 """
 

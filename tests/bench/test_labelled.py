@@ -20,7 +20,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Atom
 from tpvqa.questions import Question, Way
 from tpvqa.vlm import Answer, Reply
-from tpvqa.worlds.images.manifest import Manifest, PictureSet, load_pictures
+from tpvqa_household.images.manifest import Manifest, PictureSet, load_pictures
 
 CONFIG = configured(
     monitor="tpvqa",

@@ -13,11 +13,11 @@ import pytest
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import ROWS, Ledger
-from tpvqa.bench.paper import PaperBench
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
+from tpvqa_experiments.paper import PaperBench
 
 TPVQA = [sys.executable, "-c", "from tpvqa.cli import main; main()"]
 CELLS = [Cell("clean_dishes", m, "oracle:0.8", "symbolic") for m in ("tpvqa", "tp", "palmevqa")]

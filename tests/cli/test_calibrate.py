@@ -12,8 +12,9 @@ from tpvqa.belief import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.episodes import read_episode
 from tpvqa.events.events import Acted
-from tpvqa.worlds.images.manifest import MANIFEST, load_pictures
 from tpvqa.worlds.outcome import Failure
+from tpvqa.worlds.pictures import MANIFEST
+from tpvqa_household.images.manifest import load_pictures
 
 TRIALS = ["--trials", "10", "--tasks", "clean_dishes", "--vlm", "oracle:0.9:0.4"]
 

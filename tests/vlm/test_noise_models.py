@@ -12,8 +12,8 @@ from tpvqa.pddl import Action, Atom, Literal, Task, load_task
 from tpvqa.questions import Question, QuestionBook, Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM, Reply
-from tpvqa.vlm.paper_table import PAPER_TABLE
 from tpvqa.vlm.recorded.answers import models, recordings
+from tpvqa_experiments.paper_table import PAPER_TABLE
 
 LOOKS = 3000
 

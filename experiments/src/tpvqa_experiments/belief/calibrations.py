@@ -1,0 +1,127 @@
+"""What each VLM's answers are worth, learnt from trials that no cell of the bench runs."""
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import Path
+
+from tpvqa.belief.calibration import Calibration, Group
+from tpvqa.belief.fitting import fit
+from tpvqa.belief.labelled_answer import LabelledAnswer
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.labelled import gather
+from tpvqa.bench.labelled_recordings import label_recordings
+from tpvqa.bench.stage import stage
+from tpvqa.config import TrialConfig
+from tpvqa.defaults import looks
+from tpvqa.vlm.recorded.vlm import told_by
+
+SURVEY = "survey"
+"""Who asks noise models: it asks regardless of the answers, so that all of them count."""
+LOOKING = "tpvqa:3"
+"""Who asks VLMs that look: it also goes where things lie elsewhere. Its first answers count."""
+OTHER_SEEDS = 10_000
+"""How far the seed of these trials lies from that of the bench."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Source:
+    """Where a calibration comes from."""
+
+    task: str
+    vlm: str
+    world: str
+
+    @property
+    def file(self) -> str:
+        """The name of the calibration's file."""
+        return f"{self.vlm}_{self.task}_{self.world}.json".replace(":", "-").replace("/", "-")
+
+
+def source_of(cell: Cell, embedded_world: str = "images") -> Source:
+    """Where the calibration of a cell comes from.
+
+    A recorded VLM that answers by one half of its problems is calibrated on the other half.
+
+    Args:
+        cell: Which.
+        embedded_world: Where the embedded network's trials are run.
+    """
+    vlm, world = cell.believed or cell.vlm, cell.world
+    if vlm.startswith("recorded:") and vlm.endswith((":0", ":1")):
+        vlm = vlm[:-1] + ("0" if vlm.endswith("1") else "1")
+    if vlm == "embedded":
+        world = embedded_world
+    return Source(cell.task, vlm, world)
+
+
+def calibrations(
+    folder: Path,
+    sources: Collection[Source],
+    common: TrialConfig,
+    episodes: int,
+    *,
+    done: Callable[[int, int], None] = lambda done, total: None,
+) -> dict[Source, Calibration]:
+    """Load what lies in a folder already, and learn the rest.
+
+    Args:
+        folder: Where they are kept, a file each.
+        sources: Which are needed.
+        common: Seed of the bench, rates of faults, limits.
+        episodes: Trials that each is learnt from.
+        done: Told how many there are, and of how many.
+
+    Raises:
+        TpvqaError: A trial cannot be run, a file is damaged or cannot be written.
+    """
+    found: dict[Source, Calibration] = {}
+    away = common.but(seed=common.seed + OTHER_SEEDS)
+    for source in sorted(sources):
+        path = folder / source.file
+        done(len(found), len(sources))
+        if path.exists():
+            found[source] = Calibration.load(path)
+            continue
+        looking = looks(source.vlm)
+        cell = Cell(source.task, LOOKING if looking else SURVEY, source.vlm, source.world)
+        rows = gather(cell, away, range(episodes))
+        found[source] = fit(rows, source.vlm, chosen_looks=looking)
+        if source.vlm.startswith("recorded:"):
+            found[source] = _of_recordings(source, rows, found[source])
+        found[source].save(path)
+    done(len(found), len(sources))
+    return found
+
+
+def _of_recordings(
+    source: Source, rows: Collection[LabelledAnswer], drawn: Calibration
+) -> Calibration:
+    """What recorded answers teach, each once in a group. Trials only tell how looks repeat."""
+    told = told_by(source.vlm.removeprefix("recorded:"), stage(source.task).task)
+    recordings = label_recordings(told, {(row.way, row.predicate) for row in rows})
+    kinds = {(way, truth) for way in ("precondition", "effect") for truth in (True, False)}
+    distinct = sum(each.count for way, truth in kinds for each in told.of(way, "", truth=truth))
+    return fit(recordings, source.vlm, chosen_looks=False).model_copy(
+        update={
+            "rows": distinct,
+            "repeat_same_view": drawn.repeat_same_view,
+            "repeat_other_view": drawn.repeat_other_view,
+            "pairs_same_view": drawn.pairs_same_view,
+            "pairs_other_view": drawn.pairs_other_view,
+        }
+    )
+
+
+def by_replies(calibration: Calibration) -> Calibration:
+    """The same calibration for a VLM that says yes or no and not how sure it is."""
+
+    def blind(group: Group) -> Group:
+        return group.model_copy(update={"curve": None})
+
+    return calibration.model_copy(
+        update={
+            "groups": tuple(map(blind, calibration.groups)),
+            "ways": tuple(map(blind, calibration.ways)),
+            "whole": blind(calibration.whole),
+        }
+    )

@@ -1,0 +1,287 @@
+"""The figures of the belief bench."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from tpvqa.belief.ablations import PARTS
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.figures import Figure, styled_pyplot
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.statistics import wilson
+from tpvqa_experiments.belief.comparison import curve_of
+from tpvqa_experiments.belief.learning import BLOCK, RIGHT_TRUST, blocks
+from tpvqa_experiments.belief.parts import (
+    BASELINES,
+    BELIEF,
+    BELIEVED,
+    SYMBOLIC,
+    VOTES,
+    WRONG_VLM,
+    Extent,
+    noise,
+    without,
+)
+from tpvqa_experiments.belief.resampling import difference
+from tpvqa_experiments.belief.results import BeliefResults
+
+MOST = 20_000
+"""Questions at the right end of the axis."""
+INK = "#0b4f8a"
+"""The belief monitor."""
+MARKS: Mapping[str, tuple[str, str, str]] = {
+    "tpvqa": ("o", "#d55e00", "#d55e00"),
+    "tpvqa:3": ("^", "#d55e00", "#d55e00"),
+    "tpvqa:5": ("s", "#d55e00", "#d55e00"),
+    "tpvqa:strict": ("o", "#d55e00", "white"),
+    "tpvqa:3:strict": ("^", "#d55e00", "white"),
+    "tpvqa:5:strict": ("s", "#d55e00", "white"),
+    "effectvqa": ("v", "#767676", "#767676"),
+    "palmevqa": ("P", "#767676", "#767676"),
+    "successvqa": ("X", "#767676", "#767676"),
+    "tp": ("_", "#222222", "#222222"),
+}
+"""Marker, edge and face of each rival: told apart without colour (Okabe and Ito 2008)."""
+Panel = tuple[Sequence[Sequence[EpisodeRow]], Mapping[str, Sequence[EpisodeRow]]]
+"""The episodes at each point of the belief curve, and those of each rival."""
+
+
+def draw(results: BeliefResults, extent: Extent) -> dict[str, Figure]:
+    """All figures by name."""
+    drawn = {}
+    for rho in extent.rhos:
+        named = {f"p = {p:g}": noise(p, rho) for p in extent.accuracies}
+        found = _curves(results, extent, named, SYMBOLIC)
+        if found is not None:
+            drawn[f"curves_rho_{rho:g}"] = found
+    for name, named, world in (
+        ("paper_table", {"the paper's table": "paper-table"}, SYMBOLIC),
+        ("embedded", {"embedded network": "embedded"}, "images"),
+    ):
+        found = _curves(results, extent, named, world)
+        if found is not None:
+            drawn[name] = found
+    for name, others in (("ablations", _ablations), ("learning", _learning)):
+        found = others(results, extent)
+        if found is not None:
+            drawn[name] = found
+    return drawn
+
+
+def _curves(
+    results: BeliefResults, extent: Extent, named: Mapping[str, str], world: str
+) -> Figure | None:
+    """Completion over questions: a row of panels for every task, a column for every VLM."""
+
+    def panel(task: str, vlm: str) -> Panel:
+        rivals = {each: results.of(Cell(task, each, vlm, world)) for each in (*VOTES, *BASELINES)}
+        return curve_of(results, extent, task, vlm, world), {
+            rival: rows for rival, rows in rivals.items() if rows
+        }
+
+    tasks = extent.household
+    panels = {(task, name): panel(task, vlm) for task in tasks for name, vlm in named.items()}
+    if not any(curve for curve, _ in panels.values()):
+        return None
+    if len(named) == 1:  # the tasks beside each other
+        (name,) = named
+        return _small_multiples(
+            [name], tasks, lambda row, column: panels[column, row], titles=tasks
+        )
+    return _small_multiples(
+        tasks, list(named), lambda row, column: panels[row, column], titles=list(named)
+    )
+
+
+def _small_multiples(
+    rows: Sequence[str],
+    columns: Sequence[str],
+    panel: Callable[[str, str], Panel],
+    *,
+    titles: Sequence[str],
+) -> Figure:
+    pyplot = styled_pyplot()
+    figure, grid = pyplot.subplots(
+        len(rows),
+        len(columns),
+        figsize=(1.0 + 1.75 * len(columns), 1.0 + 1.75 * len(rows)),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+    )
+    for line, row in zip(grid, rows, strict=True):
+        for axes, column in zip(line, columns, strict=True):
+            _draw_panel(axes, *panel(row, column))
+        line[0].set_ylabel(f"{row}\ncompletion rate")
+    for axes, title in zip(grid[0], titles, strict=True):
+        axes.set_title(title)
+    for axes in grid[-1]:
+        axes.set_xlabel("questions")
+    handles: dict[str, Any] = {}
+    for axes in grid.flat:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+    figure.legend(
+        handles.values(),
+        handles,
+        frameon=False,
+        loc="outside upper center",
+        ncols=max(3, min(6, len(columns) * 2)),
+        fontsize=8,
+        handletextpad=0.3,
+        columnspacing=1.2,
+    )
+    return figure
+
+
+def _draw_panel(
+    axes: Any, curve: Sequence[Sequence[EpisodeRow]], rivals: Mapping[str, Sequence[EpisodeRow]]
+) -> None:
+    axes.set_xscale("symlog", linthresh=10, linscale=0.5)
+    axes.set_xlim(-1, MOST)
+    axes.set_ylim(-0.03, 1.05)
+    axes.set_xticks([0, 10, 100, 1000, 10_000], ["0", "10", "100", "1k", "10k"])
+    axes.set_xticks([], minor=True)
+    axes.set_yticks([0, 0.5, 1], ["0", ".5", "1"])
+    axes.set_yticks([0.25, 0.75], minor=True)
+    axes.grid(color="#e6e6e6", linewidth=0.6)
+    axes.set_axisbelow(True)
+    for rival, rows in rivals.items():
+        marker, edge, face = MARKS[rival]
+        questions, rate, _, _ = _point(rows)
+        axes.plot(
+            questions,
+            rate,
+            linestyle="none",
+            marker=marker,
+            markersize=9 if marker == "_" else 5,
+            markeredgecolor=edge,
+            markerfacecolor=face,
+            markeredgewidth=1.6 if marker == "_" else 1,
+            label=rival,
+            clip_on=False,
+        )
+    points = sorted(map(_point, curve))
+    if points:
+        xs, ys, lows, highs = zip(*points, strict=True)
+        if len(points) == 1:
+            axes.plot([*xs, *xs], [*lows, *highs], color=INK, linewidth=1.2)
+        axes.plot([xs[-1], MOST], [ys[-1]] * 2, color=INK, linewidth=1, linestyle=":")
+        # What is linear in questions is not a straight line on this axis.
+        between = np.unique([*xs, *np.linspace(xs[0], xs[-1], 500)])
+        band = [np.interp(between, xs, edge) for edge in (lows, highs)]
+        axes.fill_between(between, *band, color=INK, alpha=0.15, linewidth=0)
+        axes.plot(between, np.interp(between, xs, ys), color=INK, linewidth=1.6)
+        axes.plot(xs, ys, color=INK, linestyle="none", marker="D", markersize=3.5)
+        axes.plot([], [], color=INK, linewidth=1.6, marker="D", markersize=3.5, label="belief")
+
+
+def _point(rows: Sequence[EpisodeRow]) -> tuple[float, float, float, float]:
+    """Questions, completion rate, and its interval."""
+    found = wilson(sum(row.completed for row in rows), len(rows))
+    return sum(row.questions for row in rows) / len(rows), found.rate, found.low, found.high
+
+
+def _learning(results: BeliefResults, extent: Extent) -> Figure | None:
+    """Completion and trust by how many episodes a robot has behind it."""
+    by_task = {task: found for task in extent.household if (found := blocks(results, task))}
+    if not by_task:
+        return None
+    pyplot = styled_pyplot()
+    figure, grid = pyplot.subplots(
+        2,
+        len(by_task),
+        figsize=(1.0 + 2.4 * len(by_task), 4.4),
+        sharex=True,
+        sharey="row",
+        squeeze=False,
+    )
+    for (above, below), (task, found) in zip(grid.T, by_task.items(), strict=True):
+        middles = [block.first + (BLOCK + 1) / 2 for block in found]
+        learning = [block.learning for block in found]
+        margins = [(block.difference.high - block.difference.low) / 2 for block in found]
+        above.errorbar(
+            middles,
+            learning,
+            yerr=margins,
+            color=INK,
+            marker="D",
+            markersize=3.5,
+            linewidth=1.6,
+            elinewidth=0.8,
+            label=f"told {BELIEVED.partition(':')[2]}, has to learn",
+        )
+        above.plot(
+            middles,
+            [block.knowing for block in found],
+            color="#d55e00",
+            marker="o",
+            markersize=4,
+            linestyle="--",
+            label=f"told {WRONG_VLM.partition(':')[2]}, as it is",
+        )
+        below.plot(middles, [block.trust for block in found], color=INK, marker="D", markersize=3.5)
+        below.axhline(RIGHT_TRUST, color="#d55e00", linestyle="--")
+        below.axhline(1, color="#767676", linewidth=0.8, linestyle=":")
+        for axes in (above, below):
+            axes.grid(color="#e6e6e6", linewidth=0.6)
+            axes.set_axisbelow(True)
+        above.set_title(task)
+        above.set_ylim(0, 1.05)
+        below.set_ylim(0, 1.4)
+        below.set_xlabel("episode")
+    grid[0][0].set_ylabel("completion rate")
+    grid[1][0].set_ylabel("trust in answers")
+    figure.legend(
+        *grid[0][0].get_legend_handles_labels(), frameon=False, loc="outside upper center", ncols=2
+    )
+    return figure
+
+
+def _ablations(results: BeliefResults, extent: Extent) -> Figure | None:
+    """What leaving a part out does: bars of completion and of questions, by task and VLM."""
+    vlms = extent.ablated
+    found = {
+        (task, vlm, name): results.of(
+            Cell(task, without(name) if name else BELIEF, noise(*vlm), SYMBOLIC)
+        )
+        for task in extent.household
+        for vlm in vlms
+        for name in ("", *PARTS)
+    }
+    if not any(rows for (_, _, name), rows in found.items() if name):
+        return None
+    pyplot = styled_pyplot()
+    figure, grid = pyplot.subplots(
+        len(extent.household),
+        2 * len(vlms),
+        figsize=(1.6 + 2.9 * len(vlms), 0.8 + 1.45 * len(extent.household)),
+        sharey=True,
+        sharex="col",
+        squeeze=False,
+    )
+    places = range(len(PARTS))
+    for line, task in zip(grid, extent.household, strict=True):
+        for k, vlm in enumerate(vlms):
+            left, right = line[2 * k], line[2 * k + 1]
+            whole = found[task, vlm, ""]
+            for place, name in enumerate(PARTS):
+                rows = found[task, vlm, name]
+                if not rows or not whole:
+                    continue
+                change = difference(rows, whole)
+                left.barh(place, change.value, 0.7, color=INK)
+                left.plot([change.low, change.high], [place, place], color="#222222", linewidth=1)
+                share = _point(rows)[0] / max(_point(whole)[0], 1e-9)
+                right.barh(place, share, 0.7, color="#b7bcc4")
+            left.axvline(0, color="#222222", linewidth=0.8)
+            right.axvline(1, color="#222222", linewidth=0.8)
+        line[0].set_yticks(places, [f"no {name}" for name in PARTS])
+        line[0].set_ylabel(task)
+    for k, (accuracy, rho) in enumerate(vlms):
+        grid[0][2 * k].set_title(f"p = {accuracy:g}, ρ = {rho:g}", loc="left")
+        grid[-1][2 * k].set_xlabel("completion, change")
+        grid[-1][2 * k + 1].set_xlabel("questions, ratio")
+    grid[0][0].invert_yaxis()
+    return figure

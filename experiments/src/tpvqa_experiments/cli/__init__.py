@@ -1,0 +1,1 @@
+"""`tpvqa bench`, the commands of the experiments."""

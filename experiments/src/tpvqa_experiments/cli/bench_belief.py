@@ -1,0 +1,183 @@
+"""`tpvqa bench belief`: the belief monitor against votes and the paper's baselines."""
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from tpvqa_experiments.belief import Part
+    from tpvqa_experiments.belief.targets import Check
+
+
+def belief(
+    *,
+    parts: Annotated[
+        str,
+        typer.Option(
+            help="Parts, with commas: grid, paper, embedded, recorded, wrong-model, wrong-vlm, "
+            "ablations."
+        ),
+    ] = "grid,paper,embedded,recorded,wrong-model,wrong-vlm,ablations",
+    tasks: Annotated[
+        str, typer.Option(help="Shipped tasks, with commas.")
+    ] = "clean_dishes,serve_breakfast,eat_apple,build_tower",
+    accuracies: Annotated[
+        str, typer.Option(help="Of the grid's noise models, with commas.")
+    ] = "0.6,0.7,0.8,0.9,0.95",
+    rhos: Annotated[
+        str,
+        typer.Option(help="Chances that a further look repeats the last answer, with commas."),
+    ] = "0,0.5",
+    prices: Annotated[
+        str, typer.Option(help="Costs of a question along the grid's curves, with commas.")
+    ] = "10,3,2,1,0.3,0.1,0.03,0.003",
+    models: Annotated[str, typer.Option(help="Recorded VLMs, with commas. Default: all.")] = "",
+    episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 1000,
+    curve_episodes: Annotated[
+        int, typer.Option(help="Of every further point of a curve.", min=1)
+    ] = 100,
+    chains: Annotated[
+        int,
+        typer.Option(
+            help="Robots that learn, over 30 episodes each, how good their VLM is.", min=1
+        ),
+    ] = 30,
+    calibration_episodes: Annotated[
+        int, typer.Option(help="Trials that each calibration is learnt from.", min=1)
+    ] = 120,
+    embedded_calibration: Annotated[
+        str, typer.Option(help="World where the embedded network is calibrated: images or kitchen.")
+    ] = "images",
+    seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
+    workers: Annotated[
+        int | None, typer.Option(help="Local processes. Default: one a core.", min=1)
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder; a bench that was stopped goes on.")] = Path(
+        "bench-belief"
+    ),
+    only_tables: Annotated[
+        bool, typer.Option("--only-tables", help="Run nothing; write tables of what is finished.")
+    ] = False,
+    rows: Annotated[
+        Path | None,
+        typer.Option(help="Published rows that count as finished, e.g. docs/data/belief."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
+) -> None:
+    """Measure the belief monitor against votes over several looks and the paper's baselines."""
+    import os
+
+    from tpvqa.cli.progress import CountBar
+    from tpvqa_experiments.belief import BeliefBench, run_belief_bench
+    from tpvqa_experiments.belief.parts import Extent
+    from tpvqa_experiments.belief.tables import summary_rows
+    from tpvqa_experiments.paper import PAPER
+
+    bench = BeliefBench(
+        parts=[_part(name) for name in _list(parts)],
+        extent=Extent(
+            tasks=_list(tasks),
+            accuracies=_numbers(accuracies, "--accuracies"),
+            rhos=_numbers(rhos, "--rhos"),
+            prices=_numbers(prices, "--prices"),
+            models=_list(models),
+            episodes=episodes,
+            curve=curve_episodes,
+            chains=chains,
+        ),
+        calibration_episodes=calibration_episodes,
+        embedded_world=embedded_calibration,
+        common=PAPER.but(seed=seed),
+    )
+    with CountBar("calibrations") as bar:
+
+        def progress(done: int, total: int) -> None:
+            if bar.what != "episodes":
+                bar.count("episodes")
+            bar(done, total)
+
+        try:
+            results, checks = run_belief_bench(
+                bench,
+                out,
+                workers=workers or os.cpu_count() or 1,
+                scheduler=scheduler,
+                calibrating=bar,
+                progress=progress,
+                only_tables=only_tables,
+                published=rows,
+            )
+        except KeyboardInterrupt:
+            print(
+                f"interrupted; what is finished lies in {out}. The same command goes on there.",
+                file=sys.stderr,
+            )
+            raise typer.Exit(130) from None
+    if as_json:
+        told = {"targets": [check.flat() for check in checks], "cells": summary_rows(results)}
+        print(json.dumps(told, indent=1))
+    else:
+        _print(checks)
+        print(f"tables and figures: {out}/belief.md, {out}/targets.md, {out}/figures")
+    if results.errors:
+        raise typer.Exit(1)
+
+
+def _print(checks: "Sequence[Check]") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="targets", title_justify="left", title_style="bold", box=None)
+    for name in ("condition", "figure"):
+        table.add_column(name)
+    for name in ("target", "measured", "95% interval", "reached"):
+        table.add_column(name, justify="right", no_wrap=True)
+    last = ""
+    for check in checks:
+        if check.measured is None:
+            continue
+        found = check.measured
+        table.add_row(
+            check.condition if check.condition != last else "",
+            check.what,
+            check.target,
+            f"{found.value:.3g}",
+            f"{found.low:.3g} to {found.high:.3g}" if found.low < found.high else "",
+            "yes" if check.reached else "no",
+        )
+        last = check.condition
+    console = Console()
+    (console if console.is_terminal else Console(width=150)).print(table)
+    missing = sum(check.measured is None for check in checks)
+    if missing:
+        print(f"\n{missing} of {len(checks)} figures were not measured")
+
+
+def _list(text: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
+
+
+def _numbers(text: str, option: str) -> tuple[float, ...]:
+    from tpvqa.errors import BenchError
+
+    try:
+        return tuple(float(part) for part in _list(text))
+    except ValueError:
+        raise BenchError(f"{option} {text}: write numbers with commas, e.g. 0.6,0.8") from None
+
+
+def _part(name: str) -> "Part":
+    from tpvqa.errors import UnknownNameError
+    from tpvqa_experiments.belief import Part
+
+    if name not in set(Part):
+        raise UnknownNameError("part of the belief bench", name, [part.value for part in Part])
+    return Part(name)

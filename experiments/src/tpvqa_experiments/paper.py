@@ -1,0 +1,207 @@
+"""The paper's experiment: TPVQA against its four baselines on three tasks."""
+
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.curve import curve_cells, curves
+from tpvqa.bench.ledger import Ledger
+from tpvqa.bench.report import WAYS, WORDS, AnswerLine, Results, write_bench_report
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.schedule import run_all
+from tpvqa.bench.settings import common_settings
+from tpvqa.bench.tables import write_tables
+from tpvqa.config import Limits, TrialConfig
+from tpvqa.defaults import looks
+from tpvqa.monitors.capabilities import asks_actions
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.plugins import Kind, load, load_spec, make
+from tpvqa.questions import Way
+from tpvqa.tasks import find_task
+from tpvqa.vlm.capabilities import answers_facts_only
+from tpvqa.vlm.making import make_vlm
+from tpvqa.vlm.metrics import measure
+from tpvqa_experiments.balanced import Judged, balanced
+from tpvqa_experiments.paper_table import PAPER_TABLE
+
+TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
+PAPER = TrialConfig(limits=Limits(actions=60))
+"""What all trials share, where nothing else is said."""
+MONITORS = ("tpvqa", "effectvqa", "tp", "palmevqa", "successvqa")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PaperBench:
+    """What to run.
+
+    Attributes:
+        tasks: Shipped tasks.
+        monitors: Specifications of monitors.
+        vlms: Specifications of VLMs.
+        world: Specification of the world; None for images where a VLM looks, else symbolic.
+        episodes: Of every cell.
+        curve: Episodes of every point of the accuracy curves; 0 for none.
+        common: Seed, rates of faults, limits.
+    """
+
+    tasks: Sequence[str] = TASKS
+    monitors: Sequence[str] = MONITORS
+    vlms: Sequence[str] = ("embedded",)
+    world: str | None = None
+    episodes: int = 100
+    curve: int = 100
+    common: TrialConfig = PAPER
+
+    def cells(self) -> list[Cell]:
+        """The cells of the tables."""
+        return [
+            Cell(task, monitor, vlm, self.world or ("images" if looks(vlm) else "symbolic"))
+            for vlm in self.vlms
+            for task in self.tasks
+            for monitor in self.monitors
+            if can_answer(vlm, monitor)
+        ]
+
+    def curve_cells(self) -> list[Cell]:
+        """The cells of the accuracy curves."""
+        return curve_cells(self.tasks, self.monitors) if self.curve else []
+
+    def check(self) -> None:
+        """See that everything can be found by its name, before anything is run.
+
+        Raises:
+            TpvqaError: A task, monitor, VLM or world is not there, or its extra is missing.
+        """
+        for task in self.tasks:
+            find_task(task)
+        for monitor in self.monitors:
+            make(Kind.MONITOR, monitor)
+        for kind, specs in ((Kind.VLM, self.vlms), (Kind.WORLD, filter(None, [self.world]))):
+            for spec in specs:
+                load(kind, spec.partition(":")[0])
+
+    def settings(self) -> dict[str, Any]:
+        """What decides the figures, besides the cells and the number of episodes."""
+        return common_settings(self.common)
+
+
+def can_answer(vlm: str, monitor: str) -> bool:
+    """Whether a VLM has any answers to what a monitor asks; recorded ones know no whole actions."""
+    return not (
+        answers_facts_only(load_spec(Kind.VLM, vlm))
+        and asks_actions(load_spec(Kind.MONITOR, monitor))
+    )
+
+
+def run_paper_bench(
+    bench: PaperBench,
+    folder: Path,
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Results:
+    """Run what is missing, and write tables, figures and the report.
+
+    Args:
+        bench: What to run.
+        folder: Where everything goes; a bench that was stopped goes on there.
+        workers: Local processes.
+        scheduler: Address of a Dask scheduler to use instead.
+        progress: Told how many episodes are done and how many there are.
+
+    Raises:
+        TpvqaError: Something is not there, or the folder cannot be used.
+    """
+    bench.check()
+    ledger = Ledger(folder, bench.settings())
+    try:
+        wanted: dict[Cell, int] = {}
+        for cells, episodes in (
+            (bench.cells(), bench.episodes),
+            (bench.curve_cells(), bench.curve),
+        ):
+            wanted |= {cell: max(episodes, wanted.get(cell, 0)) for cell in cells}
+        total = sum(wanted.values())
+        done = total - sum(len(ledger.missing(cell, n)) for cell, n in wanted.items())
+        progress(done, total)
+
+        def count(more: int) -> None:
+            nonlocal done
+            done += more
+            progress(done, total)
+
+        run_all(ledger, wanted, bench.common, workers=workers, scheduler=scheduler, done=count)
+        results = _results(bench, ledger)
+    finally:
+        ledger.close()
+    write_tables(folder, results)
+    write_bench_report(folder, results)
+    return results
+
+
+def _results(bench: PaperBench, ledger: Ledger) -> Results:
+    rows = {cell: ledger.of(cell, bench.episodes) for cell in bench.cells()}
+    curve: dict[Cell, Sequence[EpisodeRow]] = {
+        cell: ledger.of(cell, bench.curve) for cell in bench.curve_cells()
+    }
+    known = [task for task in bench.tasks if task in TASKS]
+    lines = {vlm: balanced_lines(vlm, known, bench.common) for vlm in filter(looks, bench.vlms)}
+    return Results(
+        settings={
+            **bench.settings(),
+            "episodes a cell": bench.episodes,
+            "tasks": ", ".join(bench.tasks),
+            "monitors": ", ".join(bench.monitors),
+            "VLMs": ", ".join(bench.vlms),
+        },
+        rows=rows,
+        balanced=lines,
+        curves=curves(curve, bench.tasks, bench.monitors) if bench.curve else {},
+        published=PAPER_TABLE,
+    )
+
+
+def balanced_lines(vlm_spec: str, tasks: Sequence[str], common: TrialConfig) -> list[AnswerLine]:
+    """How right a VLM is on the balanced set of each task."""
+    vlm, _ = make_vlm(vlm_spec, common.plugin_options())
+    planner = FastDownward()
+    lines = []
+    try:
+        for task in tasks:
+            by_way: dict[Way, list[Judged]] = defaultdict(list)
+            for judged in balanced(vlm, task, planner, seed=common.seed):
+                by_way[judged.way].append(judged)
+            for way in WAYS:
+                scored = [each.scored for each in by_way[way] if each.scored is not None]
+                decided = [each.right for each in by_way[way] if each.scored is None]
+                if scored:
+                    lines.append(
+                        AnswerLine(
+                            task,
+                            WORDS[way],
+                            "balanced",
+                            measure(scored),
+                            sum(decided) / len(decided),
+                            PAPER_TABLE.get(way, {}).get(task),
+                        )
+                    )
+    finally:
+        planner.close()
+    return lines
+
+
+def as_rows(results: Results) -> list[dict[str, Any]]:
+    """One row of plain values for every task and monitor, as `--json` prints them."""
+    rows = []
+    for each in results.summaries:
+        row = asdict(each)
+        against = row.pop("against")
+        row["endings"] = dict(each.endings)
+        if against is not None:
+            row["against_tpvqa"] = against
+        rows.append(row)
+    return rows

@@ -1,0 +1,71 @@
+"""Packs the finished rows of the belief bench, for others to check and to go on from.
+
+python benchmarks/publish.py bench-belief --out docs/data/belief
+tpvqa bench belief --rows docs/data/belief --only-tables --out bench-belief-again
+
+Several folders, of machines that ran different parts with the same settings, become one; what is
+published already stays.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.ledger import ROWS, SETTINGS, Ledger, merged
+from tpvqa.bench.published import read_published, write_published
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.errors import BenchError, TpvqaError
+from tpvqa_experiments.belief import Part
+from tpvqa_experiments.belief.parts import Extent
+
+
+def main() -> None:
+    """Write one file for every part."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folders", nargs="+", type=Path)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--parts", help="with commas; default: all")
+    given = parser.parse_args()
+    parts = [Part(name) for name in given.parts.split(",")] if given.parts else list(Part)
+    settings = _settings(given.folders)
+    rows = merged(_all(given.folders, settings, given.out))
+    extent, written = Extent(), set[Cell]()
+    for part in Part:
+        cells = {cell for cell, _ in extent.cells(part)} - written
+        written |= cells
+        own = [row for (cell, _), row in rows.items() if cell in cells]
+        if part in parts and own:
+            path = given.out / f"{part}.parquet"
+            count = write_published(own, settings, path)
+            print(f"{path}: {count:,} rows, {path.stat().st_size / 1e6:.2f} MB")
+    left = sum(cell not in written for cell, _ in rows)
+    if left:
+        print(f"{left:,} rows are of no cell of the bench's defaults, and were left out")
+
+
+def _settings(folders: Sequence[Path]) -> dict[str, Any]:
+    for folder in folders:
+        if not (folder / SETTINGS).is_file() or not (folder / ROWS).is_file():
+            raise BenchError(f"{folder} holds no bench. Name a folder of `tpvqa bench belief`")
+    found: dict[str, Any] = json.loads((folders[0] / SETTINGS).read_text(encoding="utf-8"))
+    return found
+
+
+def _all(folders: Sequence[Path], settings: Mapping[str, Any], out: Path) -> Iterator[EpisodeRow]:
+    if out.is_dir() and any(out.glob("*.parquet")):
+        yield from read_published(out, settings)
+    for folder in folders:
+        ledger = Ledger(folder, settings)
+        yield from ledger.rows.values()
+        ledger.close()
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (TpvqaError, ValueError) as error:
+        sys.exit(f"error: {error}")

@@ -1,0 +1,1 @@
+"""`tpvqa dataset`, the commands about sets of pictures."""

@@ -1,0 +1,257 @@
+"""The images API of OpenAI and of servers that speak it: variations, edits, generations."""
+
+import importlib.util
+import os
+import time
+import uuid
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from tpvqa.chance import chance
+from tpvqa.errors import GeneratorError, MissingExtraError, PictureRefused
+from tpvqa.worlds.pictures import digest
+from tpvqa_household.images.sources.generator import Drawn, Original
+from tpvqa_household.images.sources.images_reply import (
+    Elsewhere,
+    complaint,
+    read_reply,
+    seconds_to_wait,
+    whole,
+)
+from tpvqa_household.images.sources.picture_file import as_png, read_picture, square
+
+if TYPE_CHECKING:
+    from openai import APIStatusError, OpenAI
+
+SIDE = 512
+"""Of a picture that is sent, and of what DALL-E 2 is asked for."""
+_LONGEST_PAUSE = 30.0
+_LARGEST = 50_000_000  # bytes of a picture that is fetched from an address
+
+
+class _Again(Exception):  # noqa: N818 — a request to try again, not an error
+    def __init__(self, why: str, *, pause: float | None = None, garbled: bool = False):
+        super().__init__(why)
+        self.why, self.pause, self.garbled = why, pause, garbled
+
+
+class OpenAIImages:
+    """Asks a server for one picture a request.
+
+    DALL-E 2 varies a picture without words, as the paper had it done; every other model is asked
+    to edit it, with a prompt. The API knows no seeds: a seed only tells one request from another.
+    Requests carry a key of their own (`Idempotency-Key`), so that a server that knows this header
+    makes, and charges, a picture once however often it is asked for. The key of the account comes
+    from the environment only (`OPENAI_API_KEY`) and is sent to no address that a reply names.
+
+    Args:
+        model: The model's name, as the server knows it.
+        base_url: The server's address with its path, e.g. "http://localhost:8000/v1"; by default
+            `OPENAI_BASE_URL`, or else OpenAI's.
+        price: Dollars a picture, if known.
+        per_minute: Requests a minute at most; None for no limit but the server's.
+        size: What is asked for, e.g. "1024x1024"; by default 512x512 of DALL-E 2, and of others
+            what they make.
+        deadline: Seconds for one picture with all that is tried again.
+        request_timeout: Seconds for one request.
+        retries: How often a request is repeated after 408, 409, 429, 5xx, a broken connection, a
+            timeout or a garbled reply.
+
+    Raises:
+        MissingExtraError: The `openai` package is not installed.
+        GeneratorError: The address is not one.
+    """
+
+    remote = True
+
+    def __init__(
+        self,
+        model: str,
+        *,
+        base_url: str | None = None,
+        price: float | None = None,
+        per_minute: float | None = None,
+        size: str | None = None,
+        deadline: float = 300.0,
+        request_timeout: float = 120.0,
+        retries: int = 5,
+    ) -> None:
+        if importlib.util.find_spec("openai") is None:
+            raise MissingExtraError("openai", "openai", f"The generator 'openai:{model}'")
+        self.model, self.price, self.requests = model, price, 0
+        self.base_url = base_url or os.environ.get("OPENAI_BASE_URL") or None
+        if self.base_url and not self.base_url.startswith(("http://", "https://")):
+            raise GeneratorError(
+                f"{self.base_url!r} is no address of a server. Write it with http:// or https:// "
+                "and its path, e.g. http://localhost:8000/v1."
+            )
+        self._size = size or ("512x512" if model == "dall-e-2" else None)
+        self._deadline, self._request_timeout = deadline, request_timeout
+        self._retries = retries
+        self._spacing = 60.0 / per_minute if per_minute else 0.0
+        self._next_turn = 0.0
+        self._client: OpenAI | None = None
+
+    @property
+    def name(self) -> str:
+        """ "openai:MODEL"."""
+        return f"openai:{self.model}"
+
+    @property
+    def settings(self) -> str:
+        """The size that is asked for."""
+        return self._size or ""
+
+    def vary(self, original: Original, *, seed: int) -> Drawn:
+        """A variation of a picture, or an edit by its prompt."""
+        png = as_png(square(read_picture(original.data), SIDE))
+        sent: dict[str, Any] = {"image": ("picture.png", png, "image/png"), **self._form()}
+        images = self._connect().images.with_raw_response
+        ask: Callable[..., Any] = images.create_variation
+        if self.model != "dall-e-2":
+            ask = images.edit
+            sent["prompt"] = original.prompt
+        return self._insist(ask, sent, seed, of=digest(original.data))
+
+    def generate(self, prompt: str, *, seed: int) -> Drawn:
+        """A picture from words."""
+        images = self._connect().images.with_raw_response
+        return self._insist(images.generate, {"prompt": prompt, **self._form()}, seed, of="")
+
+    def close(self) -> None:
+        """Close the connections. Can be called twice."""
+        client, self._client = self._client, None
+        if client is not None:
+            client.close()
+
+    def _form(self) -> dict[str, Any]:
+        form: dict[str, Any] = {"model": self.model, "n": 1}
+        if self._size:
+            form["size"] = self._size
+        if self.model.startswith("dall-e"):
+            # Others refuse to be told; these would give an address that soon forgets the picture.
+            form["response_format"] = "b64_json"
+        return form
+
+    def _connect(self) -> "OpenAI":
+        if self._client is None:
+            import openai
+
+            key = os.environ.get("OPENAI_API_KEY", "").strip()
+            if not key and self.base_url is None:
+                raise GeneratorError(
+                    "OpenAI needs a key. Set the environment variable OPENAI_API_KEY, or name a "
+                    "server of your own by --base-url."
+                )
+            if not key.isascii():
+                raise GeneratorError("OPENAI_API_KEY has characters that no key has. Set it again.")
+            try:
+                self._client = openai.OpenAI(
+                    api_key=key or "none-needed", base_url=self.base_url, max_retries=0
+                )
+            except (openai.OpenAIError, ValueError) as error:
+                raise GeneratorError(f"{self._where()} cannot be asked: {error}") from error
+        return self._client
+
+    def _insist(
+        self, ask: Callable[..., Any], sent: dict[str, Any], seed: int, *, of: str
+    ) -> Drawn:
+        """Ask for one picture, again after failures that may pass."""
+        time.sleep(max(0.0, self._next_turn - time.monotonic()))
+        end = time.monotonic() + self._deadline
+        found: bytes | Elsewhere | None = None
+        times = garbled = 0
+        while True:
+            # The same for each repetition, in a later process too; but a garbled picture would
+            # only be given again.
+            decides = (self.name, self.settings, sent.get("prompt"), of, seed, garbled)
+            key = str(uuid.uuid5(uuid.NAMESPACE_OID, repr(decides)))
+            try:
+                if found is None:
+                    headers = {"extra_headers": {"Idempotency-Key": key}}
+                    found = self._request(ask, {**sent, **headers}, end)
+                if isinstance(found, Elsewhere):
+                    found = self._fetch(found, end)
+                return Drawn(found)
+            except _Again as again:
+                times, garbled = times + 1, garbled + again.garbled
+                why = again.why if times == 1 else f"{again.why}, {times} times"
+                if times > self._retries:
+                    raise GeneratorError(f"{self._where()}: {why}") from None
+                pause = _pause(again, times - 1, seed)
+                if found is None:
+                    pause = max(pause, self._next_turn - time.monotonic())
+                if time.monotonic() + pause >= end:
+                    raise GeneratorError(
+                        f"{self._where()}: {why}; asking again in {pause:.1f} s would be later "
+                        f"than the {self._deadline:g} s that one picture has"
+                    ) from None
+                time.sleep(pause)
+
+    def _request(self, ask: Callable[..., Any], sent: dict[str, Any], end: float) -> Any:
+        import openai
+
+        self._next_turn = time.monotonic() + self._spacing
+        timeout = max(0.1, min(self._request_timeout, end - time.monotonic()))
+        self.requests += 1
+        try:
+            return read_reply(ask(**sent, timeout=timeout).content)
+        except openai.APITimeoutError:
+            raise _Again(f"late: nothing within {timeout:g} s") from None
+        except openai.APIConnectionError as error:
+            why = str(error.__cause__ or error) or type(error.__cause__).__name__
+            raise _Again(f"no connection: {why}") from None
+        except openai.APIStatusError as error:
+            self._refused(error)
+        except ValueError as error:
+            raise _Again(str(error), garbled=True) from None
+
+    def _fetch(self, at: Elsewhere, end: float) -> bytes:
+        import httpx
+
+        timeout = max(0.1, min(self._request_timeout, end - time.monotonic()))
+        try:
+            with httpx.stream("GET", at.url, timeout=timeout, follow_redirects=True) as reply:
+                reply.raise_for_status()
+                data = bytearray()
+                for piece in reply.iter_bytes():
+                    data += piece
+                    if len(data) > _LARGEST:
+                        raise GeneratorError(f"{at.url}: larger than any picture")
+            return whole(bytes(data))
+        except (httpx.HTTPError, httpx.InvalidURL, ValueError) as error:
+            raise _Again(f"the picture's address: {error}") from None
+
+    def _refused(self, error: "APIStatusError") -> NoReturn:
+        status, parts = error.status_code, complaint(error.body)
+        said = ", ".join(parts.values()) or f"HTTP status {status}"
+        reasons = {parts.get("code", ""), parts.get("type", "")}
+        if any(word in reason for reason in reasons for word in ("content_", "moderation")):
+            raise PictureRefused(f"refused: {said}")
+        if status in (401, 403):
+            raise GeneratorError(
+                f"{self._where()} refuses the key (HTTP status {status}). Set the environment "
+                f"variable OPENAI_API_KEY to one that may use {self.model!r}."
+            )
+        if status == 404:
+            raise GeneratorError(
+                f"{self._where()} has no model {self.model!r}, or no images API at this path, "
+                f"which usually ends with /v1: {said}"
+            )
+        if reasons & {"insufficient_quota", "billing_hard_limit_reached"}:
+            raise GeneratorError(f"{self._where()}: the account has no credit left. {said}")
+        if status in (408, 409, 429) or status >= 500:
+            pause = seconds_to_wait(error.response.headers.get("retry-after", ""))
+            raise _Again(f"HTTP status {status}: {said}", pause=pause)
+        raise GeneratorError(f"{self._where()} refuses to be asked (HTTP status {status}): {said}")
+
+    def _where(self) -> str:
+        return self.base_url or "OpenAI's server"
+
+
+def _pause(again: _Again, attempt: int, seed: int) -> float:
+    """Seconds until the next attempt: what the server asked for, or twice as long each time."""
+    if again.pause is not None:
+        return again.pause
+    spread = 0.75 + 0.5 * chance(0, 0, "pause", seed, attempt).random()
+    return float(min(_LONGEST_PAUSE, 0.5 * 2**attempt * spread))

@@ -1,0 +1,379 @@
+"""From names to a trial: puts together what it needs, and hands it to whatever drives it."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from pathlib import Path
+from threading import Event as Flag
+from types import TracebackType
+from typing import Any, Self
+
+from pydantic import BaseModel
+
+from tpvqa import __version__
+from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.experience import Experience
+from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.shipped import shipped_calibration
+from tpvqa.config import SimulationConfig, TrialConfig
+from tpvqa.defaults import default_vlm, default_world
+from tpvqa.drivers import (
+    AsynchronousTrial,
+    Journal,
+    Listener,
+    Parts,
+    Performer,
+    SteppingTrial,
+)
+from tpvqa.drivers import run as run_live
+from tpvqa.drivers.journal import Writer
+from tpvqa.drivers.plugged import called
+from tpvqa.drivers.replaying import Recording
+from tpvqa.errors import TpvqaError, UnknownNameError
+from tpvqa.events import Ended, Event, Started
+from tpvqa.events.records import atoms
+from tpvqa.monitors import Monitor
+from tpvqa.monitors.capabilities import experience_of, never_asks
+from tpvqa.pddl import Task, literals, load_task
+from tpvqa.planning import Planner
+from tpvqa.plugins import Checked, Closing, Kind, load_spec, make, make_from
+from tpvqa.questions import QuestionBook
+from tpvqa.tasks import find_task
+from tpvqa.trial import trial
+from tpvqa.vlm import VLM
+from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
+from tpvqa.vlm.making import make_vlm
+from tpvqa.worlds import Restorable, World
+from tpvqa.worlds.capabilities import has_pictures, is_simulated, truth_of
+from tpvqa.worlds.making import make_world
+from tpvqa.worlds.simulation import Simulation
+from tpvqa.worlds.world_file import WorldRules, load_world_file
+
+
+class Trial:
+    """A trial that is ready to run. Use it as a context manager: it ends what it started.
+
+    Args:
+        config: What the trial is.
+        task: The task, where it has been loaded already.
+        planner: A planner to share between trials; not closed here.
+        vlm: A VLM to share between trials.
+        book: The task's questions, where they have been loaded already.
+        rules: What the world file says, where it has been loaded already.
+        model: The action model, where trials one after the other share it.
+        calibration: What the VLM's answers are worth; goes before the file that `config` names,
+            and that before the one that is shipped for this VLM.
+        experience: What was learned in earlier trials; goes before the file that `config` names.
+        reading: Whether to read the files of these two that `config` names.
+        person: Answers where the monitor asks a person.
+
+    Example:
+        >>> config = TrialConfig(task="build_tower", vlm="oracle:0.9", world="symbolic")
+        >>> with Trial(config) as trial:  # doctest: +SKIP
+        ...     trial.run(MemoryWriter()).completed
+        True
+    """
+
+    def __init__(
+        self,
+        config: TrialConfig,
+        *,
+        task: Task | None = None,
+        planner: Planner | None = None,
+        vlm: VLM | None = None,
+        book: QuestionBook | None = None,
+        rules: WorldRules | None = None,
+        model: FaultModel | None = None,
+        calibration: Calibration | None = None,
+        experience: Experience | None = None,
+        reading: bool = True,
+        person: VLM | None = None,
+    ):
+        self.config, self._run = config, False
+        self._closing: list[Callable[[], None]] = []
+        try:
+            self._find_files()
+            self.task = task or load_task(self.domain, self.problem)
+            self.book = book or QuestionBook.load(self.questions, self.task)
+            self.rules = rules or load_world_file(self.world_file, self.task)
+            if reading:
+                calibration, experience = self._read(calibration, experience)
+            self._make(planner, vlm, model, calibration, experience, person)
+        except BaseException:
+            self.close()
+            raise
+
+    def _find_files(self) -> None:
+        wanted = self.config.task
+        files = None if wanted.name is None else find_task(wanted.name)
+        domain = wanted.domain if files is None else files.domain
+        problem = wanted.problem if files is None else files.problem
+        if domain is None or problem is None:
+            raise TpvqaError("Name a shipped task, or give both --domain and --problem.")
+        self.domain, self.problem = Path(domain), Path(problem)
+        self.questions = wanted.questions or (files.questions if files else None)
+        self.world_file = wanted.world_file or (files.world if files else None)
+
+    def _make(
+        self,
+        planner: Planner | None,
+        vlm: VLM | None,
+        model: FaultModel | None,
+        calibration: Calibration | None,
+        experience: Experience | None,
+        person: VLM | None,
+    ) -> None:
+        config = self.config
+        options = config.plugin_options()
+        if planner is None:
+            planner = make(Kind.PLANNER, config.planner.spec)
+            self._closing.append(planner.close)
+        files = None if config.task.name is None else find_task(config.task.name)
+        self.world_spec = config.world.spec or default_world(files)
+        self.simulation = self._simulate()
+        context = {
+            **options,
+            "task": self.task,
+            "book": self.book,
+            "planner": planner,
+            "rules": self.rules,
+            "simulation": self.simulation,
+            "model": model,
+            "limits": config.limits,
+            "seed": config.seed,
+            "episode": config.episode,
+        }
+        world, by_world = make_world(self.world_spec, context)
+        self._closing.append(world.close)
+        context |= {"truth": truth_of(world), "views": tuple(world.views())}
+        named = config.vlm.spec or (None if vlm is None else vlm.name)
+        self.vlm_spec = named or default_vlm(pictures=has_pictures(world))
+        self.known = experience
+        self.calibration = calibration or shipped_calibration(self.vlm_spec)
+        context |= {
+            "calibration": self.calibration,
+            "experience": None
+            if self.known is None
+            else self.known.with_vlm(self.vlm_spec, self.calibration),
+            "noise_model": is_noise_model(vlm or load_spec(Kind.VLM, self.vlm_spec)),
+        }
+        self.monitor: Monitor
+        self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor.spec, context)
+        self.weighs_answers = "calibration" in by_monitor
+        if not self.weighs_answers:
+            self.calibration = None
+        made, by_vlm = make_vlm(self.vlm_spec, context) if vlm is None else (vlm, set[str]())
+        if not has_pictures(world) and needs_pictures(made):
+            raise TpvqaError(
+                f"The VLM {self.vlm_spec!r} looks at pictures, and the world {self.world_spec!r} "
+                "has none. Choose a noise model, e.g. 'oracle:0.9', or a world with pictures."
+            )
+        _all_taken(options, by_world | by_monitor | by_vlm, context)
+        if vlm is None and isinstance(made, Closing):
+            self._closing.append(made.close)
+        self.parts = Parts(self.task, self.book, planner, world, made, person)
+
+    def _simulate(self) -> Simulation | None:
+        """The true state, where the world is one that keeps it."""
+        config = self.config
+        if not is_simulated(load_spec(Kind.WORLD, self.world_spec)):
+            return None
+        faults = config.simulation or SimulationConfig()
+        return Simulation(
+            self.task,
+            self.rules,
+            **faults.model_dump(),
+            seed=config.seed,
+            episode=config.episode,
+        )
+
+    def _read(
+        self, calibration: Calibration | None, experience: Experience | None
+    ) -> tuple[Calibration | None, Experience | None]:
+        files = self.config.monitor
+        if calibration is None and files.calibration is not None:
+            calibration = Calibration.load(Path(files.calibration))
+        if experience is None and files.experience is not None:
+            experience = Experience.load(Path(files.experience))
+        return calibration, experience
+
+    @property
+    def world(self) -> World:
+        """Where the robot acts."""
+        return self.parts.world
+
+    @property
+    def vlm(self) -> VLM:
+        """Who answers."""
+        return self.parts.vlm
+
+    def started(self) -> Started:
+        """The first event of the trial's episode."""
+        simulated = self.simulation is not None
+        goal = (self.book.fact(literal).text for literal in literals(self.task.goal))
+        return Started(
+            version=__version__,
+            config=self.config if simulated else self.config.model_copy(update=_NOT_SIMULATED),
+            task=self.task.name,
+            monitor=self.config.monitor.spec,
+            vlm=self.vlm_spec,
+            world=self.world_spec,
+            planner=self.parts.planner.name,
+            noise_model=is_noise_model(self.vlm),
+            domain_file=str(self.domain),
+            problem_file=str(self.problem),
+            questions_file=None if self.questions is None else str(self.questions),
+            world_file=None if self.world_file is None else str(self.world_file),
+            domain=self.task.domain_text,
+            problem=self.task.problem_text,
+            questions=_text(self.questions),
+            rules=_text(self.world_file),
+            initial=atoms(self.task.init),
+            goal=", ".join(goal),
+            calibration=_plain(self.calibration),
+            experience=_plain(self.known),
+        )
+
+    def check(self) -> None:
+        """See whether world and VLM are there, before a robot moves: files, keys, servers.
+
+        The VLM is only looked for where the monitor asks anything.
+
+        Raises:
+            TpvqaError: What is missing.
+        """
+        for part in (self.world,) if never_asks(self.monitor) else (self.world, self.vlm):
+            if isinstance(part, Checked):
+                called(part, "check", object)
+
+    def run(
+        self,
+        writer: Writer,
+        *,
+        started: Started | None = None,
+        recorded: Sequence[Event] = (),
+        folder: Path | None = None,
+        listeners: Sequence[Listener] = (),
+        cancel: Flag | None = None,
+    ) -> Ended:
+        """Run it to its end, or go on from recorded events.
+
+        Args:
+            writer: Where events go.
+            started: The first event, where it is gone on with.
+            recorded: The events so far, where it is gone on with.
+            folder: Where its pictures lie.
+            listeners: Told of every event, recorded ones too.
+            cancel: Set from another thread to end the trial.
+
+        Raises:
+            TpvqaError: It has run already; the world is no longer where a trial begins.
+            Interrupted: Ctrl-C, which also ends a loop of trials. The log is ended first.
+        """
+        stepping = self.stepping(
+            writer, started=started, recorded=recorded, folder=folder, listeners=listeners
+        )
+        return run_live(stepping, self.performer(writer, cancel=cancel))
+
+    def stepping(
+        self,
+        writer: Writer,
+        *,
+        started: Started | None = None,
+        recorded: Sequence[Event] = (),
+        folder: Path | None = None,
+        listeners: Sequence[Listener] = (),
+    ) -> SteppingTrial:
+        """The trial one request at a time; arguments and errors as of `run`."""
+        if self._run:
+            raise TpvqaError("This trial has run already. Make another Trial to run it again.")
+        self._run = True
+        return SteppingTrial(
+            trial(self.task, self.book, self.monitor, started or self.started()),
+            Journal(writer, listeners),
+            recording=Recording(recorded, self.task, folder) if recorded else None,
+            restore=self._restore,
+        )
+
+    def asynchronous(
+        self,
+        writer: Writer,
+        *,
+        started: Started | None = None,
+        recorded: Sequence[Event] = (),
+        folder: Path | None = None,
+        listeners: Sequence[Listener] = (),
+        cancel: Flag | None = None,
+    ) -> AsynchronousTrial:
+        """The trial as an asynchronous iterator of its events; arguments and errors as of `run`."""
+        stepping = self.stepping(
+            writer, started=started, recorded=recorded, folder=folder, listeners=listeners
+        )
+        return AsynchronousTrial(stepping, self.performer(writer, cancel=cancel))
+
+    def performer(self, writer: Writer, *, cancel: Flag | None = None) -> Performer:
+        """What does what the trial asks for.
+
+        Args:
+            writer: Where pictures go.
+            cancel: Set from another thread to end the trial.
+        """
+        return Performer(
+            self.parts,
+            save_frame=writer.save_frame,
+            snapshots=writer.resumable,
+            planning_timeout=self.config.planner.timeout,
+            action_deadline=self.config.limits.action_seconds,
+            cancel=cancel,
+        )
+
+    def _restore(self, snapshots: Mapping[str, Mapping[str, Any]]) -> bool:
+        """Put world and VLM where the log left them; whether the world can be put back."""
+        for name, part in (("world", self.world), ("vlm", self.vlm)):
+            if isinstance(part, Restorable) and name in snapshots:
+                part.restore(snapshots[name])
+        return isinstance(self.world, Restorable)
+
+    @property
+    def experience(self) -> Experience | None:
+        """What the monitor has learned, for the next trial; None where it learns nothing."""
+        learned = experience_of(self.monitor)
+        if learned is None:
+            return None
+        known = "" if self.calibration is None else self.calibration.fingerprint
+        return learned.model_copy(update={"vlm": self.vlm_spec, "calibration": known})
+
+    def close(self) -> None:
+        """End planner and world. Can be called twice."""
+        while self._closing:
+            self._closing.pop()()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+_NOT_SIMULATED = {"simulation": None}
+
+
+def _all_taken(
+    options: Mapping[str, Any], taken: Collection[str], context: Collection[str]
+) -> None:
+    for option in options:
+        if option not in taken:
+            known = set(taken) - (set(context) - set(options)) - {"arguments", "truth"}
+            raise UnknownNameError("option for this world, monitor and VLM", option, known)
+
+
+def _plain(model: BaseModel | None) -> dict[str, Any] | None:
+    return None if model is None else model.model_dump(mode="json")
+
+
+def _text(path: Path | str | None) -> str | None:
+    """What a file says, to be compared with what it says later."""
+    return None if path is None else Path(path).read_bytes().decode(errors="replace")

@@ -1,0 +1,173 @@
+"""One self-contained HTML page about a bench: tables and figures."""
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tpvqa.bench import figures
+from tpvqa.bench.accuracy import Decisions, answers_of, decisions_of
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.curve import Curve, crossing
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.summary import Summary, summaries
+from tpvqa.errors import BenchError
+from tpvqa.questions import Way
+from tpvqa.vlm.metrics import Metrics
+
+WAYS = (Way.PRECONDITION, Way.POSSIBLE, Way.EFFECT, Way.SUCCESSFUL, Way.DID)
+WORDS = {
+    Way.PRECONDITION: "Action preconditions",
+    Way.POSSIBLE: "Is it possible to <action> here?",
+    Way.EFFECT: "Action effects",
+    Way.SUCCESSFUL: "Was <action> successful?",
+    Way.DID: "Did the robot successfully <action>?",
+    Way.ALTERNATIVE: "Where else is it?",
+}
+
+
+@dataclass(frozen=True)
+class AnswerLine:
+    """Answers of one way of asking on one task, beside the paper's accuracy."""
+
+    task: str
+    way: str
+    source: str
+    metrics: Metrics
+    decision_accuracy: float | None
+    paper: float | None
+
+
+@dataclass(frozen=True)
+class Results:
+    """All that a bench has found.
+
+    Attributes:
+        settings: What decided it.
+        rows: The episodes of every cell.
+        balanced: Lines about the balanced set, by VLM.
+        curves: Completion by task, monitor and accuracy.
+        published: Accuracies that others measured, by way of asking and task, to stand beside.
+    """
+
+    settings: Mapping[str, Any]
+    rows: Mapping[Cell, Sequence[EpisodeRow]]
+    balanced: Mapping[str, Sequence[AnswerLine]] = field(default_factory=dict)
+    curves: Mapping[str, Mapping[str, Curve]] = field(default_factory=dict)
+    published: Mapping[Way, Mapping[str, float]] = field(default_factory=dict)
+
+    @property
+    def summaries(self) -> list[Summary]:
+        """The figures of every cell."""
+        return summaries(self.rows)
+
+    @property
+    def vlms(self) -> list[str]:
+        """The VLMs, in order."""
+        return list(dict.fromkeys(cell.vlm for cell in self.rows))
+
+    def of(self, vlm: str) -> dict[str, dict[str, Sequence[EpisodeRow]]]:
+        """The episodes with a VLM, by task and monitor."""
+        found: dict[str, dict[str, Sequence[EpisodeRow]]] = {}
+        for cell, rows in self.rows.items():
+            if cell.vlm == vlm and rows:
+                found.setdefault(cell.task, {})[cell.monitor] = rows
+        return found
+
+    def answer_lines(self, vlm: str) -> list[AnswerLine]:
+        """How right the answers given in the episodes with a VLM were."""
+        lines = []
+        for task, by_monitor in self.of(vlm).items():
+            rows = [row for own in by_monitor.values() for row in own]
+            for way in WORDS:
+                metrics = answers_of(rows, way)
+                if metrics is not None:
+                    paper = self.published.get(way, {}).get(task)
+                    lines.append(AnswerLine(task, WORDS[way], "episodes", metrics, None, paper))
+        return lines
+
+    def lines(self, vlm: str) -> list[AnswerLine]:
+        """How right a VLM's answers were: on the balanced set, then in the episodes."""
+        return [*self.balanced.get(vlm, ()), *self.answer_lines(vlm)]
+
+    def decision_lines(self, vlm: str) -> list[tuple[str, str, Decisions]]:
+        """How right the decisions of every monitor were."""
+        found = []
+        for task, by_monitor in self.of(vlm).items():
+            for monitor, rows in by_monitor.items():
+                for when in ("before", "after"):
+                    decisions = decisions_of(rows, when)
+                    if decisions is not None:
+                        found.append((task, monitor, decisions))
+        return found
+
+    def crossings(self) -> list[tuple[str, str, float | None]]:
+        """By task and monitor, from which accuracy on asking beats not asking."""
+        found = []
+        for task, by_monitor in self.curves.items():
+            level = by_monitor.get("tp", by_monitor.get("none"))
+            if level:
+                for monitor, curve in by_monitor.items():
+                    if monitor not in ("tp", "none"):
+                        found.append((task, monitor, crossing(curve, next(iter(level.values())))))
+        return found
+
+
+def draw(results: Results) -> dict[str, Any]:
+    """All figures by name."""
+    drawn: dict[str, Any] = {}
+    for vlm in results.vlms:
+        name = vlm.replace(":", "_")
+        own = [each for each in results.summaries if each.vlm == vlm]
+        if own:
+            drawn[f"completion-{name}"] = figures.completion(own)
+            drawn[f"endings-{name}"] = figures.endings(results.of(vlm))
+            drawn[f"limits-{name}"] = figures.limits(results.of(vlm))
+    if results.curves:
+        drawn["accuracy"] = figures.accuracy_curves(results.curves)
+    return drawn
+
+
+def write_bench_report(folder: Path, results: Results) -> Path:
+    """Write the figures (SVG and PNG) and the page; the page needs nothing beside it.
+
+    Raises:
+        MissingExtraError: Matplotlib is not installed.
+        BenchError: The folder cannot be written to.
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("tpvqa.bench.report", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    drawn = draw(results)
+    pictures = {}
+    try:
+        (folder / "figures").mkdir(exist_ok=True)
+        for name, figure in drawn.items():
+            for kind in ("svg", "png"):
+                data = figures.saved(figure, kind)
+                (folder / "figures" / f"{name}.{kind}").write_bytes(data)
+                if kind == "svg":
+                    encoded = base64.b64encode(data).decode()
+                    pictures[name] = f"data:image/svg+xml;base64,{encoded}"
+            figures.close(figure)
+        page = environment.get_template("report.html.j2").render(
+            results=results, pictures=pictures, rate=_rate
+        )
+        path = folder / "report.html"
+        temporary = path.with_name(path.name + ".part")
+        temporary.write_text(page, encoding="utf-8")
+        temporary.replace(path)
+    except OSError as error:
+        raise BenchError(f"{folder}: cannot be written to ({error})") from error
+    return path
+
+
+def _rate(value: float | None, digits: int = 3) -> str:
+    return "–" if value is None else f"{value:.{digits}f}"

@@ -1,0 +1,312 @@
+"""`tpvqa calibrate`: learn what a VLM's answers are worth."""
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from tpvqa.belief import Calibration, LabelledAnswer
+    from tpvqa.belief.held_out import HeldOut
+    from tpvqa.bench.reliability import Line
+    from tpvqa.questions import QuestionBook
+
+_EXIT = "Exit codes: 0 written, 2 bad input, 130 interrupted."
+_SOURCES = (
+    "Give one source of labelled answers: folders of recorded episodes, --pictures shipped (or a "
+    "folder of such a set), or --trials N"
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command(epilog=_EXIT)(calibrate)
+
+
+def calibrate(
+    episodes: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Folders of recorded episodes in a simulated world."),
+    ] = None,
+    *,
+    vlm: Annotated[
+        str | None,
+        typer.Option(
+            help="Whose answers. Default: embedded; with episodes, whoever answered in them."
+        ),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="The file to write.")] = Path("calibration.json"),
+    pictures: Annotated[
+        str | None,
+        typer.Option(help="Ask about labelled pictures: 'shipped', or the folder of a set."),
+    ] = None,
+    hidden: Annotated[
+        bool,
+        typer.Option("--hidden", help="With --pictures: ask about what is hidden in them, too."),
+    ] = False,
+    trials: Annotated[
+        int | None, typer.Option(help="Run so many trials of every task.", min=1)
+    ] = None,
+    domain: Annotated[
+        Path | None, typer.Option(help="With --pictures: your own domain, which they are of.")
+    ] = None,
+    problem: Annotated[Path | None, typer.Option(help="With --domain: your own problem.")] = None,
+    questions: Annotated[
+        Path | None, typer.Option(help="With --domain: your questions; fallbacks without it.")
+    ] = None,
+    tasks: Annotated[
+        str | None,
+        typer.Option(
+            help="With --trials: shipped tasks, with commas. Default: those of the household, if "
+            "it is installed."
+        ),
+    ] = None,
+    world: Annotated[
+        str | None,
+        typer.Option(
+            help="With --trials. Default: the task's own for VLMs that look, symbolic for noise "
+            "models."
+        ),
+    ] = None,
+    monitor: Annotated[
+        str, typer.Option(help="With --trials: who asks; tpvqa:K looks K times.")
+    ] = "tpvqa",
+    seed: Annotated[int, typer.Option(help="With --trials: decides every random number.")] = 0,
+    experience: Annotated[
+        Path | None,
+        typer.Option(
+            help="With EPISODES: also write how often actions failed, for `tpvqa run --experience`."
+        ),
+    ] = None,
+    curves: Annotated[
+        Path | None,
+        typer.Option(help="Picture of reliability before and after. Default: beside the file."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the figures as JSON.")] = False,
+) -> None:
+    """Learn from labelled answers what a VLM's answers are worth, and show how reliable they are.
+
+    "After" is always of answers that the calibration in question was not learnt from: each half
+    of the trials is judged by what the other half taught.
+    """
+    from tpvqa.belief.fitting import fit
+    from tpvqa.belief.held_out import held_out
+    from tpvqa.bench.recorded_faults import experience_from
+    from tpvqa.bench.reliability import lines
+    from tpvqa.defaults import default_vlm
+    from tpvqa.errors import TpvqaError
+
+    given = [bool(episodes), pictures is not None, trials is not None]
+    if sum(given) != 1:
+        raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
+    if experience is not None and not episodes:
+        raise TpvqaError("--experience counts the faults of recorded episodes: name their folders.")
+    own = (domain, problem, questions)
+    if any(own) and (pictures is None or domain is None or problem is None):
+        raise TpvqaError("Give --domain and --problem (and --questions) beside --pictures FOLDER.")
+    image = curves or out.with_suffix(".png")
+    _check(out, image)
+    surveyed = trials is not None and monitor.partition(":")[0] == "survey"
+    chosen_looks = pictures is None and not surveyed
+    if episodes:
+        name, rows = _from_episodes(episodes, vlm)
+        if experience is not None:
+            experience_from(episodes).save(experience)
+    elif pictures is not None:
+        name, rows = _from_pictures(vlm or default_vlm(), pictures, own, hidden=hidden)
+    else:
+        assert trials is not None
+        name = vlm or default_vlm()
+        rows = _from_trials(name, tasks, world, monitor, seed, trials)
+    calibration = fit(rows, name, chosen_looks=chosen_looks)
+    judged = held_out(rows, name, chosen_looks=chosen_looks)
+    calibration.save(out)
+    _draw(image, judged, name)
+    table = lines(rows, judged, chosen_looks=chosen_looks)
+    if as_json:
+        typer.echo(json.dumps(_as_json(calibration, table, out, image), indent=1))
+    else:
+        _print(calibration, table)
+        typer.echo(f"wrote {out} and {image}")
+
+
+def _check(out: Path, image: Path) -> None:
+    """What would end the work at its end is told before it."""
+    from tpvqa.belief.platt import regression
+    from tpvqa.bench.figures import styled_pyplot
+    from tpvqa.errors import CalibrationError
+
+    regression()
+    styled_pyplot()
+    for path, option in ((out, "--out"), (image, "--curves")):
+        if path.is_dir():
+            raise CalibrationError(f"{path} is a folder; name a file with {option}")
+
+
+def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list[LabelledAnswer]"]:
+    from tpvqa.bench.labelled_episodes import label_episodes
+
+    with _progress("episodes", len(folders)) as done:
+        found = label_episodes(folders, vlm=vlm, done=done)
+    return found.vlm, found.rows
+
+
+def _from_pictures(
+    vlm: str, where: str, own: tuple[Path | None, Path | None, Path | None], *, hidden: bool
+) -> tuple[str, "list[LabelledAnswer]"]:
+    from tpvqa.bench.labelled_pictures import ask_pictures
+    from tpvqa.vlm.making import make_vlm
+    from tpvqa.worlds.pictures import load_set
+
+    opened = load_set(_shipped_set() if where == "shipped" else Path(where))
+    books = _own_book(*own)
+    asked, _ = make_vlm(vlm, {})
+    with _progress("pictures", len(opened.manifest.pictures)) as done:
+        return asked.name, ask_pictures(asked, opened, books, hidden=hidden, done=done)
+
+
+def _shipped_set() -> Path:
+    """The pictures that come with the shipped tasks."""
+    from tpvqa.distributions import HOUSEHOLD, how_to_install
+    from tpvqa.errors import CalibrationError
+    from tpvqa.tasks import shipped_tasks
+
+    found = sorted({files.pictures for files in shipped_tasks() if files.pictures is not None})
+    if not found:
+        raise CalibrationError(
+            "No pictures are shipped with what is installed. Those of the household come with "
+            f"{HOUSEHOLD}: {how_to_install(HOUSEHOLD)}."
+        )
+    if len(found) > 1:
+        folders = ", ".join(map(str, found))
+        raise CalibrationError(f"Several sets of pictures are installed: name one of {folders}.")
+    return found[0]
+
+
+def _own_book(
+    domain: Path | None, problem: Path | None, questions: Path | None
+) -> "list[QuestionBook] | None":
+    from tpvqa.pddl import load_task
+    from tpvqa.questions import QuestionBook
+
+    if domain is None or problem is None:
+        return None
+    return [QuestionBook.load(questions, load_task(domain, problem))]
+
+
+def _from_trials(
+    vlm: str, tasks: str | None, world: str | None, monitor: str, seed: int, trials: int
+) -> "list[LabelledAnswer]":
+    from tpvqa.bench.cell import Cell
+    from tpvqa.bench.labelled import gather
+    from tpvqa.config import Limits, TrialConfig
+    from tpvqa.defaults import default_world
+    from tpvqa.errors import TpvqaError
+    from tpvqa.tasks import find_task
+
+    names = _tasks_with_pictures() if tasks is None else [part.strip() for part in tasks.split(",")]
+    names = [name for name in names if name]
+    if not names:
+        raise TpvqaError("--tasks names no task; write for example --tasks build_tower")
+    rows: list[LabelledAnswer] = []
+    with _progress("trials", trials * len(names)) as done:
+        for task in names:
+            cell = Cell(task, monitor, vlm, world or default_world(find_task(task), vlm))
+            common = TrialConfig(seed=seed, limits=Limits(actions=60))
+            rows += gather(cell, common, range(trials), done=done)
+    return rows
+
+
+def _tasks_with_pictures() -> list[str]:
+    """The shipped tasks that can be seen; all of them where none can."""
+    from tpvqa.tasks import shipped_tasks
+
+    found = shipped_tasks()
+    return [files.name for files in found if files.pictures] or [files.name for files in found]
+
+
+@contextmanager
+def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
+    """A bar on standard error that each call moves on by one."""
+    from tpvqa.cli.progress import CountBar
+
+    done = 0
+
+    def one() -> None:
+        nonlocal done
+        done += 1
+        bar(done, total)
+
+    with CountBar(what) as bar:
+        bar(0, total)
+        yield one
+
+
+def _draw(path: Path, judged: "Sequence[HeldOut]", vlm: str) -> None:
+    from tpvqa.bench.figures import close, saved
+    from tpvqa.bench.reliability import reliability_figure
+    from tpvqa.errors import CalibrationError
+
+    figure = reliability_figure(judged, vlm)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(saved(figure, "svg" if path.suffix == ".svg" else "png"))
+    except OSError as error:
+        raise CalibrationError(
+            f"{path}: cannot be written ({error.strerror}). Name another file with --curves"
+        ) from error
+    finally:
+        close(figure)
+
+
+def _as_json(
+    calibration: "Calibration", table: "Sequence[Line]", out: Path, image: Path
+) -> dict[str, object]:
+    return {
+        "vlm": calibration.vlm,
+        "rows": calibration.rows,
+        "file": str(out),
+        "curves": str(image),
+        "repeat_same_view": calibration.repeat_same_view,
+        "repeat_other_view": calibration.repeat_other_view,
+        "notices": calibration.notices,
+        "lines": [asdict(line) for line in table],
+    }
+
+
+def _print(calibration: "Calibration", table: "Sequence[Line]") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    printed = Table(title=calibration.vlm, title_justify="left", title_style="bold", box=None)
+    for name in ("asked as", "about"):
+        printed.add_column(name, no_wrap=True)
+    for name in ("answers", "abstained", "accuracy", "yes if true", "yes if false"):
+        printed.add_column(name, justify="right", no_wrap=True)
+    printed.add_column("ECE before → after", justify="right", no_wrap=True)
+    for line in table:
+        figures = (line.abstained, line.accuracy, line.yes_if_true, line.yes_if_false)
+        printed.add_row(
+            line.way or "all",
+            line.predicate or "",
+            str(line.answers),
+            *map(_figure, figures),
+            f"{_figure(line.error_before)} → {_figure(line.error_after)}",
+            end_section=line is table[-2],
+        )
+    console = Console()
+    (console if console.is_terminal else Console(width=120)).print(printed)
+    typer.echo(
+        f"\nA further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
+        f"the same view, {calibration.repeat_other_view:.2f} from another."
+    )
+    for notice in calibration.notices:
+        typer.echo(f"note: {notice}")
+
+
+def _figure(value: float | None) -> str:
+    return "–" if value is None else f"{value:.3f}"

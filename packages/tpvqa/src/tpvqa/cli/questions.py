@@ -1,0 +1,239 @@
+"""`tpvqa questions` and `tpvqa ask`."""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+from tpvqa.cli.plan import CRASHED, TIMED_OUT, UNSOLVABLE
+
+if TYPE_CHECKING:
+    from tpvqa.pddl import Action, Literal, Task
+    from tpvqa.questions import Question, QuestionBook
+    from tpvqa.vlm import Answer
+
+_PLAN_EXIT = (
+    "Exit codes: 0 printed, 2 bad input, 3 the task has no plan, 4 planning timed out, "
+    "5 the planner crashed."
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands."""
+    app.command(epilog=_PLAN_EXIT)(questions)
+    app.command(epilog="Exit codes: 0 asked, 2 the VLM or a picture cannot be used.")(ask)
+
+
+def questions(
+    task: Annotated[str | None, typer.Argument(help="A shipped task, see `tpvqa tasks`.")] = None,
+    *,
+    domain: Annotated[Path | None, typer.Option(help="Your own domain.")] = None,
+    problem: Annotated[Path | None, typer.Option(help="Your own problem.")] = None,
+    questions_file: Annotated[
+        Path | None,
+        typer.Option("--questions", help="Questions for the domain; fallbacks without it."),
+    ] = None,
+    timeout: Annotated[
+        float,
+        typer.Option(
+            help="Seconds for grounding, and for planning; inf for no limit.",
+            min=0.001,
+        ),
+    ] = 60.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Print every question of a task's plan, action by action, for each way of asking."""
+    from tpvqa.errors import GroundingTimedOut
+    from tpvqa.planning import Crashed, Plan, TimedOut, Unsolvable
+    from tpvqa.plugins import Kind, make
+
+    try:
+        loaded, book = _load(task, domain, problem, questions_file, timeout)
+    except GroundingTimedOut as error:
+        _no_questions(str(error), TIMED_OUT)
+    planner = make(Kind.PLANNER, "fast-downward")
+    try:
+        result = planner.plan(loaded, timeout=timeout)
+    finally:
+        planner.close()
+    match result:
+        case Plan(actions):
+            pass
+        case Unsolvable(reason):
+            _no_questions(f"the task has no plan: {reason}", UNSOLVABLE)
+        case TimedOut(limit):
+            _no_questions(
+                f"planning took more than {limit:g} s; give it more by --timeout", TIMED_OUT
+            )
+        case Crashed(reason):
+            _no_questions(f"the planner crashed: {reason}", CRASHED)
+    steps = list(_steps(loaded, book, actions))
+    for notice in () if as_json else book.notices:
+        print(f"note: {notice}", file=sys.stderr)
+    if as_json:
+        _print_json(loaded, book, steps)
+    elif sys.stdout.isatty():
+        _print_table(book, steps)
+    else:
+        _print_lines(book, steps)
+
+
+def ask(
+    image: Annotated[Path, typer.Argument(help="A picture.")],
+    question: Annotated[list[str], typer.Argument(help="Questions with the answer yes or no.")],
+    *,
+    vlm: Annotated[
+        str | None, typer.Option(help="embedded (the default), openai:MODEL or a plug-in.")
+    ] = None,
+    base_url: Annotated[
+        str | None, typer.Option(help="Address of an OpenAI-compatible server, with its path.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Ask about a picture: prints each answer and P(yes)."""
+    from tpvqa.defaults import default_vlm
+    from tpvqa.plugins import Closing
+    from tpvqa.questions import Question, Way
+    from tpvqa.vlm.making import make_vlm
+    from tpvqa.vlm.pictures import observe_file
+
+    observation = observe_file(image)
+    model, _ = make_vlm(vlm or default_vlm(), {"base_url": base_url})
+    asked = [Question(text, Way.PRECONDITION) for text in question]
+    try:
+        answers = model.ask(observation, asked)
+    finally:
+        if isinstance(model, Closing):
+            model.close()
+    if as_json:
+        rows = [_answer_as_json(answer) for answer in answers]
+        print(json.dumps({"image": str(image), "vlm": model.name, "answers": rows}, indent=1))
+    else:
+        for answer in answers:
+            print(_answer_line(answer))
+
+
+def _load(
+    task: str | None,
+    domain: Path | None,
+    problem: Path | None,
+    questions_file: Path | None,
+    timeout: float,
+) -> "tuple[Task, QuestionBook]":
+    from tpvqa.errors import TpvqaError
+    from tpvqa.pddl import load_task
+    from tpvqa.questions import QuestionBook
+    from tpvqa.tasks import find_task
+
+    if task is None and domain is not None and problem is not None:
+        loaded = load_task(domain, problem, timeout=timeout)
+    elif task is not None and domain is None and problem is None:
+        loaded = load_task(task, timeout=timeout)
+        questions_file = questions_file or find_task(task).questions
+    else:
+        raise TpvqaError("Give either a shipped task, or both --domain and --problem.")
+    return loaded, QuestionBook.load(questions_file, loaded)
+
+
+def _no_questions(why: str, code: int) -> NoReturn:
+    print(f"error: {why}", file=sys.stderr)
+    raise typer.Exit(code)
+
+
+def _steps(
+    task: "Task", book: "QuestionBook", plan: "tuple[Action, ...]"
+) -> "Iterator[tuple[Action, list[Question]]]":
+    """Each action of a plan with its questions, before those after it."""
+    state = task.init
+    for action in plan:
+        before = [*book.preconditions(action, state), book.possible(action)]
+        after = [*book.effects(action, state), book.successful(action), book.did(action)]
+        yield action, before + after
+        state = task.apply(state, action)
+
+
+def _print_json(
+    task: "Task", book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]"
+) -> None:
+    actions: list[dict[str, Any]] = []
+    state = task.init
+    for action, asked in steps:
+        entry = {
+            "name": action.name,
+            "arguments": list(action.arguments),
+            "say": book.say(action),
+            "done": book.done(action),
+            "questions": [
+                {
+                    "way": question.way.value,
+                    "text": question.text,
+                    "expected": "yes" if question.expected else "no",
+                    "fact": None if question.atom is None else question.atom.pddl(),
+                }
+                for question in asked
+            ],
+            "not_asked": [
+                {"fact": _pddl(literal), "because": reason}
+                for literal, reason in book.unasked(action, state).items()
+            ],
+        }
+        actions.append(entry)
+        state = task.apply(state, action)
+    print(json.dumps({"task": task.name, "actions": actions, "notices": book.notices}, indent=1))
+
+
+def _pddl(literal: "Literal") -> str:
+    fact = literal.atom.pddl()
+    return fact if literal.positive else f"(not {fact})"
+
+
+def _print_lines(book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]") -> None:
+    for number, (action, asked) in enumerate(steps, start=1):
+        print(f"{number}. {book.say(action)}")
+        for question in asked:
+            answer = "yes" if question.expected else "no"
+            print(f"   {question.way.value}: {question.text} {answer}")
+
+
+def _print_table(book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]") -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in ("Action", "Way of asking", "Question", "Expected"):
+        table.add_column(heading, no_wrap=heading == "Way of asking")
+    for number, (action, asked) in enumerate(steps, start=1):
+        for at, question in enumerate(asked):
+            answer = Text("yes", "green") if question.expected else Text("no", "red")
+            said = Text(f"{number}. {book.say(action)}" if at == 0 else "", "bold")
+            last = at == len(asked) - 1
+            table.add_row(said, question.way.value, Text(question.text), answer, end_section=last)
+    Console().print(table)
+
+
+def _answer_as_json(answer: "Answer") -> dict[str, Any]:
+    return {
+        "question": answer.question.text,
+        "reply": answer.reply.value,
+        "p_yes": answer.p_yes,
+        "p_cannot_see": answer.p_cannot_see,
+        "leftover": answer.leftover,
+        "source": answer.source,
+        "text": answer.text,
+        "seconds": round(answer.seconds, 4),
+    }
+
+
+def _answer_line(answer: "Answer") -> str:
+    if answer.p_yes is None:
+        detail = f"no probability: {answer.text}" if answer.text else "no probability"
+    else:
+        detail = f"P(yes) = {answer.p_yes:.3f}"
+        if answer.p_cannot_see is not None:
+            detail += f", P(cannot see) = {answer.p_cannot_see:.3f}"
+    return f"{answer.question.text} {answer.reply.value} ({detail})"

@@ -1,0 +1,38 @@
+"""What other distributions bring: for a name that is missing here, a message says what to install.
+
+Names only: nothing here is imported, and whatever is installed is found by its entry points.
+"""
+
+from collections.abc import Mapping
+
+HOUSEHOLD = "tpvqa-household"
+EXPERIMENTS = "tpvqa-experiments"
+
+_INSTALL: Mapping[str, str] = {
+    HOUSEHOLD: (
+        "pip install tpvqa-household (from a clone: pip install ./packages/tpvqa-household)"
+    ),
+    EXPERIMENTS: "in a clone of the repository, pip install -e ./experiments",
+}
+_BROUGHT: Mapping[str, Mapping[str, str]] = {
+    "task": dict.fromkeys(("clean_dishes", "eat_apple", "serve_breakfast"), HOUSEHOLD),
+    "VLM": {"embedded": HOUSEHOLD, "paper-table": EXPERIMENTS},
+    "world": dict.fromkeys(("images", "kitchen"), HOUSEHOLD),
+    "command": {"dataset": HOUSEHOLD, "bench": EXPERIMENTS},
+}
+
+
+def how_to_install(distribution: str) -> str:
+    """The command that installs a distribution of this repository."""
+    return _INSTALL[distribution]
+
+
+def remedy(kind: str, name: str) -> str:
+    """What to install for a missing task, VLM, world or command, as a sentence.
+
+    Empty where no distribution of this repository brings it.
+    """
+    distribution = _BROUGHT.get(kind, {}).get(name)
+    if distribution is None:
+        return ""
+    return f"{name} comes with {distribution}. Install it: {how_to_install(distribution)}."

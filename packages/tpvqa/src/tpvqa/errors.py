@@ -1,0 +1,174 @@
+"""The whole exception tree. Every message says what is wrong, where, and what to do about it.
+
+TpvqaError
+├── PlacedError            a file that a user wrote is wrong; says where
+│   ├── PDDLError          the domain or problem cannot be read
+│   ├── QuestionsError     a questions file is broken
+│   ├── WorldFileError     a world file or a script is broken
+│   ├── ConfigError        a trial's configuration is wrong
+│   └── PhotosError        a photo, its label or a file of prompts is wrong
+├── PlannerError           the planner itself could not be run (never "there is no plan")
+│   └── GroundingTimedOut  reading and grounding took longer than allowed
+├── AnswerError            a VLM could not be asked at all
+├── WorldError             a world cannot do what it is asked to
+├── PictureSetError        the set of pictures is incomplete or damaged
+├── GeneratorError         pictures cannot be varied or generated (no key, say)
+│   └── PictureRefused     this one picture was refused, others may be made
+├── EpisodeError           an episode cannot be read or resumed
+├── BeliefError            what is believed could not be made consistent in the time allowed
+│   └── ContradictionError facts that are taken as given cannot hold together
+├── BenchError             a bench cannot be run, read or written
+├── CalibrationError       a calibration cannot be learnt, read or written
+├── UnknownNameError       no plug-in or task of that name
+├── PluginError            a plug-in cannot be imported, does not take its arguments, or broke
+└── MissingExtraError      an optional package is needed
+"""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """The end of a sentence about an unknown name, and the nearest known one, where one is near."""
+    near = get_close_matches(word, list(known), n=1)
+    return f". Did you mean {near[0]!r}?" if near else "."
+
+
+def suggestion_or_list(word: str, known: Iterable[str]) -> str:
+    """As `suggestion`, and all known names where none is near."""
+    known = sorted(known)
+    said = suggestion(word, known)
+    return said if said != "." else f". Known: {', '.join(known[:20]) or 'none'}."
+
+
+class TpvqaError(Exception):
+    """Base of all errors that tpvqa raises on purpose."""
+
+
+class PlacedError(TpvqaError):
+    """A file that a user wrote is wrong; the message starts with file and line, where known.
+
+    Args:
+        message: What is wrong and what was expected.
+        file: The file it stands in, where known.
+        line: The line, counted from 1, where known.
+
+    Attributes:
+        message: The message without the place.
+        file: The file.
+        line: The line.
+    """
+
+    def __init__(self, message: str, *, file: str | Path | None = None, line: int | None = None):
+        self.message, self.file, self.line = message, file, line
+        place = "" if file is None else f"{file}:" + ("" if line is None else f"{line}:") + " "
+        super().__init__(place + message)
+
+
+class PDDLError(PlacedError):
+    """The domain or problem cannot be read."""
+
+
+class PlannerError(TpvqaError):
+    """The planner could not be run. That no plan exists is a result, not this error."""
+
+
+class GroundingTimedOut(PlannerError):  # noqa: N818
+    """Reading and grounding a task took longer than allowed."""
+
+
+class QuestionsError(PlacedError):
+    """A questions file is broken."""
+
+
+class AnswerError(TpvqaError):
+    """A VLM could not be asked at all (no key, say). A bad answer is *unknown* instead."""
+
+
+class ConfigError(PlacedError):
+    """The configuration of a trial is wrong."""
+
+
+class WorldFileError(PlacedError):
+    """A world file or a script is broken."""
+
+
+class WorldError(TpvqaError):
+    """A world cannot do what it is asked to."""
+
+
+class PictureSetError(TpvqaError):
+    """The set of pictures is incomplete or damaged."""
+
+
+class PhotosError(PlacedError):
+    """A photo of the user's, its label or a file of prompts is wrong."""
+
+
+class GeneratorError(TpvqaError):
+    """Pictures cannot be varied or generated: no key, no model, a server that does not answer."""
+
+
+class PictureRefused(GeneratorError):  # noqa: N818
+    """The generator refuses this one picture (for what it shows, say); it may make others."""
+
+
+class EpisodeError(TpvqaError):
+    """An episode cannot be read or resumed."""
+
+
+class BeliefError(TpvqaError):
+    """What is believed could not be made consistent in the time allowed."""
+
+
+class ContradictionError(BeliefError):
+    """Facts that are taken as given cannot hold together."""
+
+
+class BenchError(TpvqaError):
+    """A bench cannot be run, or its results cannot be read or written."""
+
+
+class CalibrationError(TpvqaError):
+    """A calibration cannot be learnt from the data given, or its file cannot be read or written."""
+
+
+class UnknownNameError(TpvqaError):
+    """No plug-in, task or view of that name; the message suggests the nearest one.
+
+    Args:
+        kind: What was looked for.
+        name: The name.
+        known: The names that there are.
+        remedy: What to do about it, where that is known; a sentence.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str], *, remedy: str = ""):
+        known = sorted(known)
+        near = "." if remedy else suggestion(name, known)
+        super().__init__(
+            f"There is no {kind} {name!r}{near} Known: {', '.join(known) or 'none'}."
+            + (f" {remedy}" if remedy else "")
+        )
+
+
+class PluginError(TpvqaError):
+    """A plug-in cannot be imported, does not take the arguments of its specification, or broke."""
+
+
+class MissingExtraError(TpvqaError):
+    """An optional package is needed.
+
+    Args:
+        package: What is missing.
+        extra: The extra that installs it.
+        purpose: What needs it.
+        distribution: Whose extra it is.
+    """
+
+    def __init__(self, package: str, extra: str, purpose: str, *, distribution: str = "tpvqa"):
+        super().__init__(
+            f"{purpose} needs the package {package!r}. "
+            f"Install it: pip install '{distribution}[{extra}]'"
+        )

@@ -1,0 +1,125 @@
+"""Tasks by name: those that come with the package, and those that other packages bring.
+
+A package brings a *family* of tasks, one domain and its problems, by an entry point in the group
+`tpvqa.tasks`: a function without arguments that gives their `TaskFiles`. `tasks_in` makes them of a
+folder:
+
+    def task_files():
+        return tasks_in(Path(__file__).parent)
+"""
+
+import logging
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from tpvqa.distributions import remedy
+from tpvqa.errors import PluginError, TpvqaError, UnknownNameError
+from tpvqa.plugins import Kind, load, names
+
+_LOG = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class TaskFiles:
+    """Where the files of a shipped task lie.
+
+    Attributes:
+        name: The task's name.
+        domain: The PDDL domain.
+        problem: The PDDL problem.
+        questions: How facts and actions are put into questions.
+        world: How facts come undone in a simulated world.
+        default_world: Specification of the world that it is run in where none is named.
+        pictures: The folder of labelled pictures of it; None where there are none.
+    """
+
+    name: str
+    domain: Path
+    problem: Path
+    questions: Path
+    world: Path
+    default_world: str = "symbolic"
+    pictures: Path | None = None
+
+
+def tasks_in(
+    folder: Path, *, default_world: str = "symbolic", pictures: Path | None = None
+) -> tuple[TaskFiles, ...]:
+    """The tasks of a folder with `domain.pddl`, `questions.yaml`, `world.yaml` and problems.
+
+    Args:
+        folder: Every other PDDL file in it is a problem, and a task of that name.
+        default_world: As in `TaskFiles`.
+        pictures: As in `TaskFiles`.
+    """
+    domain = folder / "domain.pddl"
+    return tuple(
+        TaskFiles(
+            name=problem.stem,
+            domain=domain,
+            problem=problem,
+            questions=folder / "questions.yaml",
+            world=folder / "world.yaml",
+            default_world=default_world,
+            pictures=pictures,
+        )
+        for problem in sorted(folder.glob("*.pddl"))
+        if problem != domain
+    )
+
+
+@cache
+def blocksworld() -> tuple[TaskFiles, ...]:
+    """The small family that comes with the package."""
+    return tasks_in(Path(__file__).parent / "blocksworld")
+
+
+def shipped_tasks() -> tuple[TaskFiles, ...]:
+    """The tasks of all installed packages, by name; a family that is broken is warned of."""
+    found: list[TaskFiles] = []
+    for family in _families():
+        if isinstance(family, TpvqaError):
+            _LOG.warning("%s", family)
+        else:
+            found += family
+    return tuple(sorted(found, key=lambda files: files.name))
+
+
+def find_task(name: str) -> TaskFiles:
+    """The files of a shipped task.
+
+    Raises:
+        UnknownNameError: There is none of that name.
+        PluginError: Two packages bring one, or there is none and a family is broken.
+    """
+    families = list(_families())
+    known = [files for family in families if isinstance(family, tuple) for files in family]
+    found = list(dict.fromkeys(files for files in known if files.name == name))
+    if len(found) > 1:
+        folders = " and ".join(sorted(str(files.problem) for files in found))
+        raise PluginError(f"There are several tasks {name!r}: {folders}. Uninstall one of them.")
+    if found:
+        return found[0]
+    for family in families:
+        if isinstance(family, TpvqaError):
+            raise family
+    listed = [files.name for files in known]
+    raise UnknownNameError("task", name, listed, remedy=remedy("task", name))
+
+
+def _families() -> Iterator[tuple[TaskFiles, ...] | TpvqaError]:
+    """The tasks of each family, or why they cannot be had."""
+    for name in names(Kind.FAMILY):
+        try:
+            found = tuple(load(Kind.FAMILY, name)())
+        except TpvqaError as error:
+            yield error
+        except Exception as error:  # noqa: BLE001 — a family of another package's
+            yield PluginError(f"The family of tasks {name!r} broke: {error!r}.")
+        else:
+            if all(isinstance(files, TaskFiles) for files in found):
+                yield found
+            else:
+                yield PluginError(f"The family of tasks {name!r} has to give TaskFiles.")

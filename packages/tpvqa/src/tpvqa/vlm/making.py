@@ -1,0 +1,34 @@
+"""VLMs by name. Only noise models are given the truth."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from tpvqa.errors import PluginError
+from tpvqa.plugins import Kind, load_spec, make_from
+from tpvqa.vlm.capabilities import is_noise_model
+from tpvqa.vlm.protocol import VLM
+
+
+def make_vlm(spec: str, context: Mapping[str, Any]) -> tuple[VLM, set[str]]:
+    """Make the VLM of a specification.
+
+    Args:
+        spec: NAME or NAME:ARGUMENTS.
+        context: What it may ask for by naming it in its signature.
+
+    Returns:
+        The VLM, and the names of what it takes of the context.
+
+    Raises:
+        UnknownNameError: Nothing of that name.
+        MissingExtraError: An optional package is needed.
+        PluginError: It cannot be made, or it is a noise model and there is no truth here.
+    """
+    if not is_noise_model(load_spec(Kind.VLM, spec)):
+        return make_from(Kind.VLM, spec, context)
+    if context.get("truth") is None:
+        raise PluginError(
+            f"The VLM {spec!r} is a noise model: it answers from the truth of a simulated world, "
+            "and there is none here. Choose one that looks at pictures, e.g. 'openai:MODEL'."
+        )
+    return make_from(Kind.VLM, spec, context, entitled=("truth", "simulation"))

@@ -1,0 +1,131 @@
+"""The manifest of a set of pictures: one JSON file beside them, checked when it is read.
+
+A package with more to say of its pictures makes subclasses of `Picture` and `Manifest`. Fields that
+a reader does not know are passed over, so that every set can be read as a plain one.
+"""
+
+import hashlib
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Annotated, Generic, TypeVar
+from typing import Literal as Choice
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+
+from tpvqa.errors import PictureSetError
+from tpvqa.pddl import Atom, State
+
+MANIFEST = "manifest.json"
+
+
+@lru_cache(maxsize=4096)
+def _fact(text: str) -> str:
+    """A fact as PDDL writes it."""
+    return Atom.parse(text).pddl()
+
+
+Fact = Annotated[str, AfterValidator(_fact)]
+
+
+class Picture(BaseModel):
+    """One picture and what is true in it.
+
+    Attributes:
+        file: Its name, beside the manifest.
+        sha256: Of the file.
+        state: The facts that are true in it, as PDDL atoms; all others are false.
+        seen: The facts, true or false, that can be told from it.
+        visible: Names what is visible in it: the same for pictures that look alike. Without it,
+            pictures look alike that show the same facts.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+    file: str
+    sha256: str
+    state: tuple[Fact, ...]
+    seen: frozenset[Fact]
+    visible: str = ""
+
+    @cached_property
+    def true_state(self) -> State:
+        """The true state it was made from."""
+        return frozenset(map(Atom.parse, self.state))
+
+    @property
+    def scene(self) -> str:
+        """What is visible in it."""
+        true = set(self.state)
+        told = (fact if fact in true else f"(not {fact})" for fact in sorted(self.seen))
+        return self.visible or " ".join(told)
+
+    def holds(self, atom: Atom) -> bool:
+        """Whether a fact is true in it."""
+        return atom in self.true_state
+
+    def shows_fact(self, atom: Atom) -> bool:
+        """Whether the picture shows if a fact is true."""
+        return atom.pddl() in self.seen
+
+
+P = TypeVar("P", bound=Picture)
+
+
+class Manifest(BaseModel, Generic[P]):
+    """All pictures of a set.
+
+    Attributes:
+        version: Of this format.
+        domain: The name of the PDDL domain that the facts belong to.
+        facts: Every fact that a picture tells about, as PDDL atoms; without them, those that are
+            seen in some picture.
+        pictures: The pictures.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+    version: Choice[1] = 1
+    domain: str
+    facts: tuple[Fact, ...] = ()
+    pictures: tuple[P, ...] = Field(min_length=1)
+
+
+M = TypeVar("M", bound=Manifest)  # type: ignore[type-arg]  # of whatever pictures
+
+
+def read_manifest(folder: Path, kind: type[M], *, missing: str, broken: str) -> M:
+    """Read the manifest of a folder.
+
+    Args:
+        folder: Holds it.
+        kind: What to read it as.
+        missing: What to do where there is none, for the message.
+        broken: What to do where it is not as it should be.
+
+    Raises:
+        PictureSetError: There is no manifest, or it is broken.
+    """
+    path = folder / MANIFEST
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise PictureSetError(f"{path}: cannot be read ({error.strerror}). {missing}") from error
+    try:
+        return kind.model_validate_json(text)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"]))
+        raise PictureSetError(
+            f"{path}: {place or 'the file'}: {first['msg']} ({error.error_count()} faults in all). "
+            f"{broken}"
+        ) from error
+
+
+def digest(data: bytes) -> str:
+    """SHA-256, as the manifest writes it."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def media_type(file: str) -> str:
+    """What a picture's file holds, by its name."""
+    return "image/png" if file.lower().endswith(".png") else "image/jpeg"

@@ -1,0 +1,74 @@
+"""A set of labelled pictures on disk."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import ClassVar, Generic
+
+from tpvqa.errors import PictureSetError
+from tpvqa.worlds.pictures.manifest import MANIFEST, Manifest, P, Picture, digest, read_manifest
+
+
+class PictureSet(Generic[P]):
+    """Pictures on disk.
+
+    Args:
+        folder: Holds the pictures and their manifest.
+        manifest: What the manifest says.
+
+    Attributes:
+        gone: What to do where a picture is missing, for messages.
+        lacking: What to do where no picture shows something.
+    """
+
+    gone: ClassVar[str] = f"Put it back, or take it out of {MANIFEST}"
+    lacking: ClassVar[str] = f"Add a picture of it to the set and its {MANIFEST}"
+
+    def __init__(self, folder: Path, manifest: Manifest[P]):
+        self.folder, self.manifest = folder, manifest
+
+    @property
+    def facts(self) -> Sequence[str]:
+        """Every fact that a picture tells about, as PDDL atoms."""
+        manifest = self.manifest
+        return manifest.facts or sorted({fact for each in manifest.pictures for fact in each.seen})
+
+    def read(self, picture: P) -> bytes:
+        """The encoded picture.
+
+        Raises:
+            PictureSetError: Its file is missing.
+        """
+        try:
+            return (self.folder / picture.file).read_bytes()
+        except OSError as error:
+            raise PictureSetError(
+                f"{self.folder / picture.file}: cannot be read ({error.strerror}). {self.gone}"
+            ) from error
+
+    def check(self) -> None:
+        """See whether all pictures are there, and are those that the manifest means.
+
+        Raises:
+            PictureSetError: One is not.
+        """
+        for picture in self.manifest.pictures:
+            if digest(self.read(picture)) != picture.sha256:
+                raise PictureSetError(
+                    f"{self.folder / picture.file}: its SHA-256 is not the manifest's. "
+                    f"Put the right picture there, or label it again in {MANIFEST}"
+                )
+
+
+def load_set(folder: Path) -> PictureSet[Picture]:
+    """Open a set of pictures of any domain.
+
+    Raises:
+        PictureSetError: There is no manifest, or it is broken.
+    """
+    manifest: Manifest[Picture] = read_manifest(
+        folder,
+        Manifest[Picture],
+        missing="Name the folder of a set, with its manifest (see docs/your-own-domain.md)",
+        broken="docs/your-own-domain.md says what it has to be",
+    )
+    return PictureSet(folder, manifest)
