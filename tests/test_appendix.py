@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tests.doubles import ScriptedVLM
+from tests.doubles import ScriptedVLM, truthful
 from tpvqa.episodes import MemoryWriter
 from tpvqa.episodes.events import Acting, Answered, Asked, Decided, Ended, PlanMade
 from tpvqa.monitors import Decision
@@ -25,8 +25,7 @@ def test_the_container_drops_the_plan_starts_again_and_a_failed_pick_is_repeated
     with Trial(config) as trial:
 
         def sees(question: Question) -> Reply:
-            assert question.atom is not None
-            return Reply.YES if trial.world.truth.holds(question.atom) else Reply.NO  # type: ignore[attr-defined]
+            return truthful(question, trial.world.truth.holds)  # type: ignore[attr-defined]
 
         trial.parts.vlm = ScriptedVLM(sees)
         ended = trial.run(writer)

@@ -15,8 +15,10 @@ __version__ = "0.1.0"
 
 _PUBLIC = {
     "Action": "tpvqa.pddl",
+    "ActionQuestion": "tpvqa.questions",
     "Answer": "tpvqa.vlm",
     "Atom": "tpvqa.pddl",
+    "FactQuestion": "tpvqa.questions",
     "Interrupted": "tpvqa.loop",
     "Literal": "tpvqa.pddl",
     "Observation": "tpvqa.observation",

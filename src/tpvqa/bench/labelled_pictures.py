@@ -6,7 +6,7 @@ from tpvqa.belief import LabelledAnswer
 from tpvqa.errors import CalibrationError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Atom, Literal, load_task
-from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.questions import FactQuestion, QuestionBook, Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM
 from tpvqa.worlds.images.manifest import Picture, PictureSet
@@ -53,7 +53,7 @@ def ask_pictures(
     return rows
 
 
-def _questions(pictures: PictureSet) -> Iterator[Question]:
+def _questions(pictures: PictureSet) -> Iterator[FactQuestion]:
     """Every question about the set's facts, once."""
     facts = [Atom.parse(text) for text in pictures.manifest.facts]
     texts: set[str] = set()
@@ -71,13 +71,12 @@ def _questions(pictures: PictureSet) -> Iterator[Question]:
                 yield book.fact(Literal(atom))
 
 
-def _shows(picture: Picture, question: Question) -> bool:
-    assert question.atom is not None
-    return any(atom.pddl() in picture.seen for atom in (question.atom, *question.alike))
+def _shows(picture: Picture, question: FactQuestion) -> bool:
+    return any(atom.pddl() in picture.seen for atom in question.atoms)
 
 
 def _ask(
-    vlm: VLM, pictures: PictureSet, picture: Picture, look: int, questions: list[Question]
+    vlm: VLM, pictures: PictureSet, picture: Picture, look: int, questions: list[FactQuestion]
 ) -> Iterator[LabelledAnswer]:
     frame = Frame(
         id=picture.file.rpartition(".")[0],
@@ -89,13 +88,12 @@ def _ask(
     for question, answer in zip(
         questions, vlm.ask(Observation(look, 0.0, {VIEW: frame}), questions), strict=True
     ):
-        assert question.atom is not None
         for way in (Way.PRECONDITION, Way.EFFECT):
             yield LabelledAnswer(
                 way=way,
-                predicate=question.atom.predicate,
+                predicate=question.subject,
                 text=question.text,
-                truth=bool(question.true_in(true.__contains__)),
+                truth=question.true_in(true.__contains__),
                 reply=answer.reply,
                 p_yes=answer.p_yes,
                 trial=picture.visible,

@@ -18,7 +18,7 @@ from tpvqa.errors import EpisodeError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, State, Task
 from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
-from tpvqa.questions import Question, QuestionBook
+from tpvqa.questions import ActionQuestion, FactQuestion, Question, QuestionBook
 from tpvqa.vlm import Answer
 
 _OF_ANSWERS = tuple(each.name for each in fields(Answer) if each.name != "question")
@@ -67,14 +67,14 @@ def plan_from(record: PlanMade, task: Task) -> PlanningResult:
 
 def question_record(question: Question) -> QuestionRecord:
     """A question as it is logged."""
-    return QuestionRecord(
-        text=question.text,
-        way=question.way,
-        atom=None if question.atom is None else question.atom.pddl(),
-        action=None if question.action is None else question.action.pddl(),
-        expected=question.expected,
-        alike=tuple(atom.pddl() for atom in question.alike) or None,
-    )
+    match question:
+        case FactQuestion(text, way, atom, expected, alike):
+            others = tuple(other.pddl() for other in alike) or None
+            return QuestionRecord(
+                text=text, way=way, atom=atom.pddl(), expected=expected, alike=others
+            )
+        case ActionQuestion(text, way, action):
+            return QuestionRecord(text=text, way=way, action=action.pddl())
 
 
 def answered_record(answers: Sequence[Answer], snapshot: dict[str, Any] | None) -> Answered:

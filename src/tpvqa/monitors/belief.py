@@ -26,7 +26,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import needed
-from tpvqa.questions import FactWords, Question, QuestionBook, Way
+from tpvqa.questions import FactQuestion, FactWay, FactWords, QuestionBook, Way
 from tpvqa.vlm import Answer, Reply
 
 SAME = 3
@@ -102,7 +102,7 @@ class BeliefMonitor:
         self._effects: frozenset[Atom] = frozenset()
         self._settled: Action | None = None
         self._stepped: Step | None = None
-        self._asked_about: dict[frozenset[Atom], list[Question]] = {}
+        self._asked_about: dict[frozenset[Atom], list[FactQuestion]] = {}
 
     @classmethod
     def from_spec(
@@ -274,28 +274,27 @@ class BeliefMonitor:
             min(costs.looks_per_step - self._looks_here, costs.looks_per_trial - self._looks),
         )
 
-    def _likely(self, question: Question) -> float:
-        assert question.atom is not None
+    def _likely(self, question: FactQuestion) -> float:
         return self.belief.probability(question.atom, question.alike)
 
-    def _about_needs(self, book: QuestionBook) -> list[Question]:
+    def _about_needs(self, book: QuestionBook) -> list[FactQuestion]:
         """Questions about what the plans need: nothing else can change a decision."""
         atoms: frozenset[Atom] = frozenset().union(*(p.atoms() for p in self._chooser.plans))
         if self._all_facts:
             atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
         if atoms not in self._asked_about:
-            questions: dict[str, Question] = {}
+            questions: dict[str, FactQuestion] = {}
             for atom in sorted(atoms):
                 effect = atom in self._effects
                 action = self._action if effect else None
                 if book.asked(Literal(atom), action):
-                    way = Way.EFFECT if effect else Way.PRECONDITION
-                    question = book.fact(Literal(atom), way=way, action=action)
+                    way: FactWay = Way.EFFECT if effect else Way.PRECONDITION
+                    question = book.fact(Literal(atom), way=way)
                     questions.setdefault(question.text, question)
             self._asked_about[atoms] = list(questions.values())
         return self._asked_about[atoms]
 
-    def _open_views(self, question: Question) -> list[str | None]:
+    def _open_views(self, question: FactQuestion) -> list[str | None]:
         """From where a question may still find an answer, the next one first.
 
         They go round: another view repeats the last answer less than the same one does.
@@ -304,13 +303,12 @@ class BeliefMonitor:
         views: list[str | None] = [*self._views[turn:], *self._views[:turn]]
         return [view for view in views or [None] if not self.evidence.silent(question.text, view)]
 
-    def _ask(self, question: Question, *, person: bool) -> Generator[Request, Any, None]:
-        assert question.atom is not None
+    def _ask(self, question: FactQuestion, *, person: bool) -> Generator[Request, Any, None]:
         before = self._likely(question)
         if person:
             answer: Answer = yield AskPerson(question)
             self._person = answer.reply is not Reply.UNKNOWN
-            self.evidence.take_from_person(answer)
+            self.evidence.take_from_person(question, answer.reply)
         else:
             looks = 0
             while not self._shows_something_new(question):
@@ -330,12 +328,12 @@ class BeliefMonitor:
             answer = answers[0]
             self._questions += 1
             self._questions_here += 1
-            self.evidence.take(answer, self._picture, self._view)
+            self.evidence.take(question, answer, self._picture, self._view)
         if answer.reply in (Reply.YES, Reply.NO):
-            told = Told((question.atom, *question.alike), before)
+            told = Told(question.atoms, before)
             self._told.setdefault(question.text, told).replies.append(answer.reply)
 
-    def _shows_something_new(self, question: Question) -> bool:
+    def _shows_something_new(self, question: FactQuestion) -> bool:
         """Whether the latest picture may tell more than what a question was answered before."""
         return (
             self._picture is not None
