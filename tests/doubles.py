@@ -56,7 +56,7 @@ def perform(check: Check, *answerers: Answerer) -> tuple[Verdict, int, list[str]
         while True:
             request = check.send(answer)
             if isinstance(request, Look):
-                answer = Observation(look=looks, time=0.0)
+                answer = Observation(looks)
                 looks += 1
             else:
                 assert isinstance(request, Ask)

@@ -267,9 +267,9 @@ class TwoViews(SymbolicWorld):
         return ("front", "side")
 
     def observe(self, view: str | None = None) -> Observation:
-        look = super().observe()
-        frame = Frame(f"{look.look}", view or "front", f"picture {look.look}".encode())
-        return Observation(look.look, look.time, {frame.view: frame})
+        time = super().observe().time
+        frame = Frame("camera", view or "front", f"picture at {time:g} s".encode())
+        return Observation(time=time, frames={frame.view: frame})
 
 
 class FromTheSide:

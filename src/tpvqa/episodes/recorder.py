@@ -8,7 +8,6 @@ kept, and the trial goes on.
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import repeat
 from pathlib import Path
 from threading import Event as Flag
 from typing import Any, Protocol, TypeVar
@@ -155,12 +154,12 @@ class Recorder:
         world = self.parts.world
         seen = called(world, "observe", Observation, view)
         try:
-            seen = replace(seen, look=number)
+            seen = replace(seen, look=number, frames=_named(seen.frames, number))
             observed = Observed(
                 look=seen.look,
                 view=view,
                 world_time=seen.time,
-                frames=tuple(map(self._frame, seen.frames.values(), repeat(number))),
+                frames=tuple(map(self._frame, seen.frames.values())),
                 detail=dict(seen.detail),
                 snapshot=self._snapshot(world),
             )
@@ -170,10 +169,10 @@ class Recorder:
         self._observation = seen
         return seen
 
-    def _frame(self, frame: Frame, look: int) -> FrameRecord:
+    def _frame(self, frame: Frame) -> FrameRecord:
         return FrameRecord(
             view=frame.view,
-            file=self._writer.save_frame(replace(frame, id=f"{look:04d}-{frame.view}")),
+            file=self._writer.save_frame(frame),
             media_type=frame.media_type,
             source=frame.source,
         )
@@ -311,6 +310,11 @@ class Recorder:
         for listener in self._listeners:
             listener(event)
         return event
+
+
+def _named(frames: Mapping[str, Frame], look: int) -> dict[str, Frame]:
+    """The frames of a look, each with the name of the file that it is saved as."""
+    return {view: replace(frame, id=f"{look:04d}-{frame.view}") for view, frame in frames.items()}
 
 
 def _answers(vlm: VLM, seen: Observation, questions: Sequence[Question]) -> list[Answer]:

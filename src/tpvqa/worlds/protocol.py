@@ -34,8 +34,8 @@ class World(Protocol):
     """Somewhere to act and to look.
 
     It may also have `check()`, which raises where something is missing, before anything is done.
-    Every call of `observe` is a new look. Simulated worlds also have `truth`, a `TruthSource`
-    for judges and noise models; robots do not.
+    Every call of `observe` is a new look; the loop counts them. Simulated worlds also have `truth`,
+    a `TruthSource` for judges and noise models; robots do not.
     """
 
     def views(self) -> Sequence[str]:

@@ -123,14 +123,13 @@ class ImageWorld:
         picture = choice[draw.randrange(len(choice))]
         self._last = picture
         frame = Frame(
-            id=f"{look:04d}",
+            id=VIEW,
             view=VIEW,
             data=self.pictures.read(picture),
             media_type="image/jpeg",
             source=picture.file,
         )
         return Observation(
-            look=look,
             time=float(look),
             frames={VIEW: frame},
             detail={"picture": picture.file, "renderer": picture.renderer},
