@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from tpvqa.observation import Frame, Observation
-from tpvqa.questions import Question, Way
+from tpvqa.pddl import Atom
+from tpvqa.questions import FactQuestion, Way
 from tpvqa_household.embedded import EmbeddedVLM
 
 QUESTIONS = (
@@ -36,7 +37,7 @@ def main() -> None:
 
     folder = Path(images.__file__).parent / "data"
     files = sorted(folder.rglob("*.jpg"))[: given.pictures]
-    questions = [Question(text, Way.EFFECT) for text in QUESTIONS]
+    questions = [FactQuestion(text, Way.EFFECT, Atom("asked")) for text in QUESTIONS]
     print(f"{len(files)} pictures, {len(questions)} questions each; ms a picture")
     print(f"{'threads':>8}{'median':>9}{'95 %':>9}")
     for threads in (1, 2):

@@ -7,7 +7,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.monitors import Ask, Check, Look, Verdict
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom
-from tpvqa.questions import Question
+from tpvqa.questions import FactQuestion, Question, Way
 from tpvqa.vlm import Answer, Reply, TruthSource
 from tpvqa.vlm.making import make_vlm
 from tpvqa.worlds import World
@@ -62,7 +62,18 @@ def replies(table: dict[str, Reply], default: Reply = Reply.YES) -> Answerer:
 def knowing(*atoms: str) -> Answerer:
     """An answerer that says yes exactly to questions about these facts."""
     true = {Atom.parse(atom) for atom in atoms}
-    return lambda question: Reply.YES if question.atom in true else Reply.NO
+    return lambda question: truthful(question, true.__contains__)
+
+
+def truthful(question: Question, holds: Callable[[Atom], bool]) -> Reply:
+    """The right reply to a question about a fact."""
+    assert isinstance(question, FactQuestion)
+    return Reply.YES if question.true_in(holds) else Reply.NO
+
+
+def worded(text: str) -> FactQuestion:
+    """A question in words alone, for VLMs that look at pictures."""
+    return FactQuestion(text, Way.EFFECT, Atom("asked"))
 
 
 class ScriptedVLM:
@@ -88,7 +99,7 @@ def perform(check: Check, *answerers: Answerer) -> tuple[Verdict, int, list[str]
         while True:
             request = check.send(answer)
             if isinstance(request, Look):
-                answer = Observation(look=looks, time=0.0)
+                answer = Observation(looks)
                 looks += 1
             else:
                 assert isinstance(request, Ask)

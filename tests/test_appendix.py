@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tests.doubles import ScriptedVLM, configured, known_truth
+from tests.doubles import ScriptedVLM, configured, known_truth, truthful
 from tpvqa.assembly import Trial
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events.events import Acting, Answered, Asked, Decided, Ended, PlanMade
@@ -26,8 +26,7 @@ def test_the_container_drops_the_plan_starts_again_and_a_failed_pick_is_repeated
     with Trial(config) as trial:
 
         def sees(question: Question) -> Reply:
-            assert question.atom is not None
-            return Reply.YES if known_truth(trial.world).holds(question.atom) else Reply.NO
+            return truthful(question, known_truth(trial.world).holds)
 
         trial.parts.vlm = ScriptedVLM(sees)
         ended = trial.run(writer)

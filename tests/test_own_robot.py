@@ -106,8 +106,8 @@ def test_they_act_and_are_asked(package: Edit, tmp_path: Path) -> None:
         (
             "robot.py",
             "return Observation(",
-            "return (",
-            r"observe has to return Observation, not tuple",
+            "return dict(",
+            r"observe has to return Observation, not dict",
         ),
         (
             "robot.py",
@@ -124,8 +124,8 @@ def test_they_act_and_are_asked(package: Edit, tmp_path: Path) -> None:
         (
             "robot.py",
             "take_picture())",
-            'take_picture(), "image/jpg")',
-            "observe returned .*image/jpg",
+            "take_picture)",
+            "observe returned .*bytes",
         ),
         ("vlm.py", "p_yes=p)", "p_yes=100 * p)", "ask returned .*p_yes: .*less than or equal to 1"),
         ("vlm.py", "Reply.YES if", '"maybe" if', "ask returned .*reply: "),

@@ -41,7 +41,7 @@ class Robot:
         data = f"{self.name}, look {self.looks}".encode()
         frame = Frame("camera", "front", data)
         self.looks += 1
-        return Observation(self.looks - 1, 0.0, {"front": frame})
+        return Observation(frames={"front": frame})
 
     def execute(self, action: Action, **_: object) -> Execution:
         self.room.execute(action)

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from tpvqa.belief import Apart, Calibration, Curve, Group, Rates
 from tpvqa.belief.calibration import BOUND
 from tpvqa.errors import CalibrationError
-from tpvqa.pddl import Atom
-from tpvqa.questions import Question, Way
+from tpvqa.pddl import Action, Atom, Conjunction
+from tpvqa.questions import ActionQuestion, ActionWay, FactQuestion, FactWay, Way
 from tpvqa.vlm import Answer, Reply
 
-ON = Question("Is it on it?", Way.EFFECT, atom=Atom("on", ("apple", "table")))
+ON = FactQuestion("Is it on it?", Way.EFFECT, Atom("on", ("apple", "table")))
 P = st.floats(0, 1)
 SLOPE = st.floats(0.01, 3)
 
@@ -96,15 +96,19 @@ def test_words_that_are_the_same_stand_in_for_each_other() -> None:
         repeat_other_view=0.2,
     )
 
-    def rate(way: Way, predicate: str) -> float:
-        return one.group(Question("?", way, atom=Atom(predicate))).rates.yes_if_true
+    def rate(way: FactWay, predicate: str) -> float:
+        return one.group(FactQuestion("?", way, Atom(predicate))).rates.yes_if_true
+
+    def rate_of_action(way: ActionWay) -> float:
+        wash = Action("wash", (), Conjunction(), ())
+        return one.group(ActionQuestion("?", way, wash)).rates.yes_if_true
 
     assert rate(Way.PRECONDITION, "on") == rate(Way.ALTERNATIVE, "on") == 0.91
     assert rate(Way.EFFECT, "on") == 0.91
     assert rate(Way.PRECONDITION, "near") == 0.92
     assert rate(Way.EFFECT, "clean") == rate(Way.ALTERNATIVE, "clean") == 0.93
-    assert one.group(Question("?", Way.SUCCESSFUL)).rates.yes_if_true == 0.94
-    assert one.group(Question("?", Way.POSSIBLE)).rates.yes_if_true == 0.95
+    assert rate_of_action(Way.SUCCESSFUL) == 0.94
+    assert rate_of_action(Way.POSSIBLE) == 0.95
 
 
 @given(

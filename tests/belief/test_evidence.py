@@ -24,7 +24,7 @@ BOOK = QuestionBook.load(FILES.questions, TASK)
 MODEL = FaultModel(TASK, load_world_file(FILES.world, TASK))
 FIND = TASK.action("find", ["plate", "tv"])
 NEAR = next(atom for atom in TASK.atoms() if str(atom) == "near(plate)")
-QUESTION = BOOK.fact(Literal(NEAR), way=Way.EFFECT, action=FIND)
+QUESTION = BOOK.fact(Literal(NEAR), way=Way.EFFECT)
 
 
 def told(reply: Reply) -> Answer:
@@ -52,20 +52,20 @@ def odds(belief: Belief) -> float:
 def test_independent_answers_multiply_their_ratios() -> None:
     belief, evidence = found(0.0)
     assert isclose(odds(belief), 3)
-    evidence.take(told(Reply.YES), 0, None)
+    evidence.take(QUESTION, told(Reply.YES), 0, None)
     assert isclose(odds(belief), 12)
-    evidence.take(told(Reply.YES), 1, None)
+    evidence.take(QUESTION, told(Reply.YES), 1, None)
     assert isclose(odds(belief), 48, rel_tol=1e-6)
-    evidence.take(told(Reply.NO), 2, None)
+    evidence.take(QUESTION, told(Reply.NO), 2, None)
     assert isclose(odds(belief), 12, rel_tol=1e-6)
 
 
 def test_the_same_picture_says_nothing_new() -> None:
     belief, evidence = found(0.0)
-    evidence.take(told(Reply.YES), "a.jpg", None)
+    evidence.take(QUESTION, told(Reply.YES), "a.jpg", None)
     before = belief.probability(NEAR)
-    evidence.take(told(Reply.NO), "b.jpg", None)
-    evidence.take(told(Reply.YES), "a.jpg", None)
+    evidence.take(QUESTION, told(Reply.NO), "b.jpg", None)
+    evidence.take(QUESTION, told(Reply.YES), "a.jpg", None)
     assert evidence.asked_of(QUESTION.text, "a.jpg")
     assert isclose(odds(belief), 3)
     assert before > belief.probability(NEAR)
@@ -74,12 +74,12 @@ def test_the_same_picture_says_nothing_new() -> None:
 @given(st.floats(0, 1))
 def test_a_repeated_answer_is_worth_less_and_a_different_one_all(rho: float) -> None:
     belief, evidence = found(rho)
-    evidence.take(told(Reply.YES), 0, None)
-    evidence.take(told(Reply.YES), 1, None)
+    evidence.take(QUESTION, told(Reply.YES), 0, None)
+    evidence.take(QUESTION, told(Reply.YES), 1, None)
     expected = 12 * (rho + (1 - rho) * 0.8) / (rho + (1 - rho) * 0.2)
     assert isclose(odds(belief), expected, rel_tol=1e-6)
     if rho < 0.99:
-        evidence.take(told(Reply.NO), 2, None)
+        evidence.take(QUESTION, told(Reply.NO), 2, None)
         assert isclose(odds(belief), expected / 4, rel_tol=1e-6)
 
 
@@ -88,13 +88,13 @@ def test_a_rate_that_is_known_from_few_cases_does_not_convince_without_end() -> 
     sure, unsure = found(0.0), found(0.0, rows=40)
     for _, evidence in (sure, unsure):
         for look in range(4):
-            evidence.take(told(Reply.YES), look, None)
+            evidence.take(QUESTION, told(Reply.YES), look, None)
     assert odds(unsure[0]) < odds(sure[0])
     gained = []
     belief, evidence = found(0.0, rows=40)
     for look in range(6):
         before = odds(belief)
-        evidence.take(told(Reply.YES), look, None)
+        evidence.take(QUESTION, told(Reply.YES), look, None)
         gained.append(odds(belief) / before)
     assert gained[0] > 3.9
     assert gained[-1] < 3.1
@@ -104,8 +104,8 @@ def test_a_rate_that_is_known_from_few_cases_does_not_convince_without_end() -> 
 def test_another_view_repeats_less() -> None:
     same, other = found(0.6), found(0.6)
     for belief_and_evidence, view in ((same, "front"), (other, "left")):
-        belief_and_evidence[1].take(told(Reply.YES), 0, "front")
-        belief_and_evidence[1].take(told(Reply.YES), 1, view)
+        belief_and_evidence[1].take(QUESTION, told(Reply.YES), 0, "front")
+        belief_and_evidence[1].take(QUESTION, told(Reply.YES), 1, view)
     assert odds(other[0]) > odds(same[0]) > 12
 
 
@@ -113,12 +113,12 @@ def test_after_an_action_an_answer_is_worth_all_where_the_fact_has_changed() -> 
     """A no before, certain: then it was false. A yes after another try is no repetition."""
     belief, evidence = found(0.9)
     for look in range(60):
-        evidence.take(told(Reply.NO), look, None)
+        evidence.take(QUESTION, told(Reply.NO), look, None)
     assert belief.probability(NEAR) < 0.02
     belief.act(FIND, Faults(0.25, 0.25, 0.0))
     evidence.acted()
     before = odds(belief)
-    evidence.take(told(Reply.YES), 61, None)
+    evidence.take(QUESTION, told(Reply.YES), 61, None)
     assert odds(belief) / before > 3.9
 
 
@@ -126,7 +126,7 @@ def test_after_an_action_an_answer_is_worth_all_where_the_fact_has_changed() -> 
 def test_unknown_answers_change_nothing(reply: Reply) -> None:
     belief, evidence = found(0.0, unexplained=0.1)
     before = dict(belief.weights)
-    assert evidence.take(told(reply), 0, None) == 1.0
+    assert evidence.take(QUESTION, told(reply), 0, None) == 1.0
     assert belief.weights == before
     assert evidence.silent(QUESTION.text, None)
     assert evidence.unseen
@@ -145,7 +145,7 @@ def test_a_surprising_answer_opens_what_the_model_does_not_explain() -> None:
     evidence = Evidence(belief, calibration, None)
     assert belief.probability(NEAR) == 0
     for look in range(5):
-        evidence.take(told(Reply.YES), look, None)
+        evidence.take(QUESTION, told(Reply.YES), look, None)
     assert belief.probability(NEAR) > 0.9
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.doubles import configured
+from tests.doubles import configured, truthful
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.labelled_episodes import label_episodes
@@ -104,10 +104,8 @@ class Reader:
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
         self.asked += [question.text for question in questions]
-        return [
-            Answer(each, Reply.YES if each.true_in(self._true.__contains__) else Reply.NO)
-            for each in questions
-        ]
+        holds = self._true.__contains__
+        return [Answer(question, truthful(question, holds)) for question in questions]
 
 
 def test_every_fact_of_a_picture_is_asked_once_and_counts_both_ways() -> None:

@@ -3,7 +3,7 @@
 import pytest
 
 from tpvqa.pddl import Action, Atom, Literal, State, Task, load_task
-from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.questions import ActionQuestion, Question, QuestionBook, Way
 from tpvqa.tasks import find_task
 
 PLANS: dict[str, dict[str, tuple[list[str], list[str]]]] = {
@@ -97,8 +97,8 @@ def test_whole_actions_are_asked_about_in_the_papers_words() -> None:
         "Was place the bread on the plate successful?",
         "Did the robot successfully place the bread on the plate?",
     ]  # fmt: skip
-    assert book.did(action) == Question(
-        "Did the robot successfully place the bread on the plate?", Way.DID, action=action
+    assert book.did(action) == ActionQuestion(
+        "Did the robot successfully place the bread on the plate?", Way.DID, action
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.doubles import configured, known_truth
+from tests.doubles import configured, known_truth, truthful
 from tpvqa.assembly import Trial
 from tpvqa.belief import Calibration, Group, Rates
 from tpvqa.belief.calibration import Curve
@@ -258,10 +258,7 @@ class Bystander:
         self.truth: TruthSource
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
-        return [
-            Answer(question, Reply.YES if question.true_in(self.truth.holds) else Reply.NO)
-            for question in questions
-        ]
+        return [Answer(question, truthful(question, self.truth.holds)) for question in questions]
 
 
 def test_a_person_who_answers_is_asked_instead_of_a_poor_vlm(planner: Planner) -> None:
@@ -295,9 +292,9 @@ class TwoViews(SymbolicWorld):
         return ("front", "side")
 
     def observe(self, view: str | None = None) -> Observation:
-        look = super().observe()
-        frame = Frame(f"{look.look}", view or "front", f"picture {look.look}".encode())
-        return Observation(look.look, look.time, {frame.view: frame})
+        time = super().observe().time
+        frame = Frame("camera", view or "front", f"picture at {time:g} s".encode())
+        return Observation(time=time, frames={frame.view: frame})
 
 
 class FromTheSide:
@@ -311,10 +308,7 @@ class FromTheSide:
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
         if "side" not in observation.frames:
             return [Answer(question, Reply.CANNOT_SEE) for question in questions]
-        return [
-            Answer(question, Reply.YES if question.true_in(self.truth.holds) else Reply.NO)
-            for question in questions
-        ]
+        return [Answer(question, truthful(question, self.truth.holds)) for question in questions]
 
 
 def test_what_cannot_be_seen_from_one_view_is_asked_from_another(planner: Planner) -> None:
@@ -416,7 +410,9 @@ def test_what_is_found_done_is_not_done_again(planner: Planner) -> None:
         (opened,) = trial.simulation.state - trial.task.init
         question = trial.book.fact(Literal(opened))
         for look in range(-4, 0):
-            trial.monitor.evidence.take(Answer(question, Reply.YES, p_yes=0.95), look, None)
+            trial.monitor.evidence.take(
+                question, Answer(question, Reply.YES, p_yes=0.95), look, None
+            )
         writer = MemoryWriter()
         ended = trial.run(writer)
     assert ended.completed

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.doubles import knowing, perform, replies
+from tests.doubles import knowing, perform, replies, worded
 from tests.monitors.conftest import agree
 from tpvqa.errors import PluginError
 from tpvqa.monitors import Decision, Step
@@ -17,7 +17,7 @@ from tpvqa.pddl import Atom, Literal, State, Task, load_task
 from tpvqa.planning import Plan, Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
-from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
 from tpvqa.vlm import Answer, Reply
 
@@ -185,7 +185,7 @@ def test_abstentions_do_not_count_as_votes(at: Callable[..., Step]) -> None:
 
 @given(st.lists(st.sampled_from(list(Reply)), max_size=9))
 def test_the_majority_rule(given_replies: list[Reply]) -> None:
-    question = Question("Is it so?", Way.PRECONDITION)
+    question = worded("Is it so?")
     answers = [Answer(question, reply) for reply in given_replies]
     no, yes = given_replies.count(Reply.NO), given_replies.count(Reply.YES)
     if no + yes == 0:

@@ -5,16 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.questions import Question, Way
-from tpvqa.vlm import Answer, Reply
+from tpvqa.vlm import Reply
 from tpvqa.vlm.metrics import Scored, auroc, calibration_error, measure
-
-QUESTION = Question("Is the plate clean?", Way.EFFECT)
 
 
 def row(reply: Reply, truth: bool, *, visible: bool = True, hard: bool = False) -> Scored:
     p_yes = {Reply.YES: 0.9, Reply.NO: 0.1}.get(reply)
-    return Scored(Answer(QUESTION, reply, p_yes=p_yes), truth, visible, hard)
+    return Scored(reply, truth, p_yes, visible, hard)
 
 
 def test_rates_are_over_visible_facts_only() -> None:

@@ -11,11 +11,12 @@ from pathlib import Path
 
 import pytest
 
+from tests.doubles import worded
 from tests.vlm.chat_server import LEFTOVER, Act, ChatServer, Request, Script, completion, refusal
 from tpvqa.errors import AnswerError, MissingExtraError, PluginError
 from tpvqa.observation import Frame, Observation
 from tpvqa.plugins import Kind, make
-from tpvqa.questions import Question, Way
+from tpvqa.questions import Question
 from tpvqa.vlm import VLM, Answer, Reply
 from tpvqa.vlm.openai_compatible import OpenAICompatibleVLM
 
@@ -54,7 +55,7 @@ def look(number: int = 0, *pictures: bytes) -> Observation:
 
 
 def questions(*texts: str) -> list[Question]:
-    return [Question(text, Way.EFFECT) for text in texts]
+    return [worded(text) for text in texts]
 
 
 def ask(server: ChatServer, *texts: str, **options: float) -> list[Answer]:

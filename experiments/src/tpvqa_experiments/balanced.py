@@ -15,7 +15,7 @@ from tpvqa.monitors.majority import Majority
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Atom, State, Task, load_task
 from tpvqa.planning import Plan, Planner
-from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.questions import ActionQuestion, FactQuestion, Question, QuestionBook, Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM, Reply
 from tpvqa.vlm.metrics import Scored
@@ -65,7 +65,7 @@ def balanced(vlm: VLM, task_name: str, planner: Planner, *, seed: int = 0) -> It
         effects = book.effects(action, state)
         for picture in _observations(pictures, task, action, effects, seed):
             seen = _Seen(picture)
-            asked: list[tuple[Way, tuple[Question, ...], bool]] = [
+            asked: list[tuple[Way, Sequence[Question], bool]] = [
                 (Way.EFFECT, effects, seen.successful(task, action)),
                 (Way.SUCCESSFUL, (book.successful(action),), seen.successful(task, action)),
                 (Way.DID, (book.did(action),), seen.successful(task, action)),
@@ -84,7 +84,7 @@ def balanced(vlm: VLM, task_name: str, planner: Planner, *, seed: int = 0) -> It
 
 
 def _observations(
-    pictures: PictureSet, task: Task, action: Action, effects: Sequence[Question], seed: int
+    pictures: PictureSet, task: Task, action: Action, effects: Sequence[FactQuestion], seed: int
 ) -> Iterator[Picture]:
     said = say_kind(kind(action, task))
     for outcome in OUTCOMES:
@@ -107,11 +107,10 @@ class _Seen:
         self._picture = picture
         self._states: tuple[State, ...] = (state, frozenset(map(mirrored, state)))
 
-    def shown(self, questions: Sequence[Question]) -> bool:
-        """Whether the picture shows the answers to questions about facts."""
-        atoms = [question.atom for question in questions if question.atom is not None]
+    def shown(self, questions: Sequence[FactQuestion]) -> bool:
+        """Whether the picture shows the answers to questions."""
         show = self._picture.shows_fact
-        return all(show(atom) or show(mirrored(atom)) for atom in atoms)
+        return all(show(each.atom) or show(mirrored(each.atom)) for each in questions)
 
     def holds(self, atom: Atom) -> bool:
         return any(atom in state for state in self._states)
@@ -128,15 +127,14 @@ def _ask(
     task: str,
     observation: Observation,
     seen: _Seen,
-    asked: list[tuple[Way, tuple[Question, ...], bool]],
+    asked: list[tuple[Way, Sequence[Question], bool]],
 ) -> Iterator[Judged]:
     answers = iter(vlm.ask(observation, [q for _, questions, _ in asked for q in questions]))
     for way, questions, truth in asked:
         own = [next(answers) for _ in questions]
-        for answer in own:
-            atom = answer.question.atom
-            holds = truth if atom is None else seen.holds(atom)
-            scored = Scored(answer, holds)
+        for question, answer in zip(questions, own, strict=True):
+            holds = truth if isinstance(question, ActionQuestion) else seen.holds(question.atom)
+            scored = Scored(answer.reply, holds, answer.p_yes)
             yield Judged(
                 task,
                 way,

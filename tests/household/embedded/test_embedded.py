@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.doubles import worded
 from tpvqa.errors import AnswerError
 from tpvqa.observation import Frame, Observation
 from tpvqa.plugins import Kind, make
-from tpvqa.questions import Question, Way
+from tpvqa.questions import Question
 from tpvqa.vlm import VLM, Reply
 from tpvqa.vlm.pictures import observe_file
 from tpvqa_household.embedded import EmbeddedVLM
@@ -42,7 +43,7 @@ def vlm() -> EmbeddedVLM:
 @pytest.fixture(scope="module")
 def cases() -> tuple[list[Question], list[tuple[Observation, np.ndarray]]]:
     data = json.loads((REFERENCE / "reference.json").read_text(encoding="utf-8"))
-    questions = [Question(text, Way.EFFECT) for text in data["questions"]]
+    questions: list[Question] = [worded(text) for text in data["questions"]]
     pictures = [
         (observe_file(REFERENCE / case["picture"]), np.array(case["chances"]))
         for case in data["cases"]
@@ -74,7 +75,7 @@ def test_it_sees(
     ]
     assert statistics.median(sure) > 0.8
     grey = look(picture(np.full((224, 224, 3), 128, np.uint8)))
-    (answer,) = vlm.ask(grey, [Question("Is there a plate in the image?", Way.EFFECT)])
+    (answer,) = vlm.ask(grey, [worded("Is there a plate in the image?")])
     assert answer.reply is Reply.NO
 
 
@@ -99,9 +100,9 @@ def test_answers_keep_the_order_of_the_questions(
 def test_a_question_without_words_is_unknown_and_not_guessed(vlm: EmbeddedVLM) -> None:
     grey = look(picture(np.full((64, 80, 3), 128, np.uint8)))
     asked = [
-        Question("Is there a milk carton in the image?", Way.EFFECT),
-        Question("Is the plate clean?", Way.EFFECT),
-        Question("Is the fridge clean?", Way.EFFECT),
+        worded("Is there a milk carton in the image?"),
+        worded("Is the plate clean?"),
+        worded("Is the fridge clean?"),
     ]
     answers = vlm.ask(grey, asked)
     assert [answer.reply is Reply.UNKNOWN for answer in answers] == [True, False, True]
@@ -110,7 +111,7 @@ def test_a_question_without_words_is_unknown_and_not_guessed(vlm: EmbeddedVLM) -
 
 
 def test_no_picture_is_unknown_and_no_question_is_no_answer(vlm: EmbeddedVLM) -> None:
-    (answer,) = vlm.ask(Observation(0, 0.0), [Question("Is the plate clean?", Way.EFFECT)])
+    (answer,) = vlm.ask(Observation(0, 0.0), [worded("Is the plate clean?")])
     assert answer.reply is Reply.UNKNOWN
     assert vlm.ask(look(picture(np.zeros((8, 8, 3), np.uint8))), []) == []
 
@@ -118,7 +119,7 @@ def test_no_picture_is_unknown_and_no_question_is_no_answer(vlm: EmbeddedVLM) ->
 @pytest.mark.parametrize("shape", [(1, 1, 3), (480, 640, 3), (900, 30, 3)])
 def test_pictures_of_any_shape_are_taken(vlm: EmbeddedVLM, shape: tuple[int, int, int]) -> None:
     pixels = np.random.default_rng(0).integers(0, 256, shape, dtype=np.uint8)
-    (answer,) = vlm.ask(look(picture(pixels)), [Question("Is the TV turned on?", Way.EFFECT)])
+    (answer,) = vlm.ask(look(picture(pixels)), [worded("Is the TV turned on?")])
     assert answer.p_yes is not None
 
 
@@ -135,11 +136,11 @@ def test_a_frame_that_shows_it_outweighs_one_that_does_not() -> None:
 def test_a_broken_picture_is_a_clear_error(vlm: EmbeddedVLM) -> None:
     broken = Frame("broken", "front", b"no picture", "image/png")
     with pytest.raises(AnswerError, match="broken"):
-        vlm.ask(look(broken), [Question("Is the plate clean?", Way.EFFECT)])
+        vlm.ask(look(broken), [worded("Is the plate clean?")])
 
 
 def test_missing_and_damaged_weights_are_clear_errors(tmp_path: Path) -> None:
-    question = [Question("Is the plate clean?", Way.EFFECT)]
+    question = [worded("Is the plate clean?")]
     grey = look(picture(np.full((64, 64, 3), 128, np.uint8)))
     with pytest.raises(AnswerError, match=r"missing.*Install tpvqa again"):
         EmbeddedVLM(folder=tmp_path / "none").ask(grey, question)
@@ -162,7 +163,7 @@ def test_a_picture_with_all_questions_of_a_step_is_quick(vlm: EmbeddedVLM) -> No
     """15 ms on two free cores; ten times that here, as tests share their machine."""
     rng = np.random.default_rng(0)
     asked = [
-        Question(text, Way.EFFECT)
+        worded(text)
         for text in ("Is the plate clean?", "Is the fridge open?", "Is the TV turned on?")
     ]
     seconds = []

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 
 import pytest
 
+from tests.doubles import worded
 from tests.vlm.chat_server import Act, ChatServer, Request
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import load_task
-from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.questions import Question, QuestionBook
 from tpvqa.tasks import find_task
 from tpvqa.vlm import Answer, Reply
 from tpvqa.vlm.openai_compatible import OpenAICompatibleVLM
@@ -20,7 +21,7 @@ NETWORK = EmbeddedVLM()
 def answerer(pictures: Sequence[bytes], question: str) -> float | str:
     """What the network says about what came over the wire."""
     frames = {str(n): Frame(str(n), str(n), data) for n, data in enumerate(pictures)}
-    (answer,) = NETWORK.ask(Observation(0, 0.0, frames), [Question(question, Way.EFFECT)])
+    (answer,) = NETWORK.ask(Observation(0, 0.0, frames), [worded(question)])
     if answer.p_yes is None or answer.reply is Reply.CANNOT_SEE:
         return "The picture does not show that."
     return answer.p_yes
@@ -45,7 +46,7 @@ def questions() -> list[Question]:
         *book.preconditions(place, task.init),
         *book.effects(place, task.init),
         book.did(place),
-        Question("Is the weather fine?", Way.EFFECT),
+        worded("Is the weather fine?"),
     ]
 
 

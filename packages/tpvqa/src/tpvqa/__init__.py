@@ -17,8 +17,10 @@ DECIDES_AS = "0.1.0"
 
 _PUBLIC = {
     "Action": "tpvqa.pddl",
+    "ActionQuestion": "tpvqa.questions",
     "Answer": "tpvqa.vlm",
     "Atom": "tpvqa.pddl",
+    "FactQuestion": "tpvqa.questions",
     "Interrupted": "tpvqa.drivers",
     "Literal": "tpvqa.pddl",
     "Observation": "tpvqa.observation",

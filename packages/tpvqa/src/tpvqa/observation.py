@@ -1,13 +1,107 @@
-"""What a robot sees in one look."""
+"""What a robot sees in one look. Pictures stay encoded until somebody looks at their pixels."""
 
+import mimetypes
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from io import BytesIO
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+PNG, NPY = "image/png", "application/x-npy"
+
+
+@dataclass(frozen=True, slots=True)
+class Intrinsics:
+    """A pinhole camera, in pixels; the centre of the top left pixel is (0, 0).
+
+    Attributes:
+        fx: Focal length along the rows.
+        fy: Focal length along the columns.
+        cx: Where the optical axis meets the picture, from the left.
+        cy: The same, from the top.
+        width: Of the picture that these are of.
+        height: The same.
+    """
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    width: int
+    height: int
+
+
+@dataclass(frozen=True)
+class Depth:
+    """How far away things are along the camera's axis, for every pixel, as encoded bytes.
+
+    Attributes:
+        data: The encoded distances.
+        media_type: "image/png" for whole millimetres in 16 bits, 0 where nothing was measured;
+            "application/x-npy" for a NumPy file of metres, NaN where nothing was measured.
+
+    Raises:
+        ValueError: The media type is another.
+    """
+
+    data: bytes = field(repr=False)
+    media_type: str = PNG
+
+    def __post_init__(self) -> None:
+        if self.media_type not in (PNG, NPY):
+            raise ValueError(f"a depth image is {PNG} or {NPY}, not {self.media_type!r}")
+
+    @staticmethod
+    def from_metres(metres: "NDArray[np.floating[Any]]", media_type: str = PNG) -> "Depth":
+        """Encode distances in metres, height × width.
+
+        As PNG they are rounded to millimetres; beyond 65.535 m, nothing was measured.
+        """
+        import numpy as np
+        from PIL import Image
+
+        file = BytesIO()
+        if media_type == PNG:
+            millimetres = np.rint(np.nan_to_num(metres, nan=0, posinf=0, neginf=0) * 1000)
+            fits = (millimetres >= 0) & (millimetres <= 65535)
+            Image.fromarray(np.where(fits, millimetres, 0).astype(np.uint16)).save(file, "png")
+        else:
+            np.save(file, np.asarray(metres, np.float32), allow_pickle=False)
+        return Depth(file.getvalue(), media_type)
+
+    @property
+    def suffix(self) -> str:
+        """The file ending that fits the media type, with its dot."""
+        return suffix_of(self.media_type)
+
+    @cached_property
+    def metres(self) -> "NDArray[np.float32]":
+        """The distances, height × width, in metres; NaN where nothing was measured.
+
+        Raises:
+            ValueError: The bytes are no such image.
+            OSError: The same.
+        """
+        import numpy as np
+        from PIL import Image
+
+        metres: NDArray[np.float32]
+        if self.media_type == NPY:
+            metres = np.load(BytesIO(self.data), allow_pickle=False).astype(np.float32)
+        else:
+            with Image.open(BytesIO(self.data)) as picture:
+                if not picture.mode.startswith("I"):
+                    raise ValueError(f"a depth image has 16 bits a pixel; mode {picture.mode}")
+                millimetres = np.asarray(picture, np.float32)
+            metres = np.where(millimetres == 0, np.float32("nan"), millimetres / 1000)
+        if metres.ndim != 2:
+            raise ValueError(f"a depth image is height × width; this one is {metres.shape}")
+        return metres
 
 
 @dataclass(frozen=True)
@@ -15,11 +109,15 @@ class Frame:
     """One camera image, as encoded bytes.
 
     Attributes:
-        id: Names the frame within its episode; a file name without its ending.
+        id: Names the frame; a file name without its ending. In an episode the loop names it.
         view: The view it was taken from ("front" unless a world has several).
         data: The encoded picture.
-        media_type: "image/jpeg" or "image/png".
+        media_type: What it is encoded as, e.g. "image/jpeg"; anything that Pillow reads.
         source: Where it comes from (a file of the picture set, a camera), for the log.
+        stamp: When it was taken, in seconds by the clock of `Observation.time`; None where that
+            is not known apart from it.
+        intrinsics: The camera, where it is known.
+        depth: How far away everything is, where that was measured.
     """
 
     id: str
@@ -27,15 +125,19 @@ class Frame:
     data: bytes = field(repr=False)
     media_type: str = "image/jpeg"
     source: str = ""
+    stamp: float | None = None
+    intrinsics: Intrinsics | None = None
+    depth: Depth | None = None
 
     @property
     def suffix(self) -> str:
         """The file ending that fits the media type, with its dot."""
-        return {"image/jpeg": ".jpg", "image/png": ".png"}[self.media_type]
+        return suffix_of(self.media_type)
 
     @cached_property
-    def pixels(self) -> NDArray[np.uint8]:
+    def pixels(self) -> "NDArray[np.uint8]":
         """The picture as an array, height × width × 3 (red, green, blue), 0 to 255."""
+        import numpy as np
         from PIL import Image
 
         with Image.open(BytesIO(self.data)) as picture:
@@ -47,13 +149,27 @@ class Observation:
     """One look at the world: the same question about it gets the same answer.
 
     Attributes:
-        look: Number of the look within its episode, from 0.
-        time: Seconds since the episode began, by the world's clock.
+        look: Number of the look within its episode, from 0. The loop counts; a world need not.
+        time: When it was taken: seconds since the episode began, by the world's own clock. In a
+            simulation that is simulated time, on a robot any clock that never goes back.
         frames: The images, by view. Empty in worlds that are not seen but only told.
         detail: What else a world reports about the look, for the log only.
     """
 
-    look: int
-    time: float
+    look: int = 0
+    time: float = 0.0
     frames: Mapping[str, Frame] = field(default_factory=dict)
     detail: Mapping[str, Any] = field(default_factory=dict)
+
+
+_ENDINGS = mimetypes.MimeTypes()  # Python's own: those of the system differ between machines
+
+
+def suffix_of(media_type: str) -> str:
+    """A file ending for a media type, with its dot: the usual one, or else one made of its name."""
+    plain = media_type.partition(";")[0].strip().lower()
+    known = _ENDINGS.guess_extension(plain, strict=False)
+    if known is not None:
+        return known
+    name = re.sub(r"^(?:x-|vnd\.)|\+.*$", "", plain.partition("/")[2])
+    return f".{name}" if re.fullmatch(r"[a-z0-9]{1,16}", name) else ".bin"

@@ -91,9 +91,8 @@ class KitchenWorld(Simulated):
         self._arrange(look, view)
         pixels = self.scene.render()
         self._shown = self.scene.shown()
-        frame = Frame(id=f"{look:04d}-{view}", view=view, data=_jpeg(pixels), source="kitchen")
+        frame = Frame(id=view, view=view, data=_jpeg(pixels), source="kitchen")
         return Observation(
-            look=look,
             time=self._time,
             frames={view: frame},
             detail={"kitchen": self.scene.seed, "split": self.scene.split},

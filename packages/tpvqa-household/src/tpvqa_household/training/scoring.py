@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 from tpvqa.observation import Observation
-from tpvqa.pddl import literals
-from tpvqa.questions.question import Question, Way
+from tpvqa.pddl import Action, Atom, Conjunction, literals
+from tpvqa.questions.question import ActionQuestion, FactQuestion, Question, Way
 from tpvqa.vlm import VLM
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.metrics import Metrics, Scored, measure
 from tpvqa_household.training.asking import Asking
 from tpvqa_household.training.facts import Facts, FactTable
 from tpvqa_household.training.labels import Label, Labels
-from tpvqa_household.training.subjects import Subject, subject_of
+from tpvqa_household.training.subjects import ACTION_WAYS, Subject, subject_of
 from tpvqa_household.training.wordings import wordings
 
 
@@ -67,16 +67,22 @@ def score(
             if label != Label.UNCLEAR
             for number, wording in enumerate(texts[subject])
         ]
-        questions = [Question(wording.text, _way(subject)) for subject, _, wording, _ in asked]
+        questions = [_question(wording.text, subject) for subject, _, wording, _ in asked]
         answers = vlm.ask(case.observation, questions)
         for (subject, number, wording, label), answer in zip(asked, answers, strict=True):
             truth = (label == Label.YES) != wording.inverted
-            scored = Scored(answer, truth, label != Label.CANNOT_SEE, label == Label.HARD_NO)
+            shown, hard = label != Label.CANNOT_SEE, label == Label.HARD_NO
+            scored = Scored(answer.reply, truth, answer.p_yes, shown, hard)
             yield Row(case.group, subject, number, scored)
 
 
-def _way(subject: Subject) -> Way:
-    return Way.EFFECT if subject.form == "fact" else Way(subject.form)
+def _question(text: str, subject: Subject) -> Question:
+    """A question about a subject; of an action only what the words say of it."""
+    name, arguments = subject.name, subject.arguments
+    if subject.form == "fact":
+        return FactQuestion(text, Way.EFFECT, Atom(name, arguments))
+    (way,) = (way for way in ACTION_WAYS if way == subject.form)
+    return ActionQuestion(text, way, Action(name, arguments, Conjunction(), ()))
 
 
 def by_way(asking: Asking) -> dict[str, Callable[[Row], bool]]:
@@ -161,7 +167,9 @@ def no_household_answers(vlm: VLM, observations: Iterable[Observation], asking: 
     counts: dict[str, list[Answer]] = {}
     for observation in observations:
         texts = {s: next(iter(wordings(s))).text for s in asking.subjects}
-        answers = vlm.ask(observation, [Question(t, _way(s)) for s, t in texts.items()])
+        answers = vlm.ask(
+            observation, [_question(text, subject) for subject, text in texts.items()]
+        )
         for subject, answer in zip(texts, answers, strict=True):
             name = subject.name if subject.form == "fact" else subject.form
             counts.setdefault(name, []).append(answer)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tpvqa.pddl import Action, Atom
-from tpvqa.questions.question import Way
+from tpvqa.questions.question import ActionWay, Way
 
 SAID = {
     "find": (0,),
@@ -17,7 +17,7 @@ SAID = {
 }
 """Which arguments of an action its words name; hands and whence it comes are left unsaid."""
 
-ACTION_WAYS = (Way.POSSIBLE, Way.SUCCESSFUL, Way.DID)
+ACTION_WAYS: tuple[ActionWay, ...] = (Way.POSSIBLE, Way.SUCCESSFUL, Way.DID)
 _SILENT = {"in_hand": 1}
 
 

@@ -194,9 +194,7 @@ class Calibration(_Model):
 
     def group(self, question: Question) -> Group:
         """The narrowest group that tells something about a question."""
-        if question.atom is not None:
-            return self.group_of(question.way, question.atom.predicate)
-        return self.group_of(question.way, question.action.name if question.action else "")
+        return self.group_of(question.way, question.subject)
 
     def group_of(self, way: Way, subject: str) -> Group:
         """The same, by the way of asking and the predicate (or action) asked about."""

@@ -11,7 +11,7 @@ from tpvqa.belief.counts import PSEUDO
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.trust import Trust
 from tpvqa.pddl import Atom
-from tpvqa.questions.question import Question
+from tpvqa.questions.question import FactQuestion
 from tpvqa.vlm import Answer, Reply
 
 UNEXPLAINED = 0.002
@@ -128,7 +128,7 @@ class Evidence:
             right = 0.5 + _share(self._trust, rates.yes_if_true, rates.yes_if_false) * (right - 0.5)
         return answers_to_be_sure(right, self._calibration.repeat_same_view)
 
-    def expect(self, question: Question, view: str | None) -> Reliability:
+    def expect(self, question: FactQuestion, view: str | None) -> Reliability:
         """What the next answer to a question, at a new look from a view, is worth."""
         group = self._calibration.group(question)
         rates = group.rates
@@ -148,18 +148,18 @@ class Evidence:
             false = rho * if_false * before + (1 - rho * if_false) * false
         return Reliability(true, false, min(abstains, 0.95))
 
-    def take(self, answer: Answer, picture: Picture, view: str | None) -> float:
-        """Weigh the belief by an answer.
+    def take(
+        self, question: FactQuestion, answer: Answer, picture: Picture, view: str | None
+    ) -> float:
+        """Weigh the belief by the answer to a question.
 
         Returns:
             How probable the answer was before it came; 1 for an abstention, which says nothing.
         """
-        question = answer.question
-        assert question.atom is not None
         if answer.reply not in (Reply.YES, Reply.NO):
             self.silence(question.text, view)
             return 1.0
-        atoms = (question.atom, *question.alike)
+        atoms = question.atoms
         last = self._last.get(question.text)
         if last is not None and picture in last.pictures:
             return 1.0
@@ -204,15 +204,14 @@ class Evidence:
         last.yes, last.no = last.yes + yes, last.no + (not yes)
         return probable
 
-    def take_from_person(self, answer: Answer) -> None:
-        """Weigh the belief by a person's answer."""
-        atom = answer.question.atom
-        if answer.reply is Reply.CANNOT_SEE:
-            self.silence(answer.question.text, PERSONS_VIEW)
-        if atom is not None and answer.reply in (Reply.YES, Reply.NO):
-            right = PERSON if answer.reply is Reply.YES else 1 - PERSON
-            self._belief.open((atom, *answer.question.alike), self._unexplained)
-            self._belief.see((atom, *answer.question.alike), right, 1 - right)
+    def take_from_person(self, question: FactQuestion, reply: Reply) -> None:
+        """Weigh the belief by a person's reply to a question."""
+        if reply is Reply.CANNOT_SEE:
+            self.silence(question.text, PERSONS_VIEW)
+        if reply in (Reply.YES, Reply.NO):
+            right = PERSON if reply is Reply.YES else 1 - PERSON
+            self._belief.open(question.atoms, self._unexplained)
+            self._belief.see(question.atoms, right, 1 - right)
 
 
 def _with_history(

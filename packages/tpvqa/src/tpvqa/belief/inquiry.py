@@ -11,7 +11,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import PERSON, PERSONS_VIEW, Evidence, Picture
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import TIMES, Floats, Reliability, gains, joint_gains
-from tpvqa.questions.question import Question
+from tpvqa.questions.question import FactQuestion
 
 DOUBT = 1e-3
 """Facts that are surer than this are not asked about."""
@@ -32,7 +32,7 @@ class Inquiry:
         person: Whether to ask a person.
     """
 
-    question: Question
+    question: FactQuestion
     times: int
     saving: float
     person: bool = False
@@ -60,12 +60,12 @@ class Inquirer:
 
     def best(
         self,
-        questions: Sequence[Question],
+        questions: Sequence[FactQuestion],
         table: Table,
         budget: Budget,
         *,
         picture: Picture | None,
-        views: Callable[[Question], Sequence[str | None]],
+        views: Callable[[FactQuestion], Sequence[str | None]],
         person: bool = False,
     ) -> Inquiry | None:
         """What to ask next; None where no answer is worth its price.
@@ -159,12 +159,11 @@ class Inquirer:
             found = _better(found, Inquiry(doubted[0].question, 1, saving))
         return found
 
-    def _truths_of(self, questions: Sequence[Question], table: Table) -> Floats:
+    def _truths_of(self, questions: Sequence[FactQuestion], table: Table) -> Floats:
         """In which joint states yes is right: ones and zeros, shape (questions, states)."""
         found = np.empty((len(questions), len(table.numbers)))
         for place, question in enumerate(questions):
-            assert question.atom is not None
-            truth = self._model.truth((question.atom, *question.alike))
+            truth = self._model.truth(question.atoms)
             found[place] = [truth[number] for number in table.numbers]
         return found
 
@@ -178,7 +177,7 @@ class _Doubted(NamedTuple):
 
     urgent: tuple[float, float]
     place: int
-    question: Question
+    question: FactQuestion
     reliability: Reliability
 
 

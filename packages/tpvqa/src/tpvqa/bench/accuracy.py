@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.questions import Question, Way
-from tpvqa.vlm import Answer, Reply
+from tpvqa.questions import Way
+from tpvqa.vlm import Reply
 from tpvqa.vlm.metrics import Metrics, Scored, measure
 
 
@@ -34,16 +34,14 @@ def answers_of(rows: Iterable[EpisodeRow], way: Way) -> Metrics | None:
     counts: Counter[str] = Counter()
     for row in rows:
         counts.update({key: n for key, n in row.answers.items() if key.startswith(f"{way}|")})
-    scored = list(_scored(counts, way))
+    scored = list(_scored(counts))
     return measure(scored) if scored else None
 
 
-def _scored(counts: Mapping[str, int], way: Way) -> Iterator[Scored]:
-    question = Question("", way)
+def _scored(counts: Mapping[str, int]) -> Iterator[Scored]:
     for key, count in counts.items():
         _, _, truth, reply, p_yes = key.split("|")
-        answer = Answer(question, Reply(reply), p_yes=float(p_yes) if p_yes else None)
-        yield from [Scored(answer, truth == "1")] * count
+        yield from [Scored(Reply(reply), truth == "1", float(p_yes) if p_yes else None)] * count
 
 
 def decisions_of(rows: Iterable[EpisodeRow], when: str) -> Decisions | None:

@@ -6,7 +6,7 @@ from tpvqa.belief import LabelledAnswer
 from tpvqa.errors import CalibrationError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Atom, Literal, load_task
-from tpvqa.questions import Question, QuestionBook, Way
+from tpvqa.questions import FactQuestion, QuestionBook, Way
 from tpvqa.tasks import shipped_tasks
 from tpvqa.vlm import VLM
 from tpvqa.worlds.pictures import VIEW, PictureSet, media_type
@@ -65,7 +65,7 @@ def _shipped(domain: str) -> Iterator[QuestionBook]:
             yield QuestionBook.load(files.questions, task)
 
 
-def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterator[Question]:
+def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterator[FactQuestion]:
     """Every question about the set's facts, once."""
     facts = [Atom.parse(text) for text in pictures.facts]
     texts: set[str] = set()
@@ -81,13 +81,12 @@ def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterat
                 yield book.fact(Literal(atom))
 
 
-def _shows(picture: P, question: Question) -> bool:
-    assert question.atom is not None
-    return any(atom.pddl() in picture.seen for atom in (question.atom, *question.alike))
+def _shows(picture: P, question: FactQuestion) -> bool:
+    return any(atom.pddl() in picture.seen for atom in question.atoms)
 
 
 def _ask(
-    vlm: VLM, pictures: PictureSet[P], picture: P, look: int, questions: list[Question]
+    vlm: VLM, pictures: PictureSet[P], picture: P, look: int, questions: list[FactQuestion]
 ) -> Iterator[LabelledAnswer]:
     frame = Frame(
         id=picture.file.rpartition(".")[0],
@@ -100,13 +99,12 @@ def _ask(
     for question, answer in zip(
         questions, vlm.ask(Observation(look, 0.0, {VIEW: frame}), questions), strict=True
     ):
-        assert question.atom is not None
         for way in (Way.PRECONDITION, Way.EFFECT):
             yield LabelledAnswer(
                 way=way,
-                predicate=question.atom.predicate,
+                predicate=question.subject,
                 text=question.text,
-                truth=bool(question.true_in(true.__contains__)),
+                truth=question.true_in(true.__contains__),
                 reply=answer.reply,
                 p_yes=answer.p_yes,
                 trial=picture.scene,

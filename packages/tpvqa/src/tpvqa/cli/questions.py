@@ -95,14 +95,16 @@ def ask(
 ) -> None:
     """Ask about a picture: prints each answer and P(yes)."""
     from tpvqa.defaults import default_vlm
+    from tpvqa.pddl import Atom
     from tpvqa.plugins import Closing
-    from tpvqa.questions import Question, Way
+    from tpvqa.questions import FactQuestion, Way
     from tpvqa.vlm.making import make_vlm
     from tpvqa.vlm.pictures import observe_file
 
     observation = observe_file(image)
     model, _ = make_vlm(vlm or default_vlm(), {"base_url": base_url})
-    asked = [Question(text, Way.PRECONDITION) for text in question]
+    # A VLM that looks at pictures goes by the words alone.
+    asked = [FactQuestion(text, Way.PRECONDITION, Atom("asked")) for text in question]
     try:
         answers = model.ask(observation, asked)
     finally:
@@ -149,15 +151,17 @@ def _steps(
     """Each action of a plan with its questions, before those after it."""
     state = task.init
     for action in plan:
-        before = [*book.preconditions(action, state), book.possible(action)]
-        after = [*book.effects(action, state), book.successful(action), book.did(action)]
-        yield action, before + after
+        asked: list[Question] = [*book.preconditions(action, state), book.possible(action)]
+        asked += [*book.effects(action, state), book.successful(action), book.did(action)]
+        yield action, asked
         state = task.apply(state, action)
 
 
 def _print_json(
     task: "Task", book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]"
 ) -> None:
+    from tpvqa.questions import FactQuestion
+
     actions: list[dict[str, Any]] = []
     state = task.init
     for action, asked in steps:
@@ -171,7 +175,7 @@ def _print_json(
                     "way": question.way.value,
                     "text": question.text,
                     "expected": "yes" if question.expected else "no",
-                    "fact": None if question.atom is None else question.atom.pddl(),
+                    "fact": question.atom.pddl() if isinstance(question, FactQuestion) else None,
                 }
                 for question in asked
             ],

@@ -1,15 +1,14 @@
 """Doing what a trial asks for, with real planners, worlds and VLMs."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import repeat
 from threading import Event as Flag
 from typing import Any
 
 from tpvqa.drivers.plugged import MALFORMED, called, malformed
 from tpvqa.errors import PluginError
 from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade
-from tpvqa.events.records import answered_record, outcome_record, plan_record
+from tpvqa.events.records import answered_record, frame_record, outcome_record, plan_record
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Task
@@ -100,12 +99,12 @@ class Performer:
         world = self.parts.world
         seen = called(world, "observe", Observation, view)
         try:
-            seen = replace(seen, look=number)
+            seen = replace(seen, look=number, frames=_named(seen.frames, number))
             observed = Observed(
                 look=number,
                 view=view,
                 world_time=seen.time,
-                frames=tuple(map(self._frame, seen.frames.values(), repeat(number))),
+                frames=tuple(map(self._frame, seen.frames.values())),
                 detail=dict(seen.detail),
                 during=during,
                 snapshot=None if during else self._snapshot(world),
@@ -114,13 +113,8 @@ class Performer:
             raise malformed(world, "observe", error) from error
         return Performed(seen, observed)
 
-    def _frame(self, frame: Frame, look: int) -> FrameRecord:
-        return FrameRecord(
-            view=frame.view,
-            file=self._save_frame(replace(frame, id=f"{look:04d}-{frame.view}")),
-            media_type=frame.media_type,
-            source=frame.source,
-        )
+    def _frame(self, frame: Frame) -> FrameRecord:
+        return frame_record(frame, self._save_frame(frame))
 
     def _plan(self, request: PlanFrom) -> Performed:
         result = self.parts.planner.plan(
@@ -170,6 +164,11 @@ class Performer:
         if self._snapshots and isinstance(part, Restorable):
             return dict(part.snapshot())
         return None
+
+
+def _named(frames: Mapping[str, Frame], look: int) -> dict[str, Frame]:
+    """The frames of a look, each with the name of the file that it is saved as."""
+    return {view: replace(frame, id=f"{look:04d}-{frame.view}") for view, frame in frames.items()}
 
 
 def _answers(vlm: VLM, seen: Observation | None, questions: Sequence[Question]) -> list[Answer]:

@@ -13,6 +13,7 @@ from tpvqa import __version__
 from tpvqa.errors import EpisodeError
 from tpvqa.events import EVENT, Event, Started
 from tpvqa.events.events import SCHEMA
+from tpvqa.events.records import depth_file
 from tpvqa.observation import Frame
 
 LOG = "episode.jsonl"
@@ -83,17 +84,22 @@ class EpisodeWriter:
         return event
 
     def save_frame(self, frame: Frame) -> str:
-        """Save a camera image; its path within the episode's folder."""
+        """Save a camera image, and its depth image; its path within the episode's folder."""
         name = f"{FRAMES}/{frame.id}{frame.suffix}"
+        self._save(name, frame.data)
+        if frame.depth is not None:
+            self._save(depth_file(name, frame.depth), frame.depth.data)
+        return name
+
+    def _save(self, name: str, data: bytes) -> None:
         path = self.folder / name
         temporary = path.with_suffix(".part")
         with temporary.open("wb") as file:
-            file.write(frame.data)
+            file.write(data)
             if self._durable:
                 file.flush()
                 os.fsync(file.fileno())
         temporary.replace(path)
-        return name
 
     def close(self) -> None:
         """Close the log. Can be called twice."""

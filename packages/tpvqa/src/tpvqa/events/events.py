@@ -110,12 +110,20 @@ class PlanMade(_Event):
 
 
 class FrameRecord(_Record):
-    """A camera image that was saved beside the log."""
+    """A camera image that was saved beside the log; see `observation.Frame`.
+
+    Attributes:
+        file: Where it lies in the episode's folder.
+        depth: Where its depth image lies, if it has one.
+    """
 
     view: str
     file: str
     media_type: str
     source: str = ""
+    stamp: float | None = None
+    intrinsics: dict[str, float] | None = None
+    depth: str | None = None
 
 
 class Observed(_Event):

@@ -1,7 +1,7 @@
 """Between the objects of a trial and the records of its log, both ways."""
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +17,10 @@ from tpvqa.events.events import (
     PlanMade,
     QuestionRecord,
 )
-from tpvqa.observation import Frame, Observation
+from tpvqa.observation import NPY, PNG, Depth, Frame, Intrinsics, Observation
 from tpvqa.pddl import Action, State, Task
 from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
-from tpvqa.questions import Question, QuestionBook
+from tpvqa.questions import ActionQuestion, FactQuestion, Question, QuestionBook
 from tpvqa.vlm import Answer
 from tpvqa.worlds import Execution
 from tpvqa.worlds.outcome import Outcome
@@ -71,14 +71,14 @@ def plan_from(record: PlanMade, task: Task) -> PlanningResult:
 
 def question_record(question: Question) -> QuestionRecord:
     """A question as it is logged."""
-    return QuestionRecord(
-        text=question.text,
-        way=question.way,
-        atom=None if question.atom is None else question.atom.pddl(),
-        action=None if question.action is None else question.action.pddl(),
-        expected=question.expected,
-        alike=tuple(atom.pddl() for atom in question.alike) or None,
-    )
+    match question:
+        case FactQuestion(text, way, atom, expected, alike):
+            others = tuple(other.pddl() for other in alike) or None
+            return QuestionRecord(
+                text=text, way=way, atom=atom.pddl(), expected=expected, alike=others
+            )
+        case ActionQuestion(text, way, action):
+            return QuestionRecord(text=text, way=way, action=action.pddl())
 
 
 def answered_record(answers: Sequence[Answer], snapshot: dict[str, Any] | None) -> Answered:
@@ -117,6 +117,24 @@ def execution_from(record: Acted) -> Execution:
     return Execution(record.report, record.seconds, record.message)
 
 
+def frame_record(frame: Frame, file: str) -> FrameRecord:
+    """A camera image that was saved to a file, and its depth image beside it."""
+    return FrameRecord(
+        view=frame.view,
+        file=file,
+        media_type=frame.media_type,
+        source=frame.source,
+        stamp=frame.stamp,
+        intrinsics=None if frame.intrinsics is None else asdict(frame.intrinsics),
+        depth=None if frame.depth is None else depth_file(file, frame.depth),
+    )
+
+
+def depth_file(file: str, depth: Depth) -> str:
+    """Where the depth image of a picture lies: beside it."""
+    return f"{Path(file).with_suffix('')}-depth{depth.suffix}"
+
+
 def observation_from(record: Observed, folder: Path | None) -> Observation:
     """A recorded look, its pictures read from the episode's folder."""
     frames = {}
@@ -126,11 +144,33 @@ def observation_from(record: Observed, folder: Path | None) -> Observation:
 
 
 def _frame(record: FrameRecord, folder: Path | None) -> Frame:
-    path = (folder or Path()) / record.file
+    folder = folder or Path()
+    depth = None
+    if record.depth is not None:
+        png = record.depth.endswith(".png")
+        depth = Depth(_bytes(folder / record.depth), PNG if png else NPY)
+    seen = record.intrinsics
+    intrinsics = None
+    if seen is not None:
+        size = int(seen["width"]), int(seen["height"])
+        intrinsics = Intrinsics(seen["fx"], seen["fy"], seen["cx"], seen["cy"], *size)
+    path = folder / record.file
+    return Frame(
+        path.stem,
+        record.view,
+        _bytes(path),
+        record.media_type,
+        record.source,
+        record.stamp,
+        intrinsics,
+        depth,
+    )
+
+
+def _bytes(path: Path) -> bytes:
     try:
-        data = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise EpisodeError(
             f"{path}: the picture of a look cannot be read ({error.strerror})"
         ) from error
-    return Frame(path.stem, record.view, data, record.media_type, record.source)

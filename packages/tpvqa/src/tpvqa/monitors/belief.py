@@ -27,7 +27,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import needed
-from tpvqa.questions import FactWords, Question, QuestionBook, Way
+from tpvqa.questions import FactQuestion, FactWay, FactWords, QuestionBook, Way
 from tpvqa.vlm import Answer, Reply
 
 SAME = 3
@@ -236,30 +236,29 @@ class BeliefMonitor(Learning):
             min(costs.looks_per_step - self._now.looks, costs.looks_per_trial - self._looks),
         )
 
-    def _likely(self, question: Question) -> float:
-        assert question.atom is not None
+    def _likely(self, question: FactQuestion) -> float:
         return self.belief.probability(question.atom, question.alike)
 
-    def _about_needs(self, book: QuestionBook) -> list[Question]:
+    def _about_needs(self, book: QuestionBook) -> list[FactQuestion]:
         """Questions about what the plans need: nothing else can change a decision."""
         atoms: frozenset[Atom] = frozenset().union(*(p.atoms() for p in self._chooser.plans))
         if self._asks_all:
             atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
         known = self._now.about
         if atoms not in known:
-            questions: dict[str, Question] = {}
+            questions: dict[str, FactQuestion] = {}
             effects = self._now.effects
             for atom in sorted(atoms):
                 effect = atom in effects
                 action = self._now.action if effect else None
                 if book.asked(Literal(atom), action):
-                    way = Way.EFFECT if effect else Way.PRECONDITION
-                    question = book.fact(Literal(atom), way=way, action=action)
+                    way: FactWay = Way.EFFECT if effect else Way.PRECONDITION
+                    question = book.fact(Literal(atom), way=way)
                     questions.setdefault(question.text, question)
             known[atoms] = list(questions.values())
         return known[atoms]
 
-    def _open_views(self, question: Question) -> list[str | None]:
+    def _open_views(self, question: FactQuestion) -> list[str | None]:
         """From where a question may still find an answer, the next one first.
 
         They go round: another view repeats the last answer less than the same one does.
@@ -268,13 +267,12 @@ class BeliefMonitor(Learning):
         views: list[str | None] = [*self._views[turn:], *self._views[:turn]]
         return [view for view in views or [None] if not self.evidence.silent(question.text, view)]
 
-    def _ask(self, question: Question, *, person: bool) -> Generator[Request, Any, None]:
-        assert question.atom is not None
+    def _ask(self, question: FactQuestion, *, person: bool) -> Generator[Request, Any, None]:
         now, before = self._now, self._likely(question)
         if person:
             answer: Answer = yield AskPerson(question)
             self._person = answer.reply is not Reply.UNKNOWN
-            self.evidence.take_from_person(answer)
+            self.evidence.take_from_person(question, answer.reply)
         else:
             looks = 0
             while not self._shows_something_new(question):
@@ -294,12 +292,12 @@ class BeliefMonitor(Learning):
             answer = answers[0]
             self._questions += 1
             now.questions += 1
-            self.evidence.take(answer, now.picture, now.view)
+            self.evidence.take(question, answer, now.picture, now.view)
         if answer.reply in (Reply.YES, Reply.NO):
-            told = Replies((question.atom, *question.alike), before)
+            told = Replies(question.atoms, before)
             now.replies.setdefault(question.text, told).replies.append(answer.reply)
 
-    def _shows_something_new(self, question: Question) -> bool:
+    def _shows_something_new(self, question: FactQuestion) -> bool:
         """Whether the latest picture may tell more than what a question was answered before."""
         now = self._now
         return (

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from tpvqa.belief.evidence import Picture
 from tpvqa.pddl import Action, Atom
-from tpvqa.questions import Question
+from tpvqa.questions import FactQuestion
 from tpvqa.vlm import Reply
 
 
@@ -43,7 +43,7 @@ class Inspection:
     looks: int = 0
     questions: int = 0
     replies: dict[str, Replies] = field(default_factory=dict)
-    about: dict[frozenset[Atom], list[Question]] = field(default_factory=dict)
+    about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)
 
     @property
     def effects(self) -> frozenset[Atom]:

@@ -7,7 +7,7 @@ from tpvqa.monitors.capabilities import AsksActions
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.pddl import Literal, State
+from tpvqa.pddl import State
 
 
 class PaLMEVQA(AsksActions):
@@ -76,7 +76,7 @@ class PaLMEVQA(AsksActions):
         if self.start_over:
             return step.task.init
         asked = step.book.preconditions(step.action, step.state)
-        denied = [Literal(each.atom, each.expected) for each in asked if each.atom is not None]
+        denied = [question.literal for question in asked]
         return self._remember(step).take_out(step.state, denied)
 
     def _remember(self, step: Step) -> FactMemory:

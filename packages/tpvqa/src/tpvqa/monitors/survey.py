@@ -11,7 +11,7 @@ from tpvqa.events.decision import Decision
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Ask, Look
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.questions import Question
+from tpvqa.questions import FactQuestion
 
 LOOKS = 8
 
@@ -55,7 +55,7 @@ class Survey:
         state = step.task.apply(step.state, step.action)
         return Verdict(Decision.GO_ON, "a survey goes on whatever is answered", state)
 
-    def _ask(self, questions: Sequence[Question]) -> Check:
+    def _ask(self, questions: Sequence[FactQuestion]) -> Check:
         if questions:
             for _ in range(self.looks):
                 yield Look()

@@ -12,7 +12,7 @@ from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Ask, Request
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.pddl import Atom, Literal, State
-from tpvqa.questions import Question, Way
+from tpvqa.questions import FactQuestion, Way
 from tpvqa.vlm import Answer, Reply
 
 
@@ -81,7 +81,7 @@ class TPVQA:
             return give_up(questions)
         if not denied:
             return Verdict(Decision.GO_ON, tally("preconditions", answers))
-        corrected = yield from self._correct(step, answers)
+        corrected = yield from self._correct(step, questions, answers)
         if corrected == step.state:
             # A fact with nothing before it stays: one more look, then the robot acts.
             denied, answers = yield from self._asker.ask(questions)
@@ -91,7 +91,7 @@ class TPVQA:
                 return Verdict(
                     Decision.GO_ON, f"{tally('preconditions', answers)} at the second look"
                 )
-            corrected = yield from self._correct(step, answers)
+            corrected = yield from self._correct(step, questions, answers)
         if corrected == step.state:
             reason = f"{tally('preconditions', answers)}; looked twice, nothing else to believe"
             return Verdict(Decision.GO_ON, reason)
@@ -106,13 +106,15 @@ class TPVQA:
             self._remember(step).record(step.state, verdict.state)
         return verdict
 
-    def _correct(self, step: Step, answers: Sequence[Answer]) -> Generator[Request, Any, State]:
+    def _correct(
+        self, step: Step, questions: Sequence[FactQuestion], answers: Sequence[Answer]
+    ) -> Generator[Request, Any, State]:
         """Take the denied facts out, believing an alternative where exactly one is affirmed."""
         memory = self._remember(step)
         denied = [
-            Literal(answer.question.atom, answer.question.expected)
-            for answer in answers
-            if answer.agrees is False and answer.question.atom is not None
+            question.literal
+            for question, answer in zip(questions, answers, strict=True)
+            if answer.agrees is False
         ]
         seen: list[Atom] = []
         unseen: list[Atom] = []
@@ -131,7 +133,7 @@ class TPVQA:
             return [], []
         asked_already = step.book.fact(denied, way=Way.ALTERNATIVE).text
         atoms_by_text: dict[str, list[Atom]] = {}
-        questions: dict[str, Question] = {}
+        questions: dict[str, FactQuestion] = {}
         for atom in self._remember(step).alternatives(denied.atom):
             literal = Literal(atom)
             # Where a "no" would say nothing (near another thing), a "yes" decides nothing.

@@ -1,7 +1,23 @@
-"""Facts and actions → questions in words, by templates beside the domain."""
+"""Fact or action → `FactQuestion`, `ActionQuestion`, in words of templates beside the domain."""
 
 from tpvqa.questions.book import QuestionBook
 from tpvqa.questions.fact_words import FactWords
-from tpvqa.questions.question import Question, Way
+from tpvqa.questions.question import (
+    ActionQuestion,
+    ActionWay,
+    FactQuestion,
+    FactWay,
+    Question,
+    Way,
+)
 
-__all__ = ["FactWords", "Question", "QuestionBook", "Way"]
+__all__ = [
+    "ActionQuestion",
+    "ActionWay",
+    "FactQuestion",
+    "FactWay",
+    "FactWords",
+    "Question",
+    "QuestionBook",
+    "Way",
+]

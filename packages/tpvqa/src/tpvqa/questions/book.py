@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tpvqa.pddl import Action, Atom, Condition, Disjunction, Literal, State, Task, holds, supporting
 from tpvqa.questions import fallback
-from tpvqa.questions.question import Question, Way
+from tpvqa.questions.question import ActionQuestion, ActionWay, FactQuestion, FactWay, Way
 from tpvqa.questions.template import Template
 from tpvqa.questions.wordings import Wordings, parameters_of, read_wordings
 
@@ -54,9 +54,7 @@ class QuestionBook:
 
     # Facts
 
-    def fact(
-        self, literal: Literal, *, way: Way = Way.PRECONDITION, action: Action | None = None
-    ) -> Question:
+    def fact(self, literal: Literal, *, way: FactWay = Way.PRECONDITION) -> FactQuestion:
         """The question about a fact; a negative literal expects the answer *no*."""
         atom = literal.atom
         if atom not in self._texts:
@@ -64,7 +62,7 @@ class QuestionBook:
             text = self._fill(self._questions[atom.predicate], values)
             self._texts[atom] = text, self._alike(atom)
         text, alike = self._texts[atom]
-        return Question(text, way, atom=atom, action=action, expected=literal.positive, alike=alike)
+        return FactQuestion(text, way, atom, literal.positive, alike)
 
     def _alike(self, atom: Atom) -> tuple[Atom, ...]:
         """The facts that differ only in objects which the question's words leave out."""
@@ -100,7 +98,7 @@ class QuestionBook:
                 return pattern.because or "the questions file says so"
         return None
 
-    def preconditions(self, action: Action, state: State) -> tuple[Question, ...]:
+    def preconditions(self, action: Action, state: State) -> tuple[FactQuestion, ...]:
         """The questions about what an action's precondition rests on in the believed state.
 
         Of a disjunction these are the parts that hold; none of them where one part holds that
@@ -109,7 +107,7 @@ class QuestionBook:
         resting = self._rests_on(action.precondition, self.task.extend(state), action)
         return self._ask(resting, Way.PRECONDITION, action)
 
-    def effects(self, action: Action, state: State) -> tuple[Question, ...]:
+    def effects(self, action: Action, state: State) -> tuple[FactQuestion, ...]:
         """The questions about all effects of an action, negative ones too.
 
         Args:
@@ -132,15 +130,15 @@ class QuestionBook:
 
     # Whole actions
 
-    def possible(self, action: Action) -> Question:
+    def possible(self, action: Action) -> ActionQuestion:
         """ "Is it possible to place the bread on the plate here?" """
         return self._about(action, Way.POSSIBLE)
 
-    def successful(self, action: Action) -> Question:
+    def successful(self, action: Action) -> ActionQuestion:
         """ "Was place the bread on the plate successful?", as the paper words it."""
         return self._about(action, Way.SUCCESSFUL)
 
-    def did(self, action: Action) -> Question:
+    def did(self, action: Action) -> ActionQuestion:
         """ "Did the robot successfully place the bread on the plate?" """
         return self._about(action, Way.DID)
 
@@ -185,12 +183,12 @@ class QuestionBook:
             lambda place: self._attribute(values[place.parameter], place.attribute)
         )
 
-    def _about(self, action: Action, way: Way) -> Question:
+    def _about(self, action: Action, way: ActionWay) -> ActionQuestion:
         said = self.say(action)
         text = self._wordings.ways[way].render(
             lambda place: said if place.attribute == "name" else ""
         )
-        return Question(text, way, action=action)
+        return ActionQuestion(text, way, action)
 
     def _rests_on(self, condition: Condition, state: State, action: Action) -> list[Literal]:
         if isinstance(condition, Literal):
@@ -205,12 +203,14 @@ class QuestionBook:
             resting = [self._rests_on(part, state, action) for part in parts]
         return [literal for part in resting for literal in part]
 
-    def _ask(self, literals: Iterable[Literal], way: Way, action: Action) -> tuple[Question, ...]:
+    def _ask(
+        self, literals: Iterable[Literal], way: FactWay, action: Action
+    ) -> tuple[FactQuestion, ...]:
         """One question for each wording, none where the same words would expect both answers."""
-        questions: dict[str, Question] = {}
+        questions: dict[str, FactQuestion] = {}
         contradictory: set[str] = set()
         for literal in literals:
-            question = self.fact(literal, way=way, action=action)
+            question = self.fact(literal, way=way)
             first = questions.setdefault(question.text, question)
             if first.expected != question.expected:
                 contradictory.add(question.text)

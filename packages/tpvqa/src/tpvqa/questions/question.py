@@ -1,10 +1,12 @@
-"""A yes/no question about what a picture shows."""
+"""Yes/no questions about what a picture shows: about a fact, or about a whole action."""
 
+import typing
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import ClassVar, TypeAlias
 
-from tpvqa.pddl import Action, Atom
+from tpvqa.pddl import Action, Atom, Literal
 
 
 class Way(StrEnum):
@@ -18,15 +20,21 @@ class Way(StrEnum):
     DID = "did"  # "Did the robot successfully <action>?"
 
 
+FactWay: TypeAlias = typing.Literal[Way.PRECONDITION, Way.EFFECT, Way.ALTERNATIVE]
+"""How a fact is asked about."""
+
+ActionWay: TypeAlias = typing.Literal[Way.POSSIBLE, Way.SUCCESSFUL, Way.DID]
+"""How a whole action is asked about."""
+
+
 @dataclass(frozen=True, slots=True)
-class Question:
-    """A question and the answer that agrees with what is believed.
+class FactQuestion:
+    """A question about a fact, and the answer that agrees with what is believed.
 
     Attributes:
         text: What the VLM is asked.
         way: The way of asking.
-        atom: The fact asked about; None for questions about a whole action.
-        action: The action asked about; None for questions about a fact alone.
+        atom: The fact asked about.
         expected: The answer (yes is True) that agrees with the literal the author wrote:
             a negative literal is the positive question with the answer *no* expected.
         alike: Other facts that the words do not tell from `atom`: asked whether a thing is in a
@@ -34,17 +42,58 @@ class Question:
     """
 
     text: str
-    way: Way
-    atom: Atom | None = None
-    action: Action | None = None
+    way: FactWay
+    atom: Atom
     expected: bool = True
     alike: tuple[Atom, ...] = ()
 
     def __hash__(self) -> int:
         return hash((self.text, self.way))
 
-    def true_in(self, holds: Callable[[Atom], bool]) -> bool | None:
-        """Whether yes is right, by whether facts hold; None for questions about actions."""
-        if self.atom is None:
-            return None
-        return holds(self.atom) or any(map(holds, self.alike))
+    @property
+    def atoms(self) -> tuple[Atom, ...]:
+        """The facts of which any one makes yes right: the one asked about and those alike."""
+        return (self.atom, *self.alike)
+
+    @property
+    def literal(self) -> Literal:
+        """What the expected answer says of the fact."""
+        return Literal(self.atom, self.expected)
+
+    @property
+    def subject(self) -> str:
+        """The predicate asked about."""
+        return self.atom.predicate
+
+    def true_in(self, holds: Callable[[Atom], bool]) -> bool:
+        """Whether yes is right, by whether facts hold."""
+        return any(map(holds, self.atoms))
+
+
+@dataclass(frozen=True, slots=True)
+class ActionQuestion:
+    """A question about a whole action.
+
+    Attributes:
+        text: What the VLM is asked.
+        way: The way of asking.
+        action: The action asked about.
+        expected: Yes, always: the answer where all goes well.
+    """
+
+    text: str
+    way: ActionWay
+    action: Action
+    expected: ClassVar[bool] = True
+
+    def __hash__(self) -> int:
+        return hash((self.text, self.way))
+
+    @property
+    def subject(self) -> str:
+        """The name of the action asked about."""
+        return self.action.name
+
+
+Question: TypeAlias = FactQuestion | ActionQuestion
+"""What a VLM is asked."""

@@ -7,11 +7,11 @@ from pathlib import Path
 from tpvqa.errors import PDDLError, QuestionsError, suggestion
 from tpvqa.pddl import Task
 from tpvqa.questions.never import NeverAsked
-from tpvqa.questions.question import Way
+from tpvqa.questions.question import ActionWay, Way
 from tpvqa.questions.template import Template
 from tpvqa.yaml_places import Place, read_yaml
 
-WAYS: Mapping[Way, str] = {
+WAYS: Mapping[ActionWay, str] = {
     Way.POSSIBLE: "Is it possible to {action} here?",
     Way.SUCCESSFUL: "Was {action} successful?",
     Way.DID: "Did the robot successfully {action}?",
@@ -44,7 +44,7 @@ class Wordings:
     of_types: Mapping[str, Mapping[str, Template]] = field(default_factory=dict)
     of_objects: Mapping[str, Mapping[str, Template]] = field(default_factory=dict)
     never_asked: Sequence[NeverAsked] = ()
-    ways: Mapping[Way, Template] = field(
+    ways: Mapping[ActionWay, Template] = field(
         default_factory=lambda: {way: Template.parse(text) for way, text in WAYS.items()}
     )
     notices: Sequence[str] = ()
@@ -178,12 +178,13 @@ def _own(place: Place, known: Sequence[str]) -> dict[str, Template]:
     return _attributes(place, known)
 
 
-def _ways(place: Place | None) -> dict[Way, Template]:
+def _ways(place: Place | None) -> dict[ActionWay, Template]:
     ways = {way: Template.parse(text) for way, text in WAYS.items()}
     if place is None:
         return ways
-    for name, value in place.sections(*(way.value for way in WAYS)).items():
-        ways[Way(name)] = _template(value, ["action"], ["name"])
+    by_name = {way.value: way for way in WAYS}
+    for name, value in place.sections(*by_name).items():
+        ways[by_name[name]] = _template(value, ["action"], ["name"])
     return ways
 
 

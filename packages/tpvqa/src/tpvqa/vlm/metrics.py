@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.answer import Reply
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,14 +14,16 @@ class Scored:
     """One answer beside the truth.
 
     Attributes:
-        answer: What the VLM said.
+        reply: What the VLM said.
         truth: Whether yes is right.
+        p_yes: Its P(yes); None where it gave none.
         visible: Whether the picture shows it.
         hard: Whether no is right although the thing asked about is in view.
     """
 
-    answer: Answer
+    reply: Reply
     truth: bool
+    p_yes: float | None = None
     visible: bool = True
     hard: bool = False
 
@@ -64,12 +66,12 @@ def measure(rows: Iterable[Scored]) -> Metrics:
     shown = [row for row in every if row.visible]
     hidden = [row for row in every if not row.visible]
     truth = np.array([row.truth for row in shown], bool)
-    said_yes = np.array([row.answer.reply is Reply.YES for row in shown], bool)
-    said_no = np.array([row.answer.reply is Reply.NO for row in shown], bool)
+    said_yes = np.array([row.reply is Reply.YES for row in shown], bool)
+    said_no = np.array([row.reply is Reply.NO for row in shown], bool)
     right = np.where(truth, said_yes, said_no).astype(bool)
     hard = np.array([row.hard for row in shown], bool)
-    told = [row for row in shown if row.answer.p_yes is not None]
-    p_yes = np.array([row.answer.p_yes for row in told], float)
+    told = [row for row in shown if row.p_yes is not None]
+    p_yes = np.array([row.p_yes for row in told], float)
     told_truth = np.array([row.truth for row in told], bool)
     on_yes, on_no = _rate(right[truth]), _rate(right[~truth])
     return Metrics(
@@ -83,9 +85,7 @@ def measure(rows: Iterable[Scored]) -> Metrics:
         abstained=_rate(~(said_yes | said_no)),
         hard_no=_rate(right[hard]),
         hidden=len(hidden),
-        cannot_see_rightly=_rate(
-            np.array([row.answer.reply is Reply.CANNOT_SEE for row in hidden], bool)
-        ),
+        cannot_see_rightly=_rate(np.array([row.reply is Reply.CANNOT_SEE for row in hidden], bool)),
     )
 
 

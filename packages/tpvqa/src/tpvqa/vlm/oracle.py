@@ -7,7 +7,7 @@ from typing import Any
 from tpvqa.chance import chance
 from tpvqa.errors import EpisodeError, PluginError
 from tpvqa.observation import Observation
-from tpvqa.questions.question import Question, Way
+from tpvqa.questions.question import ActionQuestion, FactQuestion, Question, Way
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import NoiseModel
 from tpvqa.vlm.protocol import TruthSource
@@ -126,13 +126,6 @@ class Oracle(NoiseModel):
 
     def _answer(self, look: int, question: Question) -> Answer:
         truth = self._true_answer(question)
-        if truth is None:
-            return Answer(
-                question=question,
-                reply=Reply.UNKNOWN,
-                source="oracle",
-                text="A noise model knows only facts and actions of the task.",
-            )
         accuracy = self.accuracy_of(question)
         yes = self._yes(look, question.text, accuracy, truth=truth)
         return Answer(
@@ -147,16 +140,14 @@ class Oracle(NoiseModel):
         """The probability that a fresh answer to a question is right."""
         return self.accuracy
 
-    def _true_answer(self, question: Question) -> bool | None:
-        if question.atom is not None:
-            return question.true_in(self._truth.holds)
-        if question.action is None:
-            return None
-        if question.way is Way.POSSIBLE:
-            return self._truth.possible(question.action)
-        if question.way in (Way.SUCCESSFUL, Way.DID):
-            return self._truth.successful(question.action)
-        return None
+    def _true_answer(self, question: Question) -> bool:
+        match question:
+            case FactQuestion():
+                return question.true_in(self._truth.holds)
+            case ActionQuestion(way=Way.POSSIBLE):
+                return self._truth.possible(question.action)
+            case ActionQuestion():
+                return self._truth.successful(question.action)
 
     def _yes(self, look: int, text: str, accuracy: float, *, truth: bool) -> bool:
         last = self._last.get(text)

@@ -33,4 +33,4 @@ def observe_file(path: str | Path) -> Observation:
         why = getattr(error, "strerror", None) or error
         raise AnswerError(f"{path} cannot be read as a picture: {why}") from error
     frame = Frame(path.stem, "front", data, media_type, source=str(path))
-    return Observation(look=0, time=0.0, frames={"front": frame})
+    return Observation(frames={"front": frame})

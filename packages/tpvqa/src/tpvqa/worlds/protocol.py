@@ -33,7 +33,7 @@ class Execution:
 class World(Protocol):
     """Somewhere to act and to look.
 
-    Every call of `observe` is a new look. What else a world may be stands in
+    Every call of `observe` is a new look; the loop counts them. What else a world may be stands in
     `worlds.capabilities`.
     """
 

@@ -24,18 +24,18 @@ class SymbolicWorld(Simulated, Pictureless):
         self.simulation = simulation
         self.truth = SimulatedTruth(simulation)
         self.last_outcome: Outcome | None = None
-        self._look = 0
+        self._looks = 0
 
     def views(self) -> Sequence[str]:
         """One view."""
         return ("front",)
 
     def observe(self, view: str | None = None) -> Observation:
-        """A new look, without pictures."""
+        """A new look, without pictures; by this world's clock it takes a second."""
         if view not in (None, "front"):
             raise UnknownNameError("view", str(view), self.views())
-        look, self._look = self._look, self._look + 1
-        return Observation(look=look, time=float(look))
+        looks, self._looks = self._looks, self._looks + 1
+        return Observation(time=float(looks))
 
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
@@ -50,11 +50,11 @@ class SymbolicWorld(Simulated, Pictureless):
 
     def snapshot(self) -> Mapping[str, Any]:
         """The true state and the number of looks."""
-        return {"look": self._look, "simulation": self.simulation.snapshot()}
+        return {"look": self._looks, "simulation": self.simulation.snapshot()}
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
         """Put back what `snapshot` gave."""
-        self._look = snapshot["look"]
+        self._looks = snapshot["look"]
         self.simulation.restore(snapshot["simulation"])
 
     def close(self) -> None:

@@ -8,7 +8,7 @@ from tpvqa.chance import chance
 from tpvqa.errors import PluginError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Task
-from tpvqa.questions.question import Question, Way
+from tpvqa.questions.question import FactQuestion, Question, Way
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import FactsOnly, NoiseModel
 from tpvqa.vlm.protocol import TruthSource
@@ -83,10 +83,10 @@ class Recorded(NoiseModel, FactsOnly):
         return [self._answer(observation.look, question) for question in questions]
 
     def _answer(self, look: int, question: Question) -> Answer:
-        if question.way not in _KIND or question.atom is None:
+        if not isinstance(question, FactQuestion):
             return _silent(question, "No answers to questions about whole actions were recorded.")
-        truth = bool(question.true_in(self._truth.holds))
-        choice = drawn_from(self._told, question.way, question.atom.predicate, truth=truth)
+        truth = question.true_in(self._truth.holds)
+        choice = drawn_from(self._told, question.way, question.subject, truth=truth)
         if not choice:
             return _silent(question, "No answers to questions of this kind were recorded.")
         draw = chance(self._seed, self._episode, "recorded answer", question.text, truth, look)

@@ -92,15 +92,13 @@ class DrawnWorld(Simulated, Generic[P]):
         picture = choice[draw.randrange(len(choice))]
         self.last = picture
         frame = Frame(
-            id=f"{look:04d}",
+            id=VIEW,
             view=VIEW,
             data=self.pictures.read(picture),
             media_type=media_type(picture.file),
             source=picture.file,
         )
-        return Observation(
-            look=look, time=float(look), frames={VIEW: frame}, detail=self.detail(picture)
-        )
+        return Observation(time=float(look), frames={VIEW: frame}, detail=self.detail(picture))
 
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
