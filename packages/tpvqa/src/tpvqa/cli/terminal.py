@@ -129,11 +129,11 @@ class EpisodeView:
                 new = ", ".join(map(self._say, event.added)) or "nothing"
                 self._line(f"  [dim]now believed: {escape(new)}; no longer: {escape(gone)}[/]")
             case Decided():
-                self._head(before)
+                self._head(before, event.step)
                 self._show_decision(event)
                 self._show_belief(event)
             case Acting():
-                self._head(before)
+                self._head(before, event.step)
                 self._line(f"  [blue]▶ {escape(event.action.said)}[/]")
             case Acted():
                 self._show_outcome(event)
@@ -163,15 +163,16 @@ class EpisodeView:
     def _line(self, text: str) -> None:
         self._console.print(text, highlight=False, soft_wrap=True)
 
-    def _head(self, state: TrialState) -> None:
+    def _head(self, state: TrialState, step: int | None = None) -> None:
         """Name the step, once, before the first that happens in it."""
-        here = (state.plan, state.index, state.attempt)
-        action = state.action
-        if action is None or self._headed == here:
+        step = state.index if step is None else step
+        attempt = state.attempt if step == state.index else 0
+        here = (state.plan, step, attempt)
+        if state.plan is None or step >= len(state.plan.plan) or self._headed == here:
             return
         self._headed = here
-        again = f" [yellow](attempt {state.attempt + 1})[/]" if state.attempt else ""
-        self._line(f"[bold]{state.index + 1}. {escape(action.said)}[/]{again}")
+        again = f" [yellow](attempt {attempt + 1})[/]" if attempt else ""
+        self._line(f"[bold]{step + 1}. {escape(state.plan.plan[step].said)}[/]{again}")
 
     def _show_decision(self, event: Decided) -> None:
         explained = bool(event.belief) and event.when == "after"
