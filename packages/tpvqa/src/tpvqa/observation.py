@@ -4,10 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from io import BytesIO
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -34,8 +35,9 @@ class Frame:
         return {"image/jpeg": ".jpg", "image/png": ".png"}[self.media_type]
 
     @cached_property
-    def pixels(self) -> NDArray[np.uint8]:
+    def pixels(self) -> "NDArray[np.uint8]":
         """The picture as an array, height × width × 3 (red, green, blue), 0 to 255."""
+        import numpy as np
         from PIL import Image
 
         with Image.open(BytesIO(self.data)) as picture:
