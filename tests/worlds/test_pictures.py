@@ -177,3 +177,15 @@ def test_pictures_that_look_alike_are_the_looks_of_one_trial(task: Task, lamps: 
     assert len(set(of_look.values())) == len(PICTURES) - 1
     with pytest.raises(CalibrationError, match="no fact of this set"):
         ask_pictures(Sayer(), load_set(lamps))
+
+
+def test_the_documentations_code_labels_a_set(task: Task, lamps: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "pictures.md").read_text()
+    code = page.partition("```python\n")[2].partition("```")[0]
+    before = load_set(lamps).manifest
+    names: dict[str, Any] = {}
+    exec(code, names)
+    names["label"](lamps, PICTURES)
+    after = load_set(lamps)
+    assert after.manifest == before
+    world_of(task, lamps).check()
