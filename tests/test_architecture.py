@@ -7,13 +7,17 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-SOURCE = ROOT / "src" / "tpvqa"
+SOURCE = ROOT / "packages" / "tpvqa" / "src" / "tpvqa"
+HOUSEHOLD = ROOT / "packages" / "tpvqa-household" / "src" / "tpvqa_household"
+PAGE = (ROOT / "docs" / "architecture.md").read_text()
+TABLES = {SOURCE: "Rooms of the core", HOUSEHOLD: "Rooms of the household"}
 
 
-def rooms() -> dict[str, set[str]]:
+def rooms(source: Path) -> dict[str, set[str]]:
     """Room → what it may import, from the table; "everything above" spelled out."""
     found: dict[str, set[str]] = {}
-    for line in (ROOT / "docs" / "architecture.md").read_text().splitlines():
+    section = PAGE.partition(f"## {TABLES[source]}\n")[2].partition("\n## ")[0]
+    for line in section.splitlines():
         match = re.match(r"\| `(\w+)` \|.*\| ([^|]+) \|$", line)
         if match:
             allowed = match[2].strip()
@@ -22,8 +26,17 @@ def rooms() -> dict[str, set[str]]:
     return found
 
 
+def public() -> set[str]:
+    """The rooms of the core that other distributions may import."""
+    return set(re.findall(r"\w+", PAGE.partition("that are for everybody:")[2].partition(".")[0]))
+
+
+def source_of(path: Path) -> Path:
+    return next(source for source in TABLES if source in path.parents)
+
+
 def room_of(path: Path) -> str:
-    return path.relative_to(SOURCE).parts[0].removesuffix(".py")
+    return path.relative_to(source_of(path)).parts[0].removesuffix(".py")
 
 
 def imports(source: str) -> set[str]:
@@ -41,9 +54,9 @@ def imports(source: str) -> set[str]:
     return found
 
 
-def imported_rooms(path: Path) -> set[str]:
+def imported_rooms(path: Path, package: str) -> set[str]:
     names = imports(path.read_text())
-    return {name.split(".")[1] for name in names if name.startswith("tpvqa.")}
+    return {name.split(".")[1] for name in names if name.startswith(f"{package}.")}
 
 
 GPL = {"fast_downward", "up_fast_downward"}
@@ -54,18 +67,42 @@ def imports_gpl_code(source: str) -> bool:
 
 
 FILES = sorted(
-    path for path in SOURCE.rglob("*.py") if path.name != "__init__.py" or path.parent != SOURCE
+    path
+    for source in TABLES
+    for path in source.rglob("*.py")
+    if path.name != "__init__.py" or path.parent != source
 )
+OF_THE_CORE = [path for path in FILES if SOURCE in path.parents]
+OF_THE_HOUSEHOLD = [path for path in FILES if HOUSEHOLD in path.parents]
 
 
 def test_every_room_is_in_the_table() -> None:
-    assert {room_of(path) for path in FILES} <= set(rooms())
+    for source in TABLES:
+        found = {room_of(path) for path in FILES if source in path.parents}
+        assert found
+        assert found <= set(rooms(source))
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_room_imports_only_what_the_table_allows(path: Path) -> None:
-    room = room_of(path)
-    assert imported_rooms(path) - {room} <= rooms()[room]
+    source, room = source_of(path), room_of(path)
+    assert imported_rooms(path, source.name) - {room} <= rooms(source)[room]
+
+
+def test_the_core_imports_nothing_of_the_other_distributions() -> None:
+    for path in OF_THE_CORE:
+        roots = {name.partition(".")[0] for name in imports(path.read_text())}
+        assert roots.isdisjoint({"tpvqa_household", "tpvqa_experiments"}), path
+
+
+def test_the_household_imports_what_is_public_and_nothing_of_the_experiments() -> None:
+    assert public() < set(rooms(SOURCE))
+    for path in OF_THE_HOUSEHOLD:
+        text = path.read_text()
+        roots = {name.partition(".")[0] for name in imports(text)}
+        assert "tpvqa_experiments" not in roots, path
+        assert imported_rooms(path, "tpvqa") <= public(), path
+        assert not re.search(r"from tpvqa\.[\w.]+ import [^\n]*\b_\w", text), path
 
 
 def test_nothing_imports_the_planners_gpl_code_into_the_packages_process() -> None:
@@ -92,7 +129,7 @@ def test_every_way_to_import_it_is_noticed(statement: str) -> None:
 
 def test_a_source_file_is_one_idea() -> None:
     long = {
-        str(path.relative_to(SOURCE)): n
+        str(path.relative_to(ROOT)): n
         for path in FILES
         if (n := len(path.read_text().splitlines())) > 400
     }

@@ -1,19 +1,24 @@
 """Plug-ins by name: a package made and found as pip would leave it, without installing it."""
 
+import shutil
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.conftest import Install
+from tpvqa import Trial, TrialConfig
+from tpvqa.belief.shipped import shipped_calibration
+from tpvqa.defaults import default_vlm
 from tpvqa.errors import MissingExtraError, PluginError, UnknownNameError
 from tpvqa.plugins import Kind, load, make, names
+from tpvqa.tasks import find_task, shipped_tasks
 from tpvqa.vlm.making import make_vlm
 from tpvqa.vlm.oracle import Oracle
 from tpvqa.worlds.making import make_world
 
-Install = Callable[..., None]
+TOYS = Path(__file__).parent / "fixtures" / "toys"
 
 COLOURS = '''
 from tpvqa.vlm.capabilities import NoiseModel
@@ -47,24 +52,6 @@ class Demanding:
 
 nothing = 3
 '''
-
-
-@pytest.fixture
-def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
-    """Put a package with entry points where Python finds it."""
-    monkeypatch.syspath_prepend(str(tmp_path))
-
-    def put(package: str, source: str, *points: str, group: str = "tpvqa.vlms") -> None:
-        (tmp_path / f"{package}.py").write_text(source)
-        metadata = tmp_path / f"{package}-1.0.dist-info"
-        metadata.mkdir()
-        (metadata / "METADATA").write_text(
-            f"Metadata-Version: 2.1\nName: {package}\nVersion: 1.0\n"
-        )
-        (metadata / "entry_points.txt").write_text(f"[{group}]\n" + "\n".join(points) + "\n")
-        monkeypatch.delitem(sys.modules, package, raising=False)
-
-    return put
 
 
 def test_a_plug_in_of_another_package_is_found_and_made(install: Install) -> None:
@@ -134,12 +121,24 @@ def test_a_broken_plug_in_is_a_clear_error(
     assert "colours" in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("module", "extras", "says"),
+    [
+        ("ortools", {}, r"pip install 'tpvqa\[belief\]'"),
+        ("ortools", {"fast": "ortools>=9"}, r"pip install 'colours\[fast\]'"),
+        ("lidar", {"laser": "lidar", "all": "radar"}, r"pip install 'colours\[laser\]'"),
+    ],
+)
 def test_a_missing_package_of_an_extra_names_the_extra(
-    install: Install, monkeypatch: pytest.MonkeyPatch
+    install: Install,
+    monkeypatch: pytest.MonkeyPatch,
+    module: str,
+    extras: dict[str, str],
+    says: str,
 ) -> None:
-    install("colours", "import mujoco", "needy = colours:X")
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(MissingExtraError, match=r"pip install 'tpvqa\[sim\]'"):
+    install("colours", f"import {module}", "needy = colours:X", extras=extras)
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(MissingExtraError, match=says):
         load(Kind.VLM, "needy")
 
 
@@ -152,3 +151,89 @@ def test_a_name_that_two_packages_offer_is_an_error(install: Install) -> None:
 
 def test_the_shipped_oracle_is_a_noise_model() -> None:
     assert load(Kind.VLM, "oracle") is Oracle
+
+
+TASKS = """
+from pathlib import Path
+from tpvqa.tasks import tasks_in
+
+def task_files():
+    return tasks_in(Path(__file__).parent / "box", default_world="scripted")
+
+def broken():
+    raise RuntimeError("no such shelf")
+
+def odd():
+    return ["box"]
+"""
+
+
+def test_a_family_of_tasks_of_another_package_is_among_the_shipped(
+    install: Install, tmp_path: Path
+) -> None:
+    install("box", TASKS, "box = box:task_files", group="tpvqa.tasks")
+    shutil.copytree(TOYS, tmp_path / "box")
+    files = find_task("collect")
+    assert files.questions == tmp_path / "box" / "questions.yaml"
+    assert {"collect", "build_tower"} <= {each.name for each in shipped_tasks()}
+    with Trial(TrialConfig(task="collect", vlm="oracle")) as trial:
+        assert trial.started().world == "scripted"
+
+
+def test_a_broken_family_leaves_the_others_and_is_named(
+    install: Install, caplog: pytest.LogCaptureFixture
+) -> None:
+    install("box", TASKS, "box = box:broken", "odd = box:odd", group="tpvqa.tasks")
+    assert find_task("build_tower").name == "build_tower"
+    assert "build_tower" in {each.name for each in shipped_tasks()}
+    assert "'box' broke" in caplog.text
+    assert "'odd' has to give TaskFiles" in caplog.text
+    with pytest.raises(PluginError, match="no such shelf"):
+        find_task("collect")
+
+
+def test_a_task_that_two_packages_bring_is_an_error(install: Install, tmp_path: Path) -> None:
+    install("box", TASKS, "box = box:task_files", group="tpvqa.tasks")
+    shutil.copytree(TOYS, tmp_path / "box")
+    (tmp_path / "box" / "collect.pddl").rename(tmp_path / "box" / "build_tower.pddl")
+    with pytest.raises(PluginError, match="several tasks 'build_tower'"):
+        find_task("build_tower")
+
+
+CALIBRATIONS = """
+from tpvqa.belief import Calibration
+
+def colour():
+    return Calibration.default("colour:red")
+
+def odd():
+    return {}
+"""
+
+
+def test_a_calibration_of_another_package_is_found_by_the_vlm(install: Install) -> None:
+    points = ("colour:red = worth:colour", "odd = worth:odd")
+    install("worth", CALIBRATIONS, *points, group="tpvqa.calibrations")
+    found = shipped_calibration("colour:red")
+    assert found is not None
+    assert found.vlm == "colour:red"
+    assert shipped_calibration("colour") is None
+    with pytest.raises(PluginError, match="has to be a Calibration"):
+        shipped_calibration("odd")
+
+
+def test_what_other_distributions_bring_is_named_where_it_is_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("tpvqa.plugins._points", lambda path: dict.fromkeys(Kind, ()))
+    household = r"comes with tpvqa-household\. Install it: pip install tpvqa-household"
+    for kind, name in ((Kind.VLM, "embedded"), (Kind.WORLD, "images"), (Kind.WORLD, "kitchen")):
+        with pytest.raises(UnknownNameError, match=household):
+            load(kind, name)
+    with pytest.raises(UnknownNameError, match=household):
+        find_task("eat_apple")
+    with pytest.raises(UnknownNameError, match=r"pip install -e \./experiments"):
+        load(Kind.VLM, "paper-table")
+    with pytest.raises(PluginError, match=r"--vlm openai:MODEL, or install .*tpvqa-household"):
+        default_vlm()
+    assert default_vlm(pictures=False) == "oracle"

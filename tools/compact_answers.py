@@ -1,8 +1,8 @@
 """Make the compact form of recorded VLM answers: `python tools/compact_answers.py ANSWERS.csv.gz`.
 
 Reads the table of answers recorded by the ViPlan benchmark (Merler et al. 2025, MIT) and writes
-`src/tpvqa/vlm/recorded/answers.json.gz`: how often each model gave which answer with which P(yes),
-by environment, kind of question, predicate, truth, and half of the problems.
+`packages/tpvqa/src/tpvqa/vlm/recorded/answers.json.gz`: how often each model gave which answer with
+which P(yes), by environment, kind of question, predicate, truth, and half of the problems.
 """
 
 import argparse
@@ -13,7 +13,7 @@ import json
 from collections import Counter
 from pathlib import Path
 
-OUT = Path(__file__).parents[1] / "src/tpvqa/vlm/recorded/answers.json.gz"
+OUT = Path(__file__).parents[1] / "packages/tpvqa/src/tpvqa/vlm/recorded/answers.json.gz"
 SHORT = {
     "Qwen2.5-VL-72B-Instruct": "qwen2.5-vl-72b",
     "Qwen2.5-VL-7B-Instruct": "qwen2.5-vl-7b",

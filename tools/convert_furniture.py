@@ -5,7 +5,7 @@ Run by hand, not at install time; the result is kept in the repository:
     apt-get install sweethome3d-furniture
     pip install numpy pillow fast-simplification
     python tools/convert_furniture.py /usr/share/sweethome3d/furniture \
-        src/tpvqa/worlds/kitchen/assets/scanned.zip
+        packages/tpvqa-household/src/tpvqa_household/kitchen/assets/scanned.zip
 
 Every thing becomes z up, in metres, standing on the origin, with at most about 3,000 triangles:
 one binary mesh a material (see `tpvqa_household.kitchen.assets.pack` for the format), its pictures

@@ -1,7 +1,7 @@
 """Put what the belief bench has measured into the documentation.
 
-`python tools/belief_docs.py FOLDER`, with the folder that `tpvqa bench belief` has written. Between
-`<!-- NAME -->` and `<!-- end -->`, the tables of `docs/belief.md` are made again;
+`python experiments/tools/belief_docs.py FOLDER`, with the folder that `tpvqa bench belief` has
+written. Between `<!-- NAME -->` and `<!-- end -->`, the tables of `docs/belief.md` are made again;
 `docs/belief-results.md` and the figures are copied.
 """
 
@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-DOCS = Path(__file__).parents[1] / "docs"
+DOCS = Path(__file__).parents[2] / "docs"
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 VOTES = ("tpvqa", "tpvqa:3", "tpvqa:5", "tpvqa:strict", "tpvqa:3:strict", "tpvqa:5:strict")
 CONDITIONS = (

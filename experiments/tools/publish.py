@@ -1,7 +1,7 @@
 """Packs the finished rows of the belief bench, for others to check and to go on from.
 
-python benchmarks/publish.py bench-belief --out docs/data/belief
-tpvqa bench belief --rows docs/data/belief --only-tables --out bench-belief-again
+python experiments/tools/publish.py bench-belief --out experiments/rows/belief
+tpvqa bench belief --rows experiments/rows/belief --only-tables --out bench-belief-again
 
 Several folders, of machines that ran different parts with the same settings, become one; what is
 published already stays.

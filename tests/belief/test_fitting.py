@@ -140,7 +140,7 @@ def test_nothing_to_learn_from_is_an_error() -> None:
 
 def test_without_scikit_learn_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn.linear_model", None)
-    with pytest.raises(MissingExtraError, match=r"tpvqa\[bench\]"):
+    with pytest.raises(MissingExtraError, match=r"tpvqa\[calibrate\]"):
         fit(trials(2, surer=1.0), "v")
 
 

@@ -97,7 +97,7 @@ def test_what_answers_are_taken_to_be_worth_is_said(tpvqa: Run) -> None:
     Calibration.default("somebody").save(Path("c.json"))
     _, _, err = tpvqa(*words, "--calibration", "c.json")
     assert "learnt of somebody" in err
-    code, _, err = tpvqa("run", "build_tower")
+    code, _, err = tpvqa("run", "build_tower", "--world", "images")
     assert code == 2
     assert "--world symbolic" in err
     assert not Path("episodes/build_tower-seed0").exists()

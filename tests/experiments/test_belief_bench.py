@@ -151,7 +151,7 @@ def test_published_trials_make_the_same_tables_and_are_not_run_again(
 ) -> None:
     for name in (ROWS, "bench.json"):
         shutil.copy(ran / name, tmp_path / name)
-    script = Path(__file__).parents[2] / "benchmarks/publish.py"
+    script = Path(__file__).parents[2] / "experiments/tools/publish.py"
     told = [sys.executable, str(script), str(tmp_path), "--out", str(tmp_path / "data")]
     said = subprocess.run(told, capture_output=True, text=True, check=True).stdout
     assert "35 rows" in said

@@ -146,4 +146,4 @@ def test_diffusers_that_is_not_installed_is_named(
     asked = ["compose", "--out", str(tmp_path), *FEW, "--variations", "diffusers:tiny"]
     result = CliRunner().invoke(dataset, asked)
     assert isinstance(result.exception, MissingExtraError)
-    assert "tpvqa[diffusion]" in str(result.exception)
+    assert "tpvqa-household[diffusion]" in str(result.exception)

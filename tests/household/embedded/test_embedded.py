@@ -142,7 +142,7 @@ def test_a_broken_picture_is_a_clear_error(vlm: EmbeddedVLM) -> None:
 def test_missing_and_damaged_weights_are_clear_errors(tmp_path: Path) -> None:
     question = [worded("Is the plate clean?")]
     grey = look(picture(np.full((64, 64, 3), 128, np.uint8)))
-    with pytest.raises(AnswerError, match=r"missing.*Install tpvqa again"):
+    with pytest.raises(AnswerError, match=r"missing.*Install tpvqa-household again"):
         EmbeddedVLM(folder=tmp_path / "none").ask(grey, question)
     damaged = tmp_path / "damaged"
     shutil.copytree(SHIPPED, damaged)

@@ -355,7 +355,7 @@ def test_encoding_keeps_the_surface_and_gives_unit_normals() -> None:
 
 
 def test_every_scanned_thing_is_credited() -> None:
-    notice = (ROOT / "NOTICE").read_text(encoding="utf-8")
+    notice = (ROOT / "packages/tpvqa-household/NOTICE").read_text(encoding="utf-8")
     page = (ROOT / "docs" / "assets.md").read_text(encoding="utf-8")
     assert attribution.notice() in notice
     assert attribution.table() in page

@@ -12,7 +12,7 @@ from tpvqa_household.kitchen.gl import load_mujoco
 
 def test_a_missing_package_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(MissingExtraError, match=r"tpvqa\[sim\]"):
+    with pytest.raises(MissingExtraError, match=r"tpvqa-household\[sim\]"):
         load_mujoco()
 
 

@@ -68,7 +68,7 @@ def belief(
     ] = False,
     rows: Annotated[
         Path | None,
-        typer.Option(help="Published rows that count as finished, e.g. docs/data/belief."),
+        typer.Option(help="Published rows that count as finished, e.g. experiments/rows/belief."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:

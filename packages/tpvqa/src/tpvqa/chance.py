@@ -7,8 +7,10 @@ unbroken one.
 
 import hashlib
 import random
+from typing import TYPE_CHECKING
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 
 def _digest(seed: int, episode: int, purpose: str, key: tuple[object, ...]) -> int:
@@ -28,6 +30,8 @@ def chance(seed: int, episode: int, purpose: str, *key: object) -> random.Random
     return random.Random(_digest(seed, episode, purpose, key))
 
 
-def chance_array(seed: int, episode: int, purpose: str, *key: object) -> np.random.Generator:
+def chance_array(seed: int, episode: int, purpose: str, *key: object) -> "np.random.Generator":
     """The same as `chance`, as a NumPy generator."""
+    import numpy as np
+
     return np.random.default_rng(_digest(seed, episode, purpose, key))

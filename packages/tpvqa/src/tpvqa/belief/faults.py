@@ -6,7 +6,6 @@ from functools import partial
 from hashlib import blake2b
 from typing import Any, Protocol
 
-from tpvqa.belief.surprise import Surprise
 from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Action, Atom, State, Task
 
@@ -122,6 +121,8 @@ class FaultModel:
     """
 
     def __init__(self, task: Task, rules: FaultRules | None = None):
+        from tpvqa.belief.surprise import Surprise  # late, as all that it needs takes a while
+
         self.task = task
         self.surprise = Surprise(task, rules.undo if rules is not None else ())
         self._undo: Sequence[Undoing] = (

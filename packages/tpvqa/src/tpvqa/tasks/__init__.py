@@ -29,8 +29,8 @@ class TaskFiles:
         name: The task's name.
         domain: The PDDL domain.
         problem: The PDDL problem.
-        questions: How facts and actions are put into questions.
-        world: How facts come undone in a simulated world.
+        questions: How facts and actions are put into questions; None for fallbacks alone.
+        world: How facts come undone in a simulated world; None where they do not.
         default_world: Specification of the world that it is run in where none is named.
         pictures: The folder of labelled pictures of it; None where there are none.
     """
@@ -38,8 +38,8 @@ class TaskFiles:
     name: str
     domain: Path
     problem: Path
-    questions: Path
-    world: Path
+    questions: Path | None
+    world: Path | None
     default_world: str = "symbolic"
     pictures: Path | None = None
 
@@ -47,21 +47,23 @@ class TaskFiles:
 def tasks_in(
     folder: Path, *, default_world: str = "symbolic", pictures: Path | None = None
 ) -> tuple[TaskFiles, ...]:
-    """The tasks of a folder with `domain.pddl`, `questions.yaml`, `world.yaml` and problems.
+    """The tasks of a folder.
 
     Args:
-        folder: Every other PDDL file in it is a problem, and a task of that name.
+        folder: Holds `domain.pddl`, `questions.yaml` and `world.yaml` (each where there is one);
+            every other PDDL file in it is a problem, and a task of that name.
         default_world: As in `TaskFiles`.
         pictures: As in `TaskFiles`.
     """
     domain = folder / "domain.pddl"
+    questions, world = folder / "questions.yaml", folder / "world.yaml"
     return tuple(
         TaskFiles(
             name=problem.stem,
             domain=domain,
             problem=problem,
-            questions=folder / "questions.yaml",
-            world=folder / "world.yaml",
+            questions=questions if questions.exists() else None,
+            world=world if world.exists() else None,
             default_world=default_world,
             pictures=pictures,
         )

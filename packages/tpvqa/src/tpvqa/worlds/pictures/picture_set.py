@@ -68,7 +68,7 @@ def load_set(folder: Path) -> PictureSet[Picture]:
     manifest: Manifest[Picture] = read_manifest(
         folder,
         Manifest[Picture],
-        missing="Name the folder of a set, with its manifest (see docs/your-own-domain.md)",
-        broken="docs/your-own-domain.md says what it has to be",
+        missing="Name the folder that holds a set of pictures and their manifest",
+        broken="Mend it, or make the set again",
     )
     return PictureSet(folder, manifest)
