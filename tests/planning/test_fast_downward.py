@@ -188,7 +188,7 @@ def test_grounding_is_kept() -> None:
     moved = changed(task, gone="near tv", come="near sink")
 
     def groundings(state: State) -> int:
-        from tpvqa.pddl.loading import to_lists
+        from tpvqa.pddl.description import to_lists
         from tpvqa.pddl.processes import ask_worker
 
         request = {

@@ -5,7 +5,7 @@ from typing import Any
 
 from tpvqa.errors import PDDLError, PlannerError, PluginError, suggestion
 from tpvqa.pddl import State, Task, literals, validate
-from tpvqa.pddl.loading import to_lists
+from tpvqa.pddl.description import to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
 from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.obstacles import obstacle
