@@ -44,8 +44,22 @@ def test_json(folder: Path) -> None:
     assert set(result) == {"plan", "cost", "planner", "seconds"}
     assert result["plan"][1] == {"name": "open", "arguments": ["fridge"]}
     assert result["cost"] == 7
-    assert result["planner"] == "fast-downward-optimal"
+    assert result["planner"] == "fast-downward:optimal"
     assert 0 < result["seconds"] < 60
+
+
+def test_the_planner_by_name(folder: Path) -> None:
+    done = tpvqa("plan", "clean_dishes", "--planner", "fast-downward:lama", cwd=folder)
+    assert done.returncode == 0
+    assert done.stdout.splitlines()[-1].startswith("cost 4, fast-downward:lama, ")
+    for words, says in (
+        (["--planner", "fast-downward:lamma"], "Did you mean 'lama'? Write fast-downward,"),
+        (["--planner", "fast-forward"], "Did you mean 'fast-downward'?"),
+        (["--planner", "fast-downward:lama", "--optimal"], "--optimal is short for"),
+    ):
+        done = tpvqa("plan", "clean_dishes", *words, cwd=folder)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert says in done.stderr
 
 
 def test_own_files_and_another_state(folder: Path) -> None:

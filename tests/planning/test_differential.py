@@ -6,21 +6,21 @@ from pathlib import Path
 import pytest
 
 from tests.pddl.feature_domains import SAMPLES, Sample
-from tests.planning.judges import COMPLETE, INFORMED, solvable, val_accepts
+from tests.planning.judges import COMPLETE, INFORMED, solvable, val_accepts, val_value
 from tests.planning.random_states import random_states
 from tpvqa.pddl import State, Task, load_task, task_from_text, validate
 from tpvqa.planning import Plan, Unsolvable
-from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.fast_downward import SEARCHES, FastDownward
 from tpvqa.tasks import shipped_tasks
 
-PER_TASK, PER_SAMPLE = 40, 11  # 3 × 40 + 18 × 11 = 318 states
+PER_TASK, PER_SAMPLE, PER_SEARCH = 40, 11, 4  # 3 × 40 + 18 × (11 + 2 × 4) = 462 states
 
 
 def judge(
-    task: Task, states: list[State], folder: Path, *, search: str, val: bool
+    task: Task, states: list[State], folder: Path, *, search: str, val: bool, spec: str = ""
 ) -> tuple[int, int]:
     """Plan from every state, compare with the judges; how many had a plan and how many none."""
-    planner = FastDownward()
+    planner = FastDownward.from_spec(spec)
 
     def one(numbered: tuple[int, State]) -> bool:
         number, state = numbered
@@ -35,6 +35,7 @@ def judge(
             return False
         assert validate(task, result.actions, state).valid
         assert not val or val_accepts(task, state, result.actions, own), result.actions
+        assert not val or result.cost == val_value(task, state, result.actions, own)
         return True
 
     with ThreadPoolExecutor(2) as threads:
@@ -58,3 +59,12 @@ def test_every_feature_agrees_with_the_judges(sample: Sample, tmp_path: Path) ->
     task = task_from_text(sample.domain, sample.problem)
     states = list(random_states(task, seed=2, count=PER_SAMPLE))
     judge(task, states, tmp_path, search=COMPLETE, val=sample.val)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("search", SEARCHES)
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.name)
+def test_every_search_agrees_with_the_judges(sample: Sample, search: str, tmp_path: Path) -> None:
+    task = task_from_text(sample.domain, sample.problem)
+    states = list(random_states(task, seed=3, count=PER_SEARCH))
+    judge(task, states, tmp_path, search=COMPLETE, val=sample.val, spec=search)

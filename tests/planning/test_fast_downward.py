@@ -3,13 +3,16 @@
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from tests.pddl.feature_domains import DERIVED, EMPTY, EXHAUSTED, SAMPLES, UNREACHABLE, Sample
-from tpvqa.errors import PDDLError, PlannerError
+from tpvqa.errors import PDDLError, PlannerError, PluginError
 from tpvqa.pddl import Action, Atom, State, Task, load_task, task_from_text, validate
 from tpvqa.pddl.processes import WORKERS
 from tpvqa.planning import Crashed, Plan, Planner, TimedOut, Unsolvable
-from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.fast_downward import SEARCHES, FastDownward
+from tpvqa.plugins import Kind, make
 
 PAPER: dict[str, list[tuple[str, ...]]] = {
     "clean_dishes": [
@@ -60,17 +63,13 @@ def test_the_apple_is_cut_with_both_hands() -> None:
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.name)
 def test_every_feature_is_planned_with(sample: Sample) -> None:
     task = task_from_text(sample.domain, sample.problem)
-    best = FastDownward(optimal=True).plan(task)
-    any_plan = FastDownward().plan(task)
-    if sample.cost is None:
-        assert isinstance(best, Unsolvable)
-        assert isinstance(any_plan, Unsolvable)
-        return
-    assert isinstance(best, Plan)
-    assert isinstance(any_plan, Plan)
-    assert best.cost == sample.cost
-    assert any_plan.cost >= sample.cost
-    for plan in (best, any_plan):
+    for search in (None, *SEARCHES):
+        plan = FastDownward(search=search).plan(task)
+        if sample.cost is None:
+            assert isinstance(plan, Unsolvable)
+            continue
+        assert isinstance(plan, Plan)
+        assert plan.cost == sample.cost if search == "optimal" else plan.cost >= sample.cost
         assert validate(task, plan.actions).valid
         assert plan.cost == sum(action.cost for action in plan.actions)
 
@@ -161,10 +160,25 @@ def test_a_plan_that_does_not_work_is_not_handed_on(monkeypatch: pytest.MonkeyPa
     assert "does not work: step 1, finish(), needs ready()" in result.reason
 
 
-def test_it_is_a_planner() -> None:
-    planner = FastDownward(optimal=True)
+@pytest.mark.parametrize("spec", ["fast-downward", *(f"fast-downward:{s}" for s in SEARCHES)])
+def test_it_is_a_planner_named_by_its_specification(spec: str) -> None:
+    planner = make(Kind.PLANNER, spec)
     assert isinstance(planner, Planner)
-    assert planner.name == "fast-downward-optimal"
+    assert planner.name == spec
+    plan = planner.plan(load_task("clean_dishes"))
+    assert isinstance(plan, Plan)
+    assert plan.planner == spec
+
+
+@given(st.text().map(str.strip).filter(lambda text: text not in ("", *SEARCHES)))
+def test_other_searches_are_refused_with_those_there_are(search: str) -> None:
+    with pytest.raises(PluginError, match="fast-downward:optimal or fast-downward:lama"):
+        make(Kind.PLANNER, f"fast-downward:{search}")
+
+
+def test_the_nearest_search_is_suggested() -> None:
+    with pytest.raises(PluginError, match="Did you mean 'optimal'"):
+        make(Kind.PLANNER, "fast-downward:optimum")
 
 
 def test_grounding_is_kept() -> None:
@@ -174,7 +188,7 @@ def test_grounding_is_kept() -> None:
     moved = changed(task, gone="near tv", come="near sink")
 
     def groundings(state: State) -> int:
-        from tpvqa.pddl.loading import to_lists
+        from tpvqa.pddl.description import to_lists
         from tpvqa.pddl.processes import ask_worker
 
         request = {

@@ -14,7 +14,7 @@ import pytest
 
 from tests.pddl.feature_domains import SAMPLES
 from tpvqa.pddl import Action, Task, load_task, processes, task_from_text, validate
-from tpvqa.planning import Crashed, Plan, TimedOut
+from tpvqa.planning import Crashed, Plan, TimedOut, fast_downward
 from tpvqa.planning.fast_downward import FastDownward
 
 pytestmark = pytest.mark.slow
@@ -122,7 +122,7 @@ def test_a_killed_worker_is_replaced_and_the_call_succeeds() -> None:
 
 
 def test_a_worker_killed_in_the_middle_of_a_call_is_retried_once(hard: Task) -> None:
-    planner = FastDownward(optimal=True, timeout=60)
+    planner = FastDownward(search="optimal", timeout=60)
     results: list[object] = []
     thread = threading.Thread(target=lambda: results.append(planner.plan(hard)))
     thread.start()
@@ -152,14 +152,14 @@ def test_a_hung_worker_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_busy_worker_does_not_count_as_hung(hard: Task, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(processes, "SILENCE", 3.0)
-    result = FastDownward(optimal=True, memory=None).plan(hard, timeout=6.0)
+    result = FastDownward(search="optimal", memory=None).plan(hard, timeout=6.0)
     assert isinstance(result, TimedOut)
     assert result.seconds >= 6.0
     assert eventually(lambda: not busy_searches())
 
 
 def test_a_crashing_search_is_retried_once(hard: Task) -> None:
-    planner = FastDownward(optimal=True, timeout=60)
+    planner = FastDownward(search="optimal", timeout=60)
     results: list[object] = []
     thread = threading.Thread(target=lambda: results.append(planner.plan(hard)))
     thread.start()
@@ -174,10 +174,10 @@ def test_a_crashing_search_is_retried_once(hard: Task) -> None:
     assert "signal 11" in result.reason
 
 
-def test_running_out_of_memory_is_said(hard: Task) -> None:
-    planner = FastDownward(timeout=60, memory=64)
-    planner._searches = {"simple": "astar(blind())", "other": "astar(blind())"}  # the hungriest
-    result = planner.plan(hard)
+def test_running_out_of_memory_is_said(hard: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+    hungriest = {"simple": "astar(blind())", "other": "astar(blind())"}
+    monkeypatch.setattr(fast_downward, "_searches", lambda *_: hungriest)
+    result = FastDownward(timeout=60, memory=64).plan(hard)
     assert isinstance(result, Crashed)
     assert "ran out of memory (its limit is 64 MiB)" in result.reason
 
@@ -191,7 +191,7 @@ def test_nothing_outlives_the_process(how: signal.Signals, tmp_path: Path) -> No
         "from tpvqa.pddl import load_task\n"
         "from tpvqa.planning.fast_downward import FastDownward\n"
         "task = load_task('domain.pddl', 'problem.pddl')\n"
-        "FastDownward(optimal=True, memory=None).plan(task)\n"
+        "FastDownward(search='optimal', memory=None).plan(task)\n"
     )
     folder = tmp_path / "empty"
     folder.mkdir()
@@ -229,26 +229,29 @@ def test_a_stopped_worker_ends_with_its_parent(tmp_path: Path) -> None:
     assert eventually(lambda: not alive(worker))
 
 
-def test_eight_threads_get_their_own_plans() -> None:
+def test_eight_threads_with_planners_of_every_kind_get_their_own_plans() -> None:
     solvable = [sample for sample in SAMPLES if sample.cost][:7]
     tasks = [task_from_text(sample.domain, sample.problem) for sample in solvable]
     tasks.append(load_task("serve_breakfast"))
-    planner = FastDownward()
-    alone = [planner.plan(task) for task in tasks]
+    specs = (None, *fast_downward.SEARCHES)
+    alone = [{spec: FastDownward(search=spec).plan(task) for spec in specs} for task in tasks]
 
-    def replan(task: Task) -> list[tuple[Action, ...]]:
+    def replan(task: Task) -> list[tuple[str | None, tuple[Action, ...]]]:
+        planners = {spec: FastDownward(search=spec) for spec in specs}
         plans = []
-        for _ in range(15):
-            plan = planner.plan(task)
+        for spec in specs * 5:
+            plan = planners[spec].plan(task)
             assert isinstance(plan, Plan)
             assert validate(task, plan.actions).valid
-            plans.append(plan.actions)
+            plans.append((spec, plan.actions))
         return plans
 
     with ThreadPoolExecutor(8) as threads:
         for first, plans in zip(alone, threads.map(replan, tasks), strict=True):
-            assert isinstance(first, Plan)
-            assert set(plans) == {first.actions}
+            for spec, actions in plans:
+                found = first[spec]
+                assert isinstance(found, Plan)
+                assert actions == found.actions
     assert len(workers()) <= 8
 
 

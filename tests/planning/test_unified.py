@@ -45,7 +45,7 @@ def robot() -> Any:
 
 def test_a_problem_becomes_a_task_that_can_be_planned() -> None:
     task = task_from_problem(robot())
-    plan = FastDownward(optimal=True).plan(task)
+    plan = FastDownward(search="optimal").plan(task)
     assert isinstance(plan, Plan)
     expected = ["move(home, shop)", "take(milk, shop)", "move(shop, home)"]
     assert [str(action) for action in plan.actions] == expected

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tpvqa.planning import PlanningResult
 
 UNSOLVABLE, TIMED_OUT, CRASHED = 3, 4, 5
+OPTIMAL = "fast-downward:optimal"
 
 _EXIT = (
     "Exit codes: 0 a plan was found, 2 bad input, 3 no plan exists, 4 timed out, "
@@ -41,7 +42,19 @@ def plan(
             "or a JSON list of atoms. Facts that no action changes may be left out."
         ),
     ] = None,
-    optimal: Annotated[bool, typer.Option("--optimal", help="A plan of least cost.")] = False,
+    planner: Annotated[
+        str | None,
+        typer.Option(
+            help="fast-downward, fast-downward:optimal, fast-downward:lama or a plug-in.",
+            show_default="fast-downward",
+        ),
+    ] = None,
+    optimal: Annotated[
+        bool,
+        typer.Option(
+            "--optimal", help="A plan of least cost; short for --planner fast-downward:optimal."
+        ),
+    ] = False,
     timeout: Annotated[
         float,
         typer.Option(
@@ -51,34 +64,45 @@ def plan(
     ] = 60.0,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Plan a task with Fast Downward and print the plan."""
+    """Plan a task and print the plan."""
     from tpvqa.errors import GroundingTimedOut, PlannerError
     from tpvqa.pddl import load_task
     from tpvqa.pddl.state_file import read_state
-    from tpvqa.planning import Crashed, TimedOut
-    from tpvqa.planning.fast_downward import FastDownward
+    from tpvqa.planning import Crashed, Planner, TimedOut
+    from tpvqa.plugins import Kind, make
 
     start = time.perf_counter()
-    planner = FastDownward(optimal=optimal)
+    chosen: Planner = make(Kind.PLANNER, _spec(planner, optimal=optimal))
     result: PlanningResult
     try:
         loaded = load_task(task, problem, timeout=timeout)
         state = None if from_state is None else read_state(from_state, loaded)
         left = max(0.0, timeout - (time.perf_counter() - start))
-        result = planner.plan(loaded, state, timeout=left)
+        result = chosen.plan(loaded, state, timeout=left)
     except GroundingTimedOut:
-        result = TimedOut(timeout, planner.name, time.perf_counter() - start)
+        result = TimedOut(timeout, chosen.name, time.perf_counter() - start)
     except PlannerError as error:
-        result = Crashed(str(error), planner.name, time.perf_counter() - start)
+        result = Crashed(str(error), chosen.name, time.perf_counter() - start)
     if isinstance(result, TimedOut):  # the limit that the user gave, not what was left of it
         result = replace(result, limit=timeout)
-    planner.close()
+    chosen.close()
     code = _exit_code(result)
     if as_json:
         print(json.dumps(_as_json(result), indent=2))
     else:
         print(_as_text(result), file=sys.stderr if code else sys.stdout)
     raise typer.Exit(code)
+
+
+def _spec(planner: str | None, *, optimal: bool) -> str:
+    """The planner that is asked for."""
+    from tpvqa.errors import TpvqaError
+
+    if not optimal:
+        return planner or "fast-downward"
+    if planner not in (None, OPTIMAL):
+        raise TpvqaError(f"--optimal is short for --planner {OPTIMAL}, not {planner}. Give one.")
+    return OPTIMAL
 
 
 def _exit_code(result: "PlanningResult") -> int:

@@ -1,13 +1,10 @@
 """PDDL files → `Task`. The text is read once, here; the worker parses and grounds it."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tpvqa.errors import GroundingTimedOut, PDDLError, PlannerError
-from tpvqa.pddl.atoms import Atom, State
-from tpvqa.pddl.ground import MutexGroup
-from tpvqa.pddl.processes import WorkerTimedOut, ask_worker
+from tpvqa.errors import PDDLError
+from tpvqa.pddl.description import described, grounded_fields
 from tpvqa.pddl.schema import (
     ActionSchema,
     AxiomSchema,
@@ -75,13 +72,8 @@ def task_from_text(
         GroundingTimedOut: It took too long.
         PlannerError: Grounding failed.
     """
-    from hashlib import blake2b
-
-    digest = blake2b(digest_size=16)
-    for text in (domain, problem):
-        digest.update(text.encode() + b"\0")
-    description = _described(
-        digest.hexdigest(), domain, problem, None, (domain_path, problem_path), timeout
+    description = described(
+        domain, problem, domain_path=domain_path, problem_path=problem_path, timeout=timeout
     )
     objects_by_type = {
         kind: tuple(things) for kind, things in description["objects_by_type"].items()
@@ -111,7 +103,7 @@ def task_from_text(
         problem_path=problem_path,
         domain_text=domain,
         problem_text=problem,
-        **_grounded(description),
+        **grounded_fields(description),
     )
     if task.axioms:
         try:
@@ -119,59 +111,6 @@ def task_from_text(
         except PDDLError as error:
             raise PDDLError(str(error), file=domain_path or "(domain)") from None
     return task
-
-
-def grounded_parts(task: Task, state: State) -> dict[str, Any]:
-    """The fields of a task that depend on its initial state, for another one."""
-    description = _described(
-        task.key,
-        task.domain_text,
-        task.problem_text,
-        state,
-        (task.domain_path, task.problem_path),
-        300.0,
-    )
-    return _grounded(description)
-
-
-def _described(
-    key: str,
-    domain: str,
-    problem: str,
-    state: State | None,
-    paths: tuple[Path | None, Path | None],
-    timeout: float | None,
-) -> dict[str, Any]:
-    initial = None if state is None else to_lists(state)
-    try:
-        reply = ask_worker(
-            {"do": "describe", "init": initial},
-            key=key,
-            domain=domain,
-            problem=problem,
-            seconds=timeout,
-        )
-    except WorkerTimedOut:
-        raise GroundingTimedOut(
-            f"grounding the task took more than {timeout:g} s; give it more time "
-            "(timeout=…), or make the problem smaller"
-        ) from None
-    if "error" in reply:
-        message, part, line = reply["error"]
-        path = paths[part == "problem"]
-        raise PDDLError(message, file=path or f"({part})", line=line)
-    if "outcome" in reply:
-        reason = f"the task cannot be grounded: {reply['outcome']['reason']}"
-        if reply["outcome"]["kind"] == "memory":
-            raise PlannerError(reason)
-        raise PDDLError(reason, file=paths[0] or "(domain)")
-    description: dict[str, Any] = reply["task"]
-    return description
-
-
-def to_lists(state: State) -> list[list[str]]:
-    """The atoms of a state as the worker takes them."""
-    return [[atom.predicate, *atom.arguments] for atom in state]
 
 
 def _text(path: Path, part: str) -> str:
@@ -190,22 +129,6 @@ def _text(path: Path, part: str) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         return data.decode("latin-1")
-
-
-def _grounded(description: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "init": frozenset(map(_atom, description["init"])),
-        "reachable_atoms": frozenset(map(_atom, description["atoms"])),
-        "reachable_actions": tuple(map(tuple, description["ground_actions"])),
-        "mutex_groups": tuple(
-            MutexGroup(frozenset(map(_atom, atoms)), exactly_one)
-            for atoms, exactly_one in description["mutex_groups"]
-        ),
-    }
-
-
-def _atom(words: Sequence[str]) -> Atom:
-    return Atom(words[0], tuple(words[1:]))
 
 
 def _parameters(pairs: list[list[str]]) -> tuple[Parameter, ...]:

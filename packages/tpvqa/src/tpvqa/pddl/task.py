@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ from tpvqa.errors import PDDLError, suggestion_or_list
 from tpvqa.pddl.atoms import Atom, State
 from tpvqa.pddl.conditions import Condition, holds
 from tpvqa.pddl.derivation import Derivation
+from tpvqa.pddl.description import described, grounded_fields, key_of
 from tpvqa.pddl.ground import Action, Effect, MutexGroup
 from tpvqa.pddl.schema import ActionSchema, AxiomSchema, ground_action
 
@@ -71,10 +71,7 @@ class Task:
     @cached_property
     def key(self) -> str:
         """Names the domain and the problem, whatever the initial state."""
-        digest = blake2b(digest_size=16)
-        for text in (self.domain_text, self.problem_text):
-            digest.update(text.encode() + b"\0")
-        return digest.hexdigest()
+        return key_of(self.domain_text, self.problem_text)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Task) and (self.key, self.init) == (other.key, other.init)
@@ -294,7 +291,12 @@ class Task:
             PDDLError: The state speaks of unknown predicates or objects.
             PlannerError: The worker could not ground it.
         """
-        from tpvqa.pddl.loading import grounded_parts
-
         self.check_state(state)
-        return replace(self, **grounded_parts(self, state))
+        description = described(
+            self.domain_text,
+            self.problem_text,
+            state=state,
+            domain_path=self.domain_path,
+            problem_path=self.problem_path,
+        )
+        return replace(self, **grounded_fields(description))

@@ -3,17 +3,27 @@
 import time
 from typing import Any
 
-from tpvqa.errors import PDDLError, PlannerError
+from tpvqa.errors import PDDLError, PlannerError, PluginError, suggestion
 from tpvqa.pddl import State, Task, literals, validate
-from tpvqa.pddl.loading import to_lists
+from tpvqa.pddl.description import to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
 from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 
-SATISFICING = "let(h,ff(),lazy_greedy([h],preferred=[h]))"
-OPTIMAL = "astar(lmcut())"
-OPTIMAL_GENERAL = "astar(hmax())"  # lmcut knows neither axioms nor conditional effects
+SEARCHES = ("optimal", "lama")
+"""What can be asked for beside the default."""
+
+_FF = "let(h,ff(),lazy_greedy([h],preferred=[h]))"
+# LAMA's first search (Richter and Westphal 2010), but that FF counts costs, too. Landmarks count
+# steps: where both counted costs, it found no plan in time for some tasks.
+_FF_AND_LANDMARKS = (
+    "let(s,eval_modify_costs(landmark_sum(lm_reasonable_orders_hps(lm_rhw()),pref=false),"
+    "cost_type=one),let(h,eval_modify_costs(ff(),cost_type=plusone),"
+    "lazy_greedy([h,s],preferred=[h,s],reopen_closed=false)))"
+)
+_LMCUT = "astar(lmcut())"
+_HMAX = "astar(hmax())"
 
 _GRACE = 1.0  # seconds that the worker gets to say itself that the time is over
 
@@ -24,27 +34,52 @@ class FastDownward:
     The first plan of a task grounds it; later ones only rewrite the initial state, wherever that
     is sound (see `tpvqa.pddl.worker.grounding`), and take a few milliseconds.
 
+    Where the problem asks for plans of small cost, costs count in every search, though only
+    "optimal" proves that none is smaller.
+
     Args:
-        optimal: Seek a plan of least cost (A* with LM-cut, or with hmax where the task has axioms
-            or conditional effects) instead of any plan (lazy greedy search with FF).
+        search: "optimal" for a plan of least cost (A* with LM-cut, or with hmax where the task has
+            axioms or conditional effects); "lama" for lazy greedy search with FF and landmarks,
+            which finds plans in some large tasks where the default finds none. By default lazy
+            greedy search with FF where all actions cost the same, else as "lama".
         timeout: Seconds for a call; None for no limit.
         memory: The limit of the search's memory in MiB; None for none.
+
+    Raises:
+        PluginError: There is no such search.
+
+    Example:
+        >>> FastDownward.from_spec("optimal").name
+        'fast-downward:optimal'
     """
 
     def __init__(
-        self, *, optimal: bool = False, timeout: float | None = 60.0, memory: int | None = 4096
+        self,
+        *,
+        search: str | None = None,
+        timeout: float | None = 60.0,
+        memory: int | None = 4096,
     ):
-        self.optimal, self.timeout, self.memory = optimal, timeout, memory
-        self._searches = (
-            {"simple": OPTIMAL, "other": OPTIMAL_GENERAL}
-            if optimal
-            else {"simple": SATISFICING, "other": SATISFICING}
-        )
+        if search is not None and search not in SEARCHES:
+            raise PluginError(
+                f"'fast-downward:{search}' is not understood{suggestion(search, SEARCHES)} Write "
+                f"fast-downward, or {' or '.join(f'fast-downward:{each}' for each in SEARCHES)}."
+            )
+        self.search, self.timeout, self.memory = search, timeout, memory
+
+    @classmethod
+    def from_spec(cls, arguments: str = "") -> "FastDownward":
+        """Make it from `fast-downward`, `fast-downward:optimal` or `fast-downward:lama`.
+
+        Raises:
+            PluginError: There is no such search.
+        """
+        return cls(search=arguments or None)
 
     @property
     def name(self) -> str:
-        """What the log calls it."""
-        return "fast-downward-optimal" if self.optimal else "fast-downward"
+        """The specification it can be made from again."""
+        return "fast-downward" if self.search is None else f"fast-downward:{self.search}"
 
     def plan(
         self, task: Task, state: State | None = None, *, timeout: float | None = None
@@ -69,7 +104,7 @@ class FastDownward:
         request = {
             "do": "plan",
             "state": to_lists(state),
-            "searches": self._searches,
+            "searches": _searches(self.search, task),
             "seconds": limit,
             "memory": self.memory,
         }
@@ -111,6 +146,15 @@ class FastDownward:
     def close(self) -> None:
         """End the idle worker processes. Planning again starts new ones."""
         WORKERS.close()
+
+
+def _searches(search: str | None, task: Task) -> dict[str, str]:
+    """Searches for tasks that have neither axioms nor conditional effects, and for others."""
+    if search == "optimal":
+        return {"simple": _LMCUT, "other": _HMAX}  # LM-cut knows neither
+    unit_cost = all(schema.cost == 1 for schema in task.schemas)
+    chosen = _FF if search is None and unit_cost else _FF_AND_LANDMARKS
+    return {"simple": chosen, "other": chosen}
 
 
 def _hint(task: Task, state: State) -> str:

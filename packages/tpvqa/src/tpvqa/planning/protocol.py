@@ -12,7 +12,7 @@ class Plan:
 
     Attributes:
         actions: The actions, in order; empty where the goal already holds.
-        cost: Their total cost.
+        cost: Their total cost, where the problem minimises it; else their number.
         planner: Which planner and search found it.
         seconds: Wall time of the call.
     """
@@ -59,7 +59,7 @@ class Planner(Protocol):
 
     @property
     def name(self) -> str:
-        """What the log calls it."""
+        """What the log calls it: the specification it can be made from again."""
 
     def plan(
         self, task: Task, state: State | None = None, *, timeout: float | None = None

@@ -51,7 +51,7 @@ def static_description(task: Any) -> dict[str, Any]:
     """Everything that does not depend on the initial state. The task must not be normalised."""
     changed = {effect.literal.predicate for action in task.actions for effect in action.effects}
     return {
-        "name": task.task_name if hasattr(task, "task_name") else task.problem_name,
+        "name": task.problem_name,
         "domain_name": task.domain_name,
         "objects": [[thing.name, thing.type_name] for thing in task.objects],
         "types": [[kind.name, kind.basetype_name] for kind in task.types],

@@ -1,0 +1,94 @@
+"""What a worker tells about a task: what its text says, and what grounding it reveals."""
+
+from collections.abc import Mapping, Sequence
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+
+from tpvqa.errors import GroundingTimedOut, PDDLError, PlannerError
+from tpvqa.pddl.atoms import Atom, State
+from tpvqa.pddl.ground import MutexGroup
+from tpvqa.pddl.processes import WorkerTimedOut, ask_worker
+
+Description = Mapping[str, Any]
+"""The worker's reply, in the form that `tpvqa.pddl.worker.describing` gives it."""
+
+
+def key_of(domain: str, problem: str) -> str:
+    """Names a domain and a problem among all that a worker may know, by their texts."""
+    digest = blake2b(digest_size=16)
+    for text in (domain, problem):
+        digest.update(text.encode() + b"\0")
+    return digest.hexdigest()
+
+
+def described(
+    domain: str,
+    problem: str,
+    *,
+    state: State | None = None,
+    domain_path: Path | None = None,
+    problem_path: Path | None = None,
+    timeout: float | None = 300.0,
+) -> Description:
+    """Let a worker read and ground a task.
+
+    Args:
+        domain: The text of the domain.
+        problem: The text of the problem.
+        state: The initial state; None for the problem's own.
+        domain_path: What errors name.
+        problem_path: The same.
+        timeout: Seconds that it may take; None for no limit.
+
+    Raises:
+        PDDLError: The text cannot be read as PDDL.
+        GroundingTimedOut: It took too long.
+        PlannerError: Grounding failed.
+    """
+    try:
+        reply = ask_worker(
+            {"do": "describe", "init": None if state is None else to_lists(state)},
+            key=key_of(domain, problem),
+            domain=domain,
+            problem=problem,
+            seconds=timeout,
+        )
+    except WorkerTimedOut:
+        raise GroundingTimedOut(
+            f"grounding the task took more than {timeout:g} s; give it more time "
+            "(timeout=…), or make the problem smaller"
+        ) from None
+    if "error" in reply:
+        message, part, line = reply["error"]
+        path = problem_path if part == "problem" else domain_path
+        raise PDDLError(message, file=path or f"({part})", line=line)
+    if "outcome" in reply:
+        reason = f"the task cannot be grounded: {reply['outcome']['reason']}"
+        if reply["outcome"]["kind"] == "memory":
+            raise PlannerError(reason)
+        raise PDDLError(reason, file=domain_path or "(domain)")
+    description: Description = reply["task"]
+    return description
+
+
+def grounded_fields(description: Description) -> dict[str, Any]:
+    """The fields of a `Task` that depend on its initial state."""
+    return {
+        "init": frozenset(map(_atom, description["init"])),
+        "reachable_atoms": frozenset(map(_atom, description["atoms"])),
+        "reachable_actions": tuple(map(tuple, description["ground_actions"])),
+        "mutex_groups": tuple(
+            MutexGroup(frozenset(map(_atom, atoms)), exactly_one)
+            for atoms, exactly_one in description["mutex_groups"]
+        ),
+    }
+
+
+def to_lists(state: State) -> list[list[str]]:
+    """The atoms of a state as the worker takes them."""
+    return [[atom.predicate, *atom.arguments] for atom in state]
+
+
+def _atom(words: Sequence[str]) -> Atom:
+    return Atom(words[0], tuple(words[1:]))
