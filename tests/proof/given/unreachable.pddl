@@ -1,0 +1,5 @@
+(define (problem unreachable)
+  (:domain toys)
+  (:objects blue_container - container toy_eggplant - toy)
+  (:init (found table) (hand_empty) (on blue_container floor) (on toy_eggplant table))
+  (:goal (on blue_container goal_area)))
