@@ -86,8 +86,10 @@ def _acting(event: Record) -> list[Entry]:
 
 def _acted(event: Record) -> list[Entry]:
     truth = event.get("truth")
-    names = ("succeeded", "undone", "added", "removed")
-    return [["acted", event["report"], None if truth is None else [*map(truth.get, names)]]]
+    if truth is None:
+        return [["acted", event["report"], None]]
+    changed = truth.get("added", []), truth.get("removed", [])
+    return [["acted", event["report"], [not truth.get("failure"), truth.get("undone"), *changed]]]
 
 
 def _ended(event: Record) -> list[Entry]:
