@@ -1,6 +1,6 @@
 """Runs published trials of the benches again: `python -m tests.proof.bench_rows`.
 
-Takes some rows of every part (`docs/data/belief/*.parquet`, and `paper_rows.json` of the paper's
+Takes some rows of every part (`experiments/rows/*.parquet`, and `paper_rows.json` of the paper's
 bench), runs exactly these trials, and compares every column but the seconds. Calibrations are
 learnt as the bench learns them, and kept in a folder; an empty one proves the learning, too.
 `--record` writes `paper_rows.json`; it holds what trials came to before something was changed.
@@ -13,7 +13,7 @@ import sys
 import time
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from hashlib import sha256
 from itertools import zip_longest
 from pathlib import Path
@@ -68,18 +68,19 @@ def run_again(
         cache: Where calibrations are kept.
     """
     from tpvqa.bench import cell as cells
-    from tpvqa.bench.belief.calibrations import by_replies, calibrations, source_of
-    from tpvqa.bench.belief.parts import believes
     from tpvqa.bench.stage import run_batch
-    from tpvqa.episodes import Limits
-    from tpvqa.trial import TrialConfig
+    from tpvqa.config import Limits, SimulationConfig, TrialConfig
+    from tpvqa_experiments.belief.calibrations import by_replies, calibrations, source_of
+    from tpvqa_experiments.belief.parts import believes
 
     which = cells.Cell(*cell)
     common = TrialConfig(
         seed=settings["seed"],
-        failure=settings["failure"],
-        disturbance=settings["disturbance"],
-        spontaneous=settings["spontaneous"],
+        simulation=SimulationConfig(
+            failure=settings["failure"],
+            disturbance=settings["disturbance"],
+            spontaneous=settings["spontaneous"],
+        ),
         limits=Limits(
             repeats=settings["limit of repeats"],
             replans=settings["limit of replans"],
@@ -90,13 +91,14 @@ def run_again(
     if learnt_from is not None and believes(which.monitor):
         source = source_of(which, settings["the embedded network is calibrated in"])
         known = calibrations(cache, [source], common, learnt_from)[source]
-        common = replace(common, calibration=by_replies(known) if which.believed else known)
+        told = by_replies(known) if which.believed else known
+        return list(run_batch(which, common, tuple(episodes), told))
     return list(run_batch(which, common, tuple(episodes)))
 
 
 def paper_part() -> Part:
     """Rows of the paper's bench with its defaults, run now."""
-    from tpvqa.bench.paper import PaperBench
+    from tpvqa_experiments.paper import PaperBench
 
     bench = PaperBench(vlms=tuple(dict.fromkeys(vlm for *_, vlm in PAPER_CELLS)))
     worlds = {(each.task, each.monitor, each.vlm): each.world for each in bench.cells()}
@@ -220,7 +222,7 @@ def _report(part: Part, results: Sequence[tuple[Row, list[str]]], seconds: float
 
 def _main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--rows", type=Path, default=Path("docs/data/belief"))
+    parser.add_argument("--rows", type=Path, default=Path("experiments/rows"))
     parser.add_argument("--count", type=int, default=20, help="rows of each part")
     parser.add_argument("--cells", type=int, default=5, help="cells that they are taken from")
     parser.add_argument("--cache", type=Path, default=Path("/tmp/proof-calibrations"))

@@ -1,0 +1,129 @@
+"""One configuration: from Python, a file or the command line, it is the same."""
+
+import inspect
+from pathlib import Path
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from tests.cli.conftest import Run
+from tpvqa import TrialConfig
+from tpvqa.cli import run as commands
+from tpvqa.cli.options import trial_config
+from tpvqa.config import Limits, MonitorConfig, SimulationConfig
+from tpvqa.config.layers import Layer, as_yaml, combined, file_layer, settings
+from tpvqa.errors import ConfigError
+
+CONFIGS = st.builds(
+    lambda task, vlm, monitor, limits, simulation, seed: TrialConfig(
+        task=task, vlm=vlm, monitor=monitor, limits=limits, simulation=simulation, seed=seed
+    ),
+    st.sampled_from(["eat_apple", "build_tower"]),
+    st.sampled_from(["oracle", "oracle:0.8:0.5"]),
+    st.sampled_from(["belief:question=0.05", "tpvqa", MonitorConfig(majority="strict")]),
+    st.builds(
+        Limits,
+        repeats=st.integers(0, 99),
+        actions=st.none() | st.integers(1, 999),
+        seconds=st.none() | st.floats(0.5, 1e6),
+    ),
+    st.builds(SimulationConfig, failure=st.floats(0, 1), spontaneous=st.floats(0, 1)),
+    st.integers(0, 2**63),
+)
+
+
+@given(CONFIGS)
+def test_what_is_printed_is_what_is_read(config: TrialConfig) -> None:
+    text = as_yaml(config, [])
+    assert TrialConfig.model_validate(yaml.safe_load(text)) == config
+    assert TrialConfig.model_validate_json(config.model_dump_json(by_alias=True)) == config
+
+
+@given(CONFIGS)
+def test_changing_nothing_changes_nothing(config: TrialConfig) -> None:
+    assert config.but() == config
+    assert config.but(seed=3).but(seed=config.seed) == config
+
+
+def test_every_setting_has_an_option_and_every_option_a_setting() -> None:
+    offered = set(inspect.signature(commands.run).parameters)
+    wanted = {
+        each.option.lstrip("-").replace("-", "_") for each in settings() if each.option[0] == "-"
+    }
+    own = {"task", "problem_file", "optimal", "out", "as_json", "config_file"}
+    assert offered == wanted | own
+    assert all(each.says for each in settings())
+    assert len({each.option for each in settings()}) == len(list(settings()))
+
+
+def test_the_librarys_defaults_are_the_commands(tpvqa: Run) -> None:
+    code, out, _ = tpvqa("config", "eat_apple", "--json")
+    assert code == 0
+    assert TrialConfig.model_validate_json(out) == TrialConfig(task="eat_apple")
+    assert TrialConfig().monitor.spec == "belief"
+
+
+def test_each_setting_says_where_it_came_from(tpvqa: Run, tmp_path: Path) -> None:
+    file = tmp_path / "trial.yaml"
+    file.write_text("task: eat_apple\nmonitor: tpvqa\nlimits:\n  actions: 40\n  repeats: 3\n")
+    code, out, err = tpvqa("config", "--config", file, "--max-repeats", 5, "--seed", 7)
+    assert code == 0, err
+    said = dict(line.strip().split(": ", 1) for line in out.splitlines() if ": " in line)
+    assert said["actions"] == f"40  # {file}:4"
+    assert said["repeats"] == "5  # --max-repeats"
+    assert said["seed"] == "7  # --seed"
+    assert said["failure"] == "0.25  # default"
+    again = tmp_path / "again.yaml"
+    again.write_text(out)
+    assert combined([file_layer(again)]) == combined(
+        [file_layer(file), Layer({("limits", "repeats"): 5, ("seed",): 7})]
+    )
+
+
+def test_a_file_is_run(tpvqa: Run, tmp_path: Path) -> None:
+    file = tmp_path / "trial.yaml"
+    file.write_text("task: build_tower\nworld: symbolic\nvlm: oracle\nmonitor: tp\nseed: 3\n")
+    code, out, err = tpvqa("run", "--config", file, "--json", "--out", "e", "--failure", 0)
+    assert code == 0, err
+    assert '"monitor": "tp"' in out
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("limits:\n  action: 4\n", r"trial\.yaml:2: limits: 'action' is not known here.*actions"),
+        ("mointor: tpvqa\n", r"trial\.yaml:1: 'mointor'.*Did you mean 'monitor'"),
+        ("simulation:\n  failure: 2\n", r"trial\.yaml:2: simulation\.failure: .*less than"),
+        ("seed: many\n", r"trial\.yaml:1: seed: "),
+        ("schema: 9\n", r"trial\.yaml:1: schema: "),
+        ("limits: [1]\n", r"trial\.yaml:1: limits: expected 'name: value' entries"),
+        ("seed: 1\nseed: 2\n", r"trial\.yaml:2: .*given twice"),
+        (": :\n", r"trial\.yaml"),
+    ],
+)
+def test_what_is_wrong_in_a_file_is_said_with_its_line(
+    text: str, says: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "trial.yaml"
+    file.write_text(text)
+    with pytest.raises(ConfigError, match=says):
+        trial_config([file_layer(file)])
+
+
+def test_paths_in_a_file_are_relative_to_it(tmp_path: Path) -> None:
+    file = tmp_path / "trial.yaml"
+    file.write_text("task:\n  domain: d.pddl\n  problem: p.pddl\n")
+    assert trial_config([file_layer(file)]).task.domain == str(tmp_path / "d.pddl")
+
+
+def test_what_cannot_be_is_refused(tpvqa: Run) -> None:
+    code, _, err = tpvqa("run", "eat_apple", "--failure", 2)
+    assert code == 2
+    assert "--failure: simulation.failure" in err
+    with pytest.raises(ValidationError):
+        TrialConfig(limits=Limits(repeats=-1))
+    with pytest.raises(ValidationError):
+        TrialConfig.model_validate({"limit": {}})

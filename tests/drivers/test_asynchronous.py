@@ -1,0 +1,190 @@
+"""A trial beside other tasks: it can be killed anywhere, and looked at while it acts."""
+
+import asyncio
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Event as Flag
+
+import pytest
+
+from tests.doubles import configured
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
+from tpvqa.episodes.log import LOG
+from tpvqa.errors import TpvqaError
+from tpvqa.events import Ended, Event, Started
+from tpvqa.events.events import Acted, Acting, Observed
+from tpvqa.pddl import Action
+from tpvqa.planning import Planner
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import Remembering
+from tpvqa.resuming import trial_of
+from tpvqa.worlds import Execution
+from tpvqa.worlds.symbolic import SymbolicWorld
+
+CONFIG = configured(
+    task="build_tower", world="symbolic", vlm="oracle:0.85:0.3", seed=11, monitor="tpvqa"
+)
+
+
+@pytest.fixture(scope="module")
+def planner() -> Iterator[Planner]:
+    planner = Remembering(FastDownward())
+    yield planner
+    planner.close()
+
+
+def story(events: list[Event]) -> list[dict[str, object]]:
+    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
+
+
+def run(trial: Trial, writer: EpisodeWriter | MemoryWriter, **more: object) -> list[Event]:
+    async def through() -> list[Event]:
+        running = trial.asynchronous(writer, **more)  # type: ignore[arg-type]
+        return [event async for event in running.events()]
+
+    return asyncio.run(through())
+
+
+def test_it_is_the_trial_that_the_live_driver_runs(planner: Planner) -> None:
+    writer = MemoryWriter()
+    with Trial(CONFIG, planner=planner) as trial:
+        trial.run(writer)
+    with Trial(CONFIG, planner=planner) as trial:
+        assert story(run(trial, MemoryWriter())) == story(writer.events)
+
+
+@pytest.mark.parametrize("monitor", ["tpvqa", "belief"])
+def test_killed_after_any_event_it_is_gone_on_with_to_the_same_end(
+    tmp_path: Path, planner: Planner, monitor: str
+) -> None:
+    config = CONFIG.but(monitor={"spec": monitor})
+    writer = EpisodeWriter(tmp_path / "whole", durable=False)
+    with Trial(config, planner=planner) as trial:
+        whole = run(trial, writer, folder=tmp_path / "whole")
+    writer.close()
+    lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
+    assert len(lines) == len(whole) > 20
+    for cut in range(1, len(lines), max(1, len(lines) // 40)):
+        folder = tmp_path / f"cut{cut}"
+        folder.mkdir()
+        (folder / LOG).write_bytes(b"".join(lines[:cut]))
+        events = read_episode(folder)
+        started = events[0]
+        assert isinstance(started, Started)
+        with trial_of(started, planner=planner) as trial:
+            writer = EpisodeWriter(folder, resume=cut, durable=False)
+            run(trial, writer, started=started, recorded=events, folder=folder)
+            writer.close()
+        assert story(read_episode(folder)) == story(whole), cut
+
+
+class Slow(SymbolicWorld):
+    """Takes its time over every action, unless it is cancelled."""
+
+    def execute(
+        self, action: Action, *, deadline: float | None = None, cancel: Flag | None = None
+    ) -> Execution:
+        assert cancel is not None
+        cancel.wait(0.05)
+        return super().execute(action, deadline=deadline, cancel=cancel)
+
+
+def slow(planner: Planner, config: TrialConfig = CONFIG) -> Trial:
+    trial = Trial(config, planner=planner)
+    assert trial.simulation is not None
+    world = Slow(trial.simulation)
+    trial.parts.world = world
+    return trial
+
+
+def test_a_look_can_be_taken_while_an_action_runs(planner: Planner, tmp_path: Path) -> None:
+    """It is in the log between the action's begin and its end, and changes nothing else."""
+    config = CONFIG.but(vlm={"spec": "oracle"})
+    folder = tmp_path / "e"
+    writer = EpisodeWriter(folder, durable=False)
+
+    async def watched() -> list[Event]:
+        running, told = trial.asynchronous(writer, folder=folder), list[Event]()
+        async for event in running.events():
+            told.append(event)
+            if isinstance(event, Acting):
+                assert (await running.look()).look == event_looks(told)
+        with pytest.raises(TpvqaError, match="No action is running"):
+            await running.look()
+        return told
+
+    def event_looks(told: list[Event]) -> int:
+        return sum(isinstance(event, Observed) for event in told)
+
+    with slow(planner, config) as trial:
+        told = asyncio.run(watched())
+    writer.close()
+    during = [n for n, event in enumerate(told) if isinstance(event, Observed) and event.during]
+    assert during
+    for n in during:
+        assert isinstance(told[n - 1], Acting)
+        assert isinstance(told[n + 1], Acted)
+    with Trial(config, planner=planner) as trial:
+        trial.run(alone := MemoryWriter())
+    said = ("decided", "acting", "believed", "plan made")
+    assert [e for e in story(told) if e["kind"] in said] == [
+        e for e in story(alone.events) if e["kind"] in said
+    ]
+    cut = during[-1] + 1  # killed while that action ran
+    lines = (folder / LOG).read_bytes().splitlines(keepends=True)
+    (folder / LOG).write_bytes(b"".join(lines[:cut]))
+    events = read_episode(folder)
+    with Trial(config, planner=planner) as trial:
+        writer = EpisodeWriter(folder, resume=cut, durable=False)
+        ended = trial.run(writer, recorded=events, folder=folder)
+        writer.close()
+    assert (ended.because, ended.completed) == ("goal", True)
+
+
+def test_whoever_stops_listening_stops_the_trial(planner: Planner) -> None:
+    writer = MemoryWriter()
+
+    async def leave() -> float:
+        running = trial.asynchronous(writer).events()
+        async for event in running:
+            if isinstance(event, Acting):
+                break
+        began = time.monotonic()
+        await running.aclose()  # type: ignore[attr-defined]
+        return time.monotonic() - began
+
+    with slow(planner) as trial:
+        waited = asyncio.run(leave())
+    ended = writer.events[-1]
+    assert isinstance(ended, Ended)
+    assert ended.because == "cancelled"
+    assert waited < 2
+
+
+def test_trials_run_beside_each_other_as_they_do_alone(planner: Planner) -> None:
+    configs = [CONFIG.but(monitor={"spec": "belief"}, episode=n) for n in range(6)]
+
+    async def one(config: TrialConfig) -> list[dict[str, object]]:
+        with Trial(config, planner=planner) as trial:
+            running = trial.asynchronous(MemoryWriter())
+            return story([event async for event in running.events()])
+
+    async def together() -> list[list[dict[str, object]]]:
+        return await asyncio.gather(*map(one, configs))
+
+    assert asyncio.run(together()) == [asyncio.run(one(config)) for config in configs]
+
+
+def test_what_breaks_reaches_whoever_listens(planner: Planner) -> None:
+    class Broken(Slow):
+        def execute(self, action: Action, **_: object) -> Execution:
+            raise OSError("no arm")
+
+    trial = Trial(CONFIG, planner=planner)
+    assert trial.simulation is not None
+    trial.parts.world = Broken(trial.simulation)
+    with trial, pytest.raises(TpvqaError, match="no arm"):
+        run(trial, MemoryWriter())

@@ -1,0 +1,147 @@
+"""A trial one request at a time; listeners; limits; plans that are not made twice."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.doubles import configured
+from tpvqa.assembly import Trial
+from tpvqa.drivers.performing import Performed
+from tpvqa.episodes import MemoryWriter
+from tpvqa.events import Ended, Event, Limits
+from tpvqa.events.events import Answered, AnswerRecord, ListenerDropped, PlanMade
+from tpvqa.monitors import Ask, Look, PlanFrom
+from tpvqa.pddl import State, Task
+from tpvqa.planning import Planner, PlanningResult
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import Remembering
+from tpvqa.trial import Act
+from tpvqa.vlm import Answer, Reply
+
+
+@pytest.fixture(scope="module")
+def planner() -> Iterator[Planner]:
+    planner = Remembering(FastDownward())
+    yield planner
+    planner.close()
+
+
+CONFIG = configured(task="build_tower", world="symbolic", vlm="oracle", monitor="tpvqa")
+
+
+def story(events: list[Event]) -> list[dict[str, object]]:
+    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
+
+
+def test_what_is_pending_is_there_to_be_seen_before_it_is_done(planner: Planner) -> None:
+    writer = MemoryWriter()
+    requests: list[str] = []
+    with Trial(CONFIG, planner=planner) as trial:
+        steps, performer = trial.stepping(writer), trial.performer(writer)
+        steps.begin()
+        while steps.pending is not None:
+            requests.append(type(steps.pending.request).__name__)
+            acting = sum(event.kind == "acting" for event in writer.events)
+            done = sum(event.kind == "acted" for event in writer.events)
+            assert acting - done == isinstance(steps.pending.request, Act)
+            steps.send(performer.perform(steps.pending))
+        assert steps.conclusion is not None
+        assert steps.conclusion.because == "goal"
+        assert steps.state.actions == requests.count("Act")
+    assert requests[:3] == [kind.__name__ for kind in (PlanFrom, Look, Ask)]
+    with Trial(CONFIG, planner=planner) as trial:
+        trial.run(alone := MemoryWriter())
+    assert story(writer.events) == story(alone.events)[:-1]  # nobody has ended it
+
+
+def test_somebody_else_can_answer(planner: Planner) -> None:
+    """No VLM at all: whoever steps through the trial says what is seen."""
+    writer = MemoryWriter()
+    with Trial(CONFIG.but(simulation={"failure": 0.0}), planner=planner) as trial:
+        steps, performer = trial.stepping(writer), trial.performer(writer)
+        steps.begin()
+        while (pending := steps.pending) is not None:
+            if not isinstance(pending.request, Ask):
+                steps.send(performer.perform(pending))
+                continue
+            said = [Reply.YES if q.expected else Reply.NO for q in pending.request.questions]
+            answers = [Answer(q, r) for q, r in zip(pending.request.questions, said, strict=True)]
+            record = Answered(answers=tuple(AnswerRecord(reply=reply) for reply in said))
+            steps.send(Performed(answers, record))
+        assert steps.conclusion is not None
+    assert (steps.conclusion.because, steps.state.repeats) == ("goal", 0)
+
+
+def test_a_listener_that_breaks_is_named_and_the_trial_goes_on(planner: Planner) -> None:
+    heard: list[Event] = []
+
+    class Display:
+        def __call__(self, event: Event) -> None:
+            if event.kind == "observed":
+                raise ZeroDivisionError("no screen")
+
+    writer = MemoryWriter()
+    with Trial(CONFIG, planner=planner) as trial:
+        ended = trial.run(writer, listeners=[Display(), heard.append])
+    assert ended.because == "goal"
+    dropped = [event for event in writer.events if isinstance(event, ListenerDropped)]
+    assert len(dropped) == 1
+    assert "Display" in dropped[0].listener
+    assert dropped[0].error == "ZeroDivisionError: no screen"
+    assert {event.number for event in heard} == {event.number for event in writer.events}
+
+
+@pytest.mark.parametrize("monitor", ["tpvqa", "belief", "tp"])
+def test_a_limit_of_time_ends_a_trial(planner: Planner, monitor: str) -> None:
+    config = CONFIG.but(
+        monitor={"spec": monitor},
+        limits=Limits(seconds=0.001, repeats=10**6, actions=10**6).model_dump(),
+        simulation={"failure": 1.0, "disturbance": 0.0},
+    )
+    with Trial(config, planner=planner) as trial:
+        ended = trial.run(MemoryWriter())
+    assert ended.because in ("limit of time", "goal" if monitor == "tp" else "limit of time")
+
+
+def test_the_limit_of_actions_grows_with_the_first_plan(planner: Planner) -> None:
+    assert Limits().actions_of(3) == 60
+    assert Limits().actions_of(20) == 120
+    assert Limits(actions=7).actions_of(20) == 7
+
+
+class Counting:
+    """A planner that counts what it is asked for."""
+
+    name = "counting"
+
+    def __init__(self, planner: Planner):
+        self._planner, self.asked = planner, list[State]()
+
+    def plan(
+        self, task: Task, state: State | None = None, *, timeout: float | None = None
+    ) -> PlanningResult:
+        self.asked.append(task.init if state is None else state)
+        return self._planner.plan(task, state, timeout=timeout)
+
+    def close(self) -> None: ...
+
+
+def test_a_plan_that_a_verdict_rests_on_is_not_made_again(planner: Planner) -> None:
+    carried = 0
+    for episode in range(12):
+        counting, writer = Counting(planner), MemoryWriter()
+        config = configured(
+            task="eat_apple",
+            world="symbolic",
+            vlm="oracle:0.8",
+            monitor="belief",
+            disturbance=0.6,
+            episode=episode,
+        )
+        with Trial(config, planner=counting) as trial:
+            ended = trial.run(writer)
+        assert isinstance(ended, Ended)
+        made = [event for event in writer.events if isinstance(event, PlanMade)]
+        assert len(counting.asked) == len(set(counting.asked))  # never twice from one state
+        carried += len(made) - len(counting.asked)
+    assert carried > 0
