@@ -4,6 +4,10 @@ Takes some rows of every part (`experiments/rows/*.parquet`, and `paper_rows.jso
 bench), runs exactly these trials, and compares every column but the seconds. Calibrations are
 learnt as the bench learns them, and kept in a folder; an empty one proves the learning, too.
 `--record` writes `paper_rows.json`; it holds what trials came to before something was changed.
+
+Where facts that exclude each other are believed (without consistency, without a model), the plan
+depends on what was planned before in the same process: the planner's worker keeps what it has
+grounded for such states. Of many rows of the ablations one in a hundred can differ for that alone.
 """
 
 import argparse
