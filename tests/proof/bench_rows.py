@@ -1,6 +1,6 @@
 """Runs published trials of the benches again: `python -m tests.proof.bench_rows`.
 
-Takes some rows of every part (`experiments/rows/*.parquet`, and `paper_rows.json` of the paper's
+Takes some rows of every part (`experiments/rows/belief/*.parquet`, and `paper_rows.json` of the paper's
 bench), runs exactly these trials, and compares every column but the seconds. Calibrations are
 learnt as the bench learns them, and kept in a folder; an empty one proves the learning, too.
 `--record` writes `paper_rows.json`; it holds what trials came to before something was changed.
@@ -226,7 +226,7 @@ def _report(part: Part, results: Sequence[tuple[Row, list[str]]], seconds: float
 
 def _main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--rows", type=Path, default=Path("experiments/rows"))
+    parser.add_argument("--rows", type=Path, default=Path("experiments/rows/belief"))
     parser.add_argument("--count", type=int, default=20, help="rows of each part")
     parser.add_argument("--cells", type=int, default=5, help="cells that they are taken from")
     parser.add_argument("--cache", type=Path, default=Path("/tmp/proof-calibrations"))
