@@ -1,6 +1,7 @@
 """The VLM behind a server, over real HTTP."""
 
 import asyncio
+import multiprocessing
 import signal
 import socket
 import subprocess
@@ -433,6 +434,44 @@ def test_it_can_be_used_again_after_closing() -> None:
             assert vlm.ask(look(number), questions("Is the plate clean?"))[0].reply is Reply.YES
             vlm.close()
             vlm.close()
+
+
+def test_a_forked_child_connects_anew() -> None:
+    with ChatServer(scripted) as server:
+        vlm = OpenAICompatibleVLM("test", base_url=server.url)
+        assert vlm.ask(look(0), questions("Is the plate clean?"))[0].reply is Reply.YES
+
+        def child() -> None:
+            assert vlm.ask(look(1), questions("Is the fridge open?"))[0].reply is Reply.NO
+            vlm.close()
+
+        process = multiprocessing.get_context("fork").Process(target=child, daemon=True)
+        process.start()
+        process.join(30)
+        assert process.exitcode == 0
+        assert vlm.ask(look(2), questions("Is the plate clean?"))[0].reply is Reply.YES
+        vlm.close()
+
+
+NEVER_CLOSE = """
+import sys
+from tests.vlm.test_openai_compatible import look, questions
+from tpvqa.vlm.openai_compatible import OpenAICompatibleVLM
+vlm = OpenAICompatibleVLM("test", base_url=sys.argv[1])
+print(vlm.ask(look(), questions("Is the plate clean?"))[0].reply)
+"""
+
+
+def test_a_process_that_never_closes_it_ends_all_the_same() -> None:
+    with ChatServer(scripted) as server:
+        done = subprocess.run(
+            [sys.executable, "-c", NEVER_CLOSE, server.url],
+            cwd=Path(__file__).parents[2],
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+    assert (done.stdout, done.stderr, done.returncode) == ("yes\n", "", 0)
 
 
 def test_it_is_made_from_a_specification_whose_model_has_colons() -> None:

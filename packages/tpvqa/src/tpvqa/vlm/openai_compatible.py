@@ -15,7 +15,6 @@ from tpvqa.errors import AnswerError, MissingExtraError, PluginError
 from tpvqa.observation import Frame, Observation
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
-from tpvqa.vlm.background_loop import BackgroundLoop
 from tpvqa.vlm.capabilities import NeedsPictures
 from tpvqa.vlm.chat_completions import (
     INSTRUCTION,
@@ -26,6 +25,7 @@ from tpvqa.vlm.chat_completions import (
     read_completion,
     refuses_form,
 )
+from tpvqa.vlm.connection import Connection
 
 if TYPE_CHECKING:
     from openai import APIStatusError, AsyncOpenAI
@@ -100,8 +100,7 @@ class OpenAICompatibleVLM(NeedsPictures):
         self._request_timeout, self._retries = request_timeout, retries
         self._instruction = instruction
         self._dialect = Dialect()
-        self._loop = BackgroundLoop()
-        self._client: AsyncOpenAI | None = None
+        self._connection: Connection | None = None
         self._looked_at: tuple[object, ...] = ()
         self._known: dict[str, _Outcome] = {}
 
@@ -142,7 +141,7 @@ class OpenAICompatibleVLM(NeedsPictures):
             self._looked_at, self._known = looked_at, {}
         asked = dict.fromkeys(question.text for question in questions)
         missing = [text for text in asked if text not in self._known]
-        outcomes = self._loop.run(self._ask_all(self._connect(), frames, missing))
+        outcomes = self._ask_all(frames, missing)
         now = self._known | dict(zip(missing, outcomes, strict=True))
         self._known = {text: outcome for text, outcome in now.items() if outcome.final}
         return [_answer(question, now[question.text]) for question in questions]
@@ -154,17 +153,15 @@ class OpenAICompatibleVLM(NeedsPictures):
             AnswerError: As `ask` does.
         """
         grey = Frame("check", "front", _grey(), "image/png")
-        self._loop.run(self._ask_all(self._connect(), (grey,), ("Is this picture grey?",)))
+        self._ask_all((grey,), ("Is this picture grey?",))
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
-        client, self._client = self._client, None
-        if client is not None and not self._loop.fresh:
-            self._loop.run(client.close())
-        self._loop.close()
+        if self._connection is not None:
+            self._connection.close()
 
-    def _connect(self) -> "AsyncOpenAI":
-        if self._client is None or self._loop.fresh:
+    def _connect(self) -> Connection:
+        if self._connection is None or not self._connection.alive:
             import openai
 
             key = os.environ.get("OPENAI_API_KEY", "").strip()
@@ -176,14 +173,19 @@ class OpenAICompatibleVLM(NeedsPictures):
             if not key.isascii():
                 raise AnswerError("OPENAI_API_KEY has characters that no key has. Set it again.")
             try:
-                self._client = openai.AsyncOpenAI(
+                client = openai.AsyncOpenAI(
                     api_key=key or "none-needed", base_url=self.base_url, max_retries=0
                 )
             except (openai.OpenAIError, ValueError) as error:
                 raise AnswerError(f"{self._where()} cannot be asked: {error}") from error
-        return self._client
+            self._connection = Connection(client)
+        return self._connection
 
-    async def _ask_all(
+    def _ask_all(self, frames: Sequence[Frame], texts: Sequence[str]) -> list[_Outcome]:
+        connection = self._connect()
+        return connection.run(self._ask_side_by_side, connection.client, frames, texts)
+
+    async def _ask_side_by_side(
         self, client: "AsyncOpenAI", frames: Sequence[Frame], texts: Sequence[str]
     ) -> list[_Outcome]:
         turn = asyncio.Semaphore(self._concurrency)
