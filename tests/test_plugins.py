@@ -237,3 +237,11 @@ def test_what_other_distributions_bring_is_named_where_it_is_missing(
     with pytest.raises(PluginError, match=r"--vlm openai:MODEL, or install .*tpvqa-household"):
         default_vlm()
     assert default_vlm(pictures=False) == "oracle"
+
+
+def test_a_plug_in_for_another_protocol_is_refused(install: Install) -> None:
+    source = "class Old:\n    tpvqa_protocol = 1\nclass New:\n    tpvqa_protocol = 2\n"
+    install("eyes", source, "old = eyes:Old", "new = eyes:New")
+    with pytest.raises(PluginError, match=r"'old' of eyes is written for protocol 1 .*protocol 2"):
+        load(Kind.VLM, "old")
+    assert load(Kind.VLM, "new").__name__ == "New"

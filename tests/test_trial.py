@@ -7,13 +7,15 @@ import pytest
 
 from tests.doubles import configured
 from tpvqa import Trial, TrialConfig
+from tpvqa.belief import Calibration
+from tpvqa.config import Limits
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import EpisodeError, TpvqaError, UnknownNameError
 from tpvqa.events import Started
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.resuming import config_of, resume
+from tpvqa.resuming import config_of, resume, trial_of
 from tpvqa.tasks import find_task
 
 
@@ -89,7 +91,26 @@ def test_a_trial_is_not_resumed_with_other_questions(half: Path) -> None:
         resume(half)
 
 
-def test_a_resumed_trial_has_the_planner_it_began_with(half: Path) -> None:
-    started = read_episode(half)[0]
+def test_a_resumed_trial_is_configured_as_it_began(tmp_path: Path, planner: Planner) -> None:
+    config = configured(
+        task="clean_dishes",
+        world="symbolic",
+        vlm="oracle:0.9",
+        monitor="belief:question=0.05",
+        planner="fast-downward:optimal",
+        failure=0.4,
+        limits=Limits(repeats=3, actions=33, seconds=500.0),
+        seed=5,
+        episode=2,
+    )
+    writer = EpisodeWriter(tmp_path)
+    with Trial(config, calibration=Calibration.default("oracle:0.9")) as trial:
+        trial.run(writer)
+    writer.close()
+    started = read_episode(tmp_path)[0]
     assert isinstance(started, Started)
-    assert config_of(started).planner == TrialConfig().planner
+    assert config_of(started) == config
+    with trial_of(started) as again:
+        assert again.parts.planner.name == "fast-downward:optimal"
+        assert again.calibration == Calibration.default("oracle:0.9")
+        assert again.started() == started.model_copy(update={"number": -1, "time": 0.0})

@@ -1,8 +1,8 @@
 """Runs published trials of the benches again: `python -m tests.proof.bench_rows`.
 
-Takes some rows of every part (`experiments/rows/belief/*.parquet`, and `paper_rows.json` of the paper's
-bench), runs exactly these trials, and compares every column but the seconds. Calibrations are
-learnt as the bench learns them, and kept in a folder; an empty one proves the learning, too.
+Takes some rows of every part (`experiments/rows/belief/*.parquet`, and `paper_rows.json` of the
+paper's bench), runs exactly these trials, and compares every column but the seconds. Calibrations
+are learnt as the bench learns them, and kept in a folder; an empty one proves the learning, too.
 `--record` writes `paper_rows.json`; it holds what trials came to before something was changed.
 
 Where facts that exclude each other are believed (without consistency, without a model), the plan

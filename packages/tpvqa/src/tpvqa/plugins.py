@@ -26,13 +26,32 @@ import sys
 from collections.abc import Callable, Collection, Mapping
 from enum import StrEnum
 from functools import lru_cache
-from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires, version
 from typing import Any, Protocol, runtime_checkable
 
 from tpvqa.distributions import remedy
 from tpvqa.errors import MissingExtraError, PluginError, TpvqaError, UnknownNameError
 
 _TRUTH = frozenset({"truth", "simulation"})
+
+
+PROTOCOL = 2
+"""Of what tpvqa expects of plug-ins and gives them. 1 was that of tpvqa 0.1."""
+
+
+@runtime_checkable
+class Versioned(Protocol):
+    """A plug-in that says which `PROTOCOL` it was written for."""
+
+    tpvqa_protocol: int
+
+
+@runtime_checkable
+class Specified(Protocol):
+    """A plug-in that is made from the arguments of a specification."""
+
+    def from_spec(self, arguments: str, **context: Any) -> Any:
+        """Make it from what follows the first colon of a specification."""
 
 
 @runtime_checkable
@@ -124,6 +143,12 @@ def load(kind: Kind, name: str) -> Callable[..., Any]:
             f"The {kind.value} {name!r} of {_package(point)} is {point.value}, which is neither "
             "a class nor a function."
         )
+    if isinstance(target, Versioned) and target.tpvqa_protocol != PROTOCOL:
+        raise PluginError(
+            f"The {kind.value} {name!r} of {_package(point)} is written for protocol "
+            f"{target.tpvqa_protocol} of plug-ins, and this is tpvqa {version('tpvqa')} with "
+            f"protocol {PROTOCOL}. Install a version of that package that fits."
+        )
     return target  # type: ignore[no-any-return]
 
 
@@ -181,7 +206,7 @@ def _construct(
     Raises:
         PluginError: It does not take these arguments, or needs what the context does not have.
     """
-    from_spec = getattr(target, "from_spec", None)
+    from_spec = target.from_spec if isinstance(target, Specified) else None
     if from_spec is None and arguments:
         raise PluginError(
             f"The {kind.value} {name!r} takes no arguments, but {arguments!r} was given. "

@@ -4,7 +4,7 @@ Kept from one trial to the next, as one small JSON file.
 """
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
@@ -22,6 +22,7 @@ class Experience(BaseModel):
     """What was learned so far.
 
     Attributes:
+        version: Of the file.
         failure: Cases for and against an action failing, prior ones included.
         disturbance: Cases for and against a failure disturbing something.
         trust: Probabilities of the factors by which the VLM's answers are worth more or less than
@@ -33,6 +34,7 @@ class Experience(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    version: Literal[1] = 1
     failure: Cases
     disturbance: Cases
     trust: (

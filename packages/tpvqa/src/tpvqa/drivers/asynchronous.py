@@ -81,6 +81,6 @@ class AsynchronousTrial:
             performed: Performed = await asyncio.to_thread(performer.perform, trial.pending)
             async with self._seeing:  # a look that began while an action ran comes before its end
                 trial.send(performed)
-        trial.settle()
+        trial.take_over()
         goal = goal_holds(performer.parts.world, performer.parts.task.goal)
         trial.end(trial.conclusion or CANCELLED, goal_holds=goal)

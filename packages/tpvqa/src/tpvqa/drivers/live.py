@@ -46,7 +46,7 @@ def run(trial: SteppingTrial, performer: Performer) -> Ended:
         if trial.replaying:  # the log is right as it is
             raise
         conclusion, interrupted = INTERRUPTED, True
-    trial.settle()
+    trial.take_over()
     goal = goal_holds(performer.parts.world, performer.parts.task.goal)
     ended = trial.end(conclusion, goal_holds=goal)
     if interrupted:

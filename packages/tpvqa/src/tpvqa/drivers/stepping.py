@@ -78,7 +78,7 @@ class SteppingTrial:
             conclusion: How the trial ended, or was ended.
             goal_holds: Whether the goal holds in truth; None where nobody knows.
         """
-        self.settle()
+        self.take_over()
         state, believes = self.state, conclusion.believes_goal
         ended = Ended(
             because=conclusion.because,
@@ -96,7 +96,7 @@ class SteppingTrial:
         assert isinstance(written, Ended)
         return written
 
-    def settle(self) -> None:
+    def take_over(self) -> None:
         """Put world and VLM where the log left them, once it has been played back."""
         if self._recording is not None and not self._recording:
             self._unwatched = not self._restore(self._recording.snapshots)
@@ -128,7 +128,7 @@ class SteppingTrial:
         if self._recording:
             self._recording.event(type(event))
         else:
-            self.settle()
+            self.take_over()
             self.journal.write(event)
         return self.state
 
@@ -149,7 +149,7 @@ class SteppingTrial:
                     raise Unwatched(self.state)
             if record:
                 return Result(record.value(pending), self.state)
-        self.settle()
+        self.take_over()
         if self._unwatched:
             self._unwatched = False
             self.journal.write(Resumed())
