@@ -4,12 +4,12 @@ python benchmarks/completion.py --episodes 100
 """
 
 import argparse
-import math
 import time
 from collections import Counter
 from collections.abc import Iterator
 
 from tpvqa.assembly import Trial
+from tpvqa.bench.statistics import wilson
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Ended
@@ -18,18 +18,6 @@ from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.plugins import Kind, make
 
 Z = 1.959964  # 97.5% quantile of the normal distribution
-
-
-def wilson(successes: int, trials: int) -> tuple[float, float]:
-    """The 95% Wilson score interval of a rate."""
-    rate, square = successes / trials, Z * Z
-    centre = (rate + square / (2 * trials)) / (1 + square / trials)
-    half = (
-        Z
-        / (1 + square / trials)
-        * math.sqrt(rate * (1 - rate) / trials + square / (4 * trials * trials))
-    )
-    return centre - half, centre + half
 
 
 def trials(
@@ -100,7 +88,8 @@ def row(task: str, monitor: str, vlm: str, ended: list[Ended], seconds: float) -
     """One line of the table."""
     count = len(ended)
     completed = sum(bool(each.completed) for each in ended)
-    low, high = wilson(completed, count)
+    found = wilson(completed, count)
+    low, high = found.low, found.high
     means = [
         sum(getattr(each, name) for each in ended) / count
         for name in ("actions", "questions", "repeats", "replans")

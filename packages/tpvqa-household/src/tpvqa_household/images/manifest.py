@@ -17,10 +17,10 @@ from tpvqa_household.images.visible import VisibleState, describe, visible_state
 
 Meshes = Choice["known", "held_out"]
 Renderer = Choice["cycles", "mujoco"]
-Outcome = Choice["success", "failure"]
+ActionResult = Choice["success", "failure"]
 OriginKind = Choice["photo", "rendered", "variation", "generated"]
 ORIGINS: tuple[OriginKind, ...] = ("photo", "rendered", "variation", "generated")
-OUTCOMES: tuple[Outcome, ...] = ("success", "failure")
+OUTCOMES: tuple[ActionResult, ...] = ("success", "failure")
 
 
 class _Model(BaseModel):
@@ -38,7 +38,7 @@ class Shows(_Model):
 
     task: str
     action: str
-    outcome: Outcome
+    outcome: ActionResult
 
 
 class Origin(_Model):

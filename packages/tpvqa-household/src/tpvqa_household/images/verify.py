@@ -12,7 +12,7 @@ from tpvqa.pddl import Atom, State
 from tpvqa.worlds.pictures import MANIFEST, digest
 from tpvqa_household.images.manifest import (
     OUTCOMES,
-    Outcome,
+    ActionResult,
     Picture,
     PictureSet,
     Shows,
@@ -42,7 +42,7 @@ class Report:
     gaps: list[str] = field(default_factory=list)
     pictures: int = 0
     states: dict[str, int] = field(default_factory=dict)
-    observations: dict[tuple[str, str, Outcome], int] = field(default_factory=dict)
+    observations: dict[tuple[str, str, ActionResult], int] = field(default_factory=dict)
     renderers: Counter[str] = field(default_factory=Counter)
     origins: Counter[str] = field(default_factory=Counter)
     meshes: Counter[str] = field(default_factory=Counter)
@@ -51,7 +51,7 @@ class Report:
 
 def observations(visible: VisibleState, tasks: Sequence[Reachable]) -> tuple[Shows, ...]:
     """Which actions of the tasks' plans a visible state is an observation of."""
-    found: set[tuple[str, str, Outcome]] = set()
+    found: set[tuple[str, str, ActionResult]] = set()
     for task in tasks:
         for kind in dict.fromkeys(task.nominal):
             if visible in task.after_success(kind):

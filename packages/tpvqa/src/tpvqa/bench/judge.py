@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from tpvqa.bench.truth import subject_of, yes_is_right
+from tpvqa.bench.right_answers import subject_of, yes_is_right
 from tpvqa.events import Decision, Event, TrialState
 from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided
 from tpvqa.pddl import Action

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.cell import Cell
+from tpvqa.bench.right_answers import subject_of, yes_is_right
 from tpvqa.bench.stage import stage, true_simulation
-from tpvqa.bench.truth import subject_of, yes_is_right
 from tpvqa.config import TrialConfig
 from tpvqa.events import Event, TrialState
 from tpvqa.events.events import Answered, Asked, Observed, QuestionRecord

@@ -10,7 +10,7 @@ from tpvqa.errors import TpvqaError
 from tpvqa.events import Event
 from tpvqa.observation import Observation
 from tpvqa.trial import Act
-from tpvqa.worlds.truth import goal_holds
+from tpvqa.worlds.goal import goal_holds
 
 
 class AsynchronousTrial:

@@ -4,7 +4,7 @@ from tpvqa.drivers.performing import Performer
 from tpvqa.drivers.stepping import SteppingTrial
 from tpvqa.events import Ended
 from tpvqa.trial import Conclusion
-from tpvqa.worlds.truth import goal_holds
+from tpvqa.worlds.goal import goal_holds
 
 CANCELLED = Conclusion("cancelled")
 INTERRUPTED = Conclusion("cancelled", "interrupted by the user")

@@ -34,7 +34,7 @@ _LONGEST_PAUSE = 8.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Outcome:
+class _TimedReading:
     reading: Reading
     seconds: float
     unreachable: bool = False
@@ -102,7 +102,7 @@ class OpenAICompatibleVLM(NeedsPictures):
         self._dialect = Dialect()
         self._connection: Connection | None = None
         self._looked_at: tuple[object, ...] = ()
-        self._known: dict[str, _Outcome] = {}
+        self._known: dict[str, _TimedReading] = {}
 
     @classmethod
     def from_spec(cls, arguments: str, *, base_url: str | None = None) -> "OpenAICompatibleVLM":
@@ -181,17 +181,17 @@ class OpenAICompatibleVLM(NeedsPictures):
             self._connection = Connection(client)
         return self._connection
 
-    def _ask_all(self, frames: Sequence[Frame], texts: Sequence[str]) -> list[_Outcome]:
+    def _ask_all(self, frames: Sequence[Frame], texts: Sequence[str]) -> list[_TimedReading]:
         connection = self._connect()
         return connection.run(self._ask_side_by_side, connection.client, frames, texts)
 
     async def _ask_side_by_side(
         self, client: "AsyncOpenAI", frames: Sequence[Frame], texts: Sequence[str]
-    ) -> list[_Outcome]:
+    ) -> list[_TimedReading]:
         turn = asyncio.Semaphore(self._concurrency)
         end = asyncio.get_running_loop().time() + self._deadline
 
-        async def one(text: str) -> _Outcome:
+        async def one(text: str) -> _TimedReading:
             started = time.monotonic()
             failures: list[_Again] = []
             try:
@@ -203,7 +203,7 @@ class OpenAICompatibleVLM(NeedsPictures):
                 if failures:
                     why += f"; before that {failures[-1].why}"
                 late = Reading(Reply.UNKNOWN, text=why)
-                return _Outcome(late, time.monotonic() - started, final=False)
+                return _TimedReading(late, time.monotonic() - started, final=False)
 
         try:
             async with asyncio.TaskGroup() as asking:
@@ -228,7 +228,7 @@ class OpenAICompatibleVLM(NeedsPictures):
         text: str,
         failures: list[_Again],
         end: float,
-    ) -> _Outcome:
+    ) -> _TimedReading:
         """Ask one question, again after failures that may pass.
 
         Args:
@@ -242,7 +242,7 @@ class OpenAICompatibleVLM(NeedsPictures):
         while True:
             try:
                 reading = await self._converse(client, frames, text)
-                return _Outcome(reading, time.monotonic() - started)
+                return _TimedReading(reading, time.monotonic() - started)
             except _Again as again:
                 failures.append(again)
             last, times = failures[-1], len(failures)
@@ -256,7 +256,7 @@ class OpenAICompatibleVLM(NeedsPictures):
                     f"; asking again in {round(pause, 1):g} s would be later than the "
                     f"{self._deadline:g} s that all questions have"
                 )
-            return _Outcome(
+            return _TimedReading(
                 Reading(Reply.UNKNOWN, text=why),
                 time.monotonic() - started,
                 unreachable=last.unreachable,
@@ -358,7 +358,7 @@ def _pause(again: _Again, attempt: int, text: str) -> float:
     return float(min(_LONGEST_PAUSE, 0.5 * 2**attempt * spread))
 
 
-def _answer(question: Question, outcome: _Outcome) -> Answer:
+def _answer(question: Question, outcome: _TimedReading) -> Answer:
     reading = outcome.reading
     return Answer(
         question=question,

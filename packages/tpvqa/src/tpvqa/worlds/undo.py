@@ -20,7 +20,7 @@ def bindings(
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class Reversal:
     """One way in which a fact is undone."""
 
     say: str
@@ -63,7 +63,7 @@ class UndoRule:
     """A form of fact that disturbances undo, with its outcomes."""
 
     fact: Pattern
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[Reversal, ...]
 
     def results(
         self, atom: Atom, state: State, history: Sequence[Atom], task: Task

@@ -8,7 +8,7 @@ from tpvqa.errors import PDDLError, WorldFileError, suggestion, suggestion_or_li
 from tpvqa.pddl import Action, State, Task
 from tpvqa.pddl.pattern import Pattern, check_together
 from tpvqa.worlds.stated import stated_pattern
-from tpvqa.worlds.undo import Outcome, UndoRule
+from tpvqa.worlds.undo import Reversal, UndoRule
 from tpvqa.yaml_places import Place, read_yaml
 
 
@@ -102,10 +102,10 @@ def _undo_rule(entry: Place, task: Task) -> UndoRule:
     if "fact" not in parts or not outcomes:
         raise entry.wrong("an entry needs 'fact', e.g. fact: (opened ?c), and a list of 'outcomes'")
     fact = stated_pattern(parts["fact"], task)
-    return UndoRule(fact, tuple(_outcome(outcome, fact, task) for outcome in outcomes))
+    return UndoRule(fact, tuple(_reversal(outcome, fact, task) for outcome in outcomes))
 
 
-def _outcome(entry: Place, fact: Pattern, task: Task) -> Outcome:
+def _reversal(entry: Place, fact: Pattern, task: Task) -> Reversal:
     parts = entry.sections("say", "last", "when", "unless", "add", "delete")
 
     def patterns(name: str, *before: Pattern, bound: bool = False) -> tuple[Pattern, ...]:
@@ -130,7 +130,7 @@ def _outcome(entry: Place, fact: Pattern, task: Task) -> Outcome:
     if len(last) > 1:
         raise parts["last"].wrong("expected one fact")
     when = patterns("when", fact, *last)
-    return Outcome(
+    return Reversal(
         say=parts["say"].text() if "say" in parts else "it is undone",
         last=last[0] if last else None,
         when=when,
