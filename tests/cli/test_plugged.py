@@ -71,6 +71,8 @@ def test_a_broken_package_leaves_the_other_commands(
     code, _, err = tpvqa("arm")
     assert code == 2
     assert says in err
+    code, _, err = tpvqa("wave", "left")
+    assert (code, says in err, "No such command 'wave'" in err) == (2, True, True)
     assert tpvqa("tasks")[2] == ""
     assert "cost 4" in tpvqa("plan", "clean_dishes")[1]
 

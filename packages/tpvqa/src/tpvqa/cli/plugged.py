@@ -37,18 +37,23 @@ class PluggedGroup(TyperGroup):
         if cmd_name not in self.commands:
             self._plug()
         found = super().get_command(ctx, cmd_name)
-        if found is None and cmd_name in self._broken:
-            raise self._broken[cmd_name]
-        if found is None and (what := remedy("command", cmd_name)):
-            raise UnknownNameError("command", cmd_name, self.commands, remedy=what)
+        if found is None:
+            if cmd_name in self._broken:
+                raise self._broken[cmd_name]
+            if what := remedy("command", cmd_name):
+                raise UnknownNameError("command", cmd_name, self.commands, remedy=what)
+            self._say_what_is_broken()
         return found
 
     def list_commands(self, ctx: Any) -> list[str]:
         """The names of all commands; packages that are broken are named on standard error."""
         self._plug()
+        self._say_what_is_broken()
+        return super().list_commands(ctx)
+
+    def _say_what_is_broken(self) -> None:
         for error in self._broken.values():
             print(f"note: some commands are missing. {error}", file=sys.stderr)
-        return super().list_commands(ctx)
 
     def _plug(self) -> None:
         if self._plugged:
