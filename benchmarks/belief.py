@@ -35,7 +35,7 @@ from tpvqa.monitors.protocol import Check
 from tpvqa.pddl import State, Task, load_task
 from tpvqa.planning import Plan
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.planning.regression import needed
+from tpvqa.planning.regression import regress
 from tpvqa.planning.remembering import Remembering
 from tpvqa.tasks import find_task
 
@@ -137,7 +137,7 @@ def plan_times(task: Task, count: int) -> tuple[list[float], list[float]]:
     states = list(reachable(task, count, seed=1))
     for state, plan in plans(task, max(count // 5, 3)):
         began = time.perf_counter()
-        annotated = AnnotatedPlan(task, plan.actions, needed(task, plan.actions, state))
+        annotated = AnnotatedPlan(task, plan.actions, regress(task, plan.actions, state))
         annotating.append(time.perf_counter() - began)
         for other in states:
             began = time.perf_counter()

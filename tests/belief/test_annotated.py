@@ -11,7 +11,7 @@ from tpvqa.pddl import Task
 from tpvqa.pddl.validation import validate
 from tpvqa.planning import Plan, Planner
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.planning.regression import needed
+from tpvqa.planning.regression import regress
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def planner() -> Iterator[Planner]:
 def annotated(task: Task, planner: Planner) -> AnnotatedPlan:
     plan = planner.plan(task)
     assert isinstance(plan, Plan)
-    return AnnotatedPlan(task, plan.actions, needed(task, plan.actions))
+    return AnnotatedPlan(task, plan.actions, regress(task, plan.actions))
 
 
 def test_from_its_place_the_plan_reaches_the_goal_from_any_state(

@@ -13,7 +13,7 @@ from tpvqa.errors import PlannerError
 from tpvqa.pddl import Action, Atom, Literal, State, Task, load_task, task_from_text, validate
 from tpvqa.planning import Plan
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.planning.regression import needed
+from tpvqa.planning.regression import regress
 from tpvqa.tasks import shipped_tasks
 
 SOLVABLE = [sample for sample in SAMPLES if sample.cost is not None]
@@ -40,7 +40,7 @@ def forced(state: State, literals: frozenset[Literal]) -> State:
 @given(st.sampled_from(NAMES), st.integers(0, 10_000))
 def test_where_the_needs_hold_the_rest_of_the_plan_works(name: str, seed: int) -> None:
     task, actions = planned(name)
-    needs = needed(task, actions)
+    needs = regress(task, actions)
     random = Random(seed)
     step = random.randrange(len(needs))
     start = random.choice([walk(task, random, 6), scrambled(task, random), arbitrary(task, random)])
@@ -53,14 +53,14 @@ def test_where_the_needs_hold_the_rest_of_the_plan_works(name: str, seed: int) -
 def test_the_needs_hold_along_the_plan_itself(name: str) -> None:
     task, actions = planned(name)
     replay = validate(task, actions)
-    for state, needs in zip(replay.states, needed(task, actions), strict=True):
+    for state, needs in zip(replay.states, regress(task, actions), strict=True):
         assert all(literal.holds(state) for literal in needs)
         assert all(literal.atom.predicate in task.fluents for literal in needs)
 
 
 def test_the_papers_plan() -> None:
     task, actions = planned("clean_dishes")
-    assert [sorted(map(str, needs)) for needs in needed(task, actions)][1:] == [
+    assert [sorted(map(str, needs)) for needs in regress(task, actions)][1:] == [
         ["free(left)", "near(plate)", "not on(sink, fridge)", "on(plate, table)"],
         ["in_hand(plate, left)", "near(plate)", "not on(sink, fridge)"],
         ["in_hand(plate, left)", "near(sink)"],
@@ -71,7 +71,7 @@ def test_the_papers_plan() -> None:
 def test_from_another_state() -> None:
     task, actions = planned("clean_dishes")
     state = task.init - {Atom.parse("near tv")} | {Atom.parse("near plate")}
-    needs = needed(task, actions[1:], state)
+    needs = regress(task, actions[1:], state)
     assert len(needs) == len(actions)
     assert needs[-1] == {Literal(Atom("clean", ("plate",)))}
 
@@ -79,4 +79,4 @@ def test_from_another_state() -> None:
 def test_only_valid_plans_can_be_regressed() -> None:
     task, actions = planned("clean_dishes")
     with pytest.raises(PlannerError, match=r"only a valid plan.*step 1, pick_up\(plate"):
-        needed(task, actions[1:])
+        regress(task, actions[1:])

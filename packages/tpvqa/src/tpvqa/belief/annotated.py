@@ -19,7 +19,7 @@ class AnnotatedPlan:
         task: The task.
         actions: The actions of the plan.
         needs: One set of literals per step and one for the goal, see
-            `planning.regression.needed`.
+            `planning.regression.regress`.
     """
 
     def __init__(self, task: Task, actions: Sequence[Action], needs: Sequence[Needs]):

@@ -26,7 +26,7 @@ from tpvqa.monitors.verdict import Verdict
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan, Unsolvable
-from tpvqa.planning.regression import needed
+from tpvqa.planning.regression import regress
 from tpvqa.questions import FactQuestion, FactWay, FactWords, QuestionBook, Way
 from tpvqa.vlm import Answer, Reply
 
@@ -170,7 +170,7 @@ class BeliefMonitor(Learning):
 
     def _annotate(self, plan: Plan, state: State) -> None:
         try:
-            needs = needed(self.task, plan.actions, state)
+            needs = regress(self.task, plan.actions, state)
         except PlannerError:
             self._chooser.give_up_on(state)
             return

@@ -10,8 +10,8 @@ from tpvqa.pddl.schema import FALSE, TRUE, AxiomSchema, Objects, bindings, groun
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
-    """A derived atom and a condition under which it holds."""
+class GroundAxiom:
+    """A derived atom (its head) and a condition under which it holds."""
 
     head: Atom
     condition: Condition
@@ -58,10 +58,12 @@ class Derivation:
             for head, conditions in rules.items()
         }
         self._rules = rules
-        self._strata: list[list[Rule]] = []
+        self._strata: list[list[GroundAxiom]] = []
         for component in _components(needs):
             members = set(component)
-            stratum = [Rule(head, condition) for head in component for condition in rules[head]]
+            stratum = [
+                GroundAxiom(head, condition) for head in component for condition in rules[head]
+            ]
             for rule in stratum:
                 for literal in literals(rule.condition):
                     if literal.atom in members and not literal.positive:

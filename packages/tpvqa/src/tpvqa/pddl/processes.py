@@ -30,7 +30,7 @@ class WorkerTimedOut(Exception):  # noqa: N818
     """The worker was still at work when the caller's time was over."""
 
 
-class Worker:
+class WorkerProcess:
     """One worker process and the pipes to it. Used by one thread at a time."""
 
     def __init__(self) -> None:
@@ -187,7 +187,7 @@ def _environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(dict.fromkeys(folders))}
 
 
-class Workers:
+class WorkerPool:
     """Lends workers. Every caller has one of its own, so a long search holds up no other.
 
     Args:
@@ -199,11 +199,11 @@ class Workers:
         self._keep, self._limit = keep, limit
         self._free = threading.Semaphore(limit)
         self._lock = threading.Lock()
-        self._idle: list[Worker] = []
-        self._lent: set[Worker] = set()
+        self._idle: list[WorkerProcess] = []
+        self._lent: set[WorkerProcess] = set()
 
     @contextlib.contextmanager
-    def lend(self, key: str, *, end: float | None) -> Iterator[Worker]:
+    def lend(self, key: str, *, end: float | None) -> Iterator[WorkerProcess]:
         """A worker for one call, preferably one that already knows the task.
 
         A worker whose call ended with an exception is killed, as what it is doing is not known.
@@ -232,7 +232,7 @@ class Workers:
         finally:
             self._free.release()
 
-    def _take(self, key: str) -> Worker:
+    def _take(self, key: str) -> WorkerProcess:
         with self._lock:
             knowing = [worker for worker in self._idle if key in worker.known]
             worker = next(reversed(knowing or self._idle), None)
@@ -241,12 +241,12 @@ class Workers:
         if worker is None or not worker.alive:
             if worker is not None:
                 worker.kill()
-            worker = Worker()
+            worker = WorkerProcess()
         with self._lock:
             self._lent.add(worker)
         return worker
 
-    def _give_back(self, worker: Worker) -> None:
+    def _give_back(self, worker: WorkerProcess) -> None:
         with self._lock:
             self._lent.discard(worker)
             if len(self._idle) < self._keep:
@@ -277,7 +277,7 @@ class Workers:
         self._idle, self._lent = [], set()
 
 
-WORKERS = Workers()
+WORKERS = WorkerPool()
 """The workers of this process, shared by reading and planning: who reads a task grounds it too."""
 
 atexit.register(WORKERS.end)

@@ -9,7 +9,7 @@ from tpvqa.pddl.validation import validate
 Needs = frozenset[Literal]
 
 
-def needed(task: Task, actions: Sequence[Action], state: State | None = None) -> tuple[Needs, ...]:
+def regress(task: Task, actions: Sequence[Action], state: State | None = None) -> tuple[Needs, ...]:
     """What has to hold before each step so that the rest of the plan reaches the goal.
 
     Where a condition leaves a choice (a disjunction), the part that holds on the way from `state`

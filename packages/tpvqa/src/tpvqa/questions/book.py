@@ -36,7 +36,7 @@ class QuestionBook:
         self._say, self._done = dict(wordings.say), dict(wordings.done)
         self._texts: dict[Atom, tuple[str, tuple[Atom, ...]]] = {}
         self._why_not: dict[tuple[Literal, tuple[str, tuple[str, ...]] | None], str | None] = {}
-        self._fall_back()
+        self._add_fallbacks()
 
     @staticmethod
     def load(path: str | Path | None, task: Task) -> "QuestionBook":
@@ -87,10 +87,10 @@ class QuestionBook:
         """Why a literal is never asked about; None where it is asked."""
         key = (literal, None if action is None else (action.name, action.arguments))
         if key not in self._why_not:
-            self._why_not[key] = self._find_why_not(literal, action)
+            self._why_not[key] = self._never_asked_because(literal, action)
         return self._why_not[key]
 
-    def _find_why_not(self, literal: Literal, action: Action | None) -> str | None:
+    def _never_asked_because(self, literal: Literal, action: Action | None) -> str | None:
         name = None if action is None else action.name
         arguments = {} if action is None else self._values(action)
         for pattern in self._wordings.never_asked:
@@ -105,7 +105,7 @@ class QuestionBook:
         rests on nothing askable, as the precondition then does not hang on the others.
         """
         resting = self._rests_on(action.precondition, self.task.extend(state), action)
-        return self._ask(resting, Way.PRECONDITION, action)
+        return self._questions_about(resting, Way.PRECONDITION, action)
 
     def effects(self, action: Action, state: State) -> tuple[FactQuestion, ...]:
         """The questions about all effects of an action, negative ones too.
@@ -119,7 +119,9 @@ class QuestionBook:
         added = {literal.atom for literal in happening if literal.positive}
         # What is both deleted and added holds afterwards.
         left = (each for each in happening if each.positive or each.atom not in added)
-        return self._ask((each for each in left if self.asked(each, action)), Way.EFFECT, action)
+        return self._questions_about(
+            (each for each in left if self.asked(each, action)), Way.EFFECT, action
+        )
 
     def unasked(self, action: Action, state: State) -> dict[Literal, str]:
         """The literals of an action that no camera shows, each with the reason."""
@@ -132,15 +134,15 @@ class QuestionBook:
 
     def possible(self, action: Action) -> ActionQuestion:
         """ "Is it possible to place the bread on the plate here?" """
-        return self._about(action, Way.POSSIBLE)
+        return self._action_question(action, Way.POSSIBLE)
 
     def successful(self, action: Action) -> ActionQuestion:
         """ "Was place the bread on the plate successful?", as the paper words it."""
-        return self._about(action, Way.SUCCESSFUL)
+        return self._action_question(action, Way.SUCCESSFUL)
 
     def did(self, action: Action) -> ActionQuestion:
         """ "Did the robot successfully place the bread on the plate?" """
-        return self._about(action, Way.DID)
+        return self._action_question(action, Way.DID)
 
     def say(self, action: Action) -> str:
         """The action as a command: "place the bread on the plate"."""
@@ -183,7 +185,7 @@ class QuestionBook:
             lambda place: self._attribute(values[place.parameter], place.attribute)
         )
 
-    def _about(self, action: Action, way: ActionWay) -> ActionQuestion:
+    def _action_question(self, action: Action, way: ActionWay) -> ActionQuestion:
         said = self.say(action)
         text = self._wordings.ways[way].render(
             lambda place: said if place.attribute == "name" else ""
@@ -203,7 +205,7 @@ class QuestionBook:
             resting = [self._rests_on(part, state, action) for part in parts]
         return [literal for part in resting for literal in part]
 
-    def _ask(
+    def _questions_about(
         self, literals: Iterable[Literal], way: FactWay, action: Action
     ) -> tuple[FactQuestion, ...]:
         """One question for each wording, none where the same words would expect both answers."""
@@ -222,7 +224,7 @@ class QuestionBook:
 
     # Fallbacks
 
-    def _fall_back(self) -> None:
+    def _add_fallbacks(self) -> None:
         never = {
             pattern.fact.predicate for pattern in self._wordings.never_asked if pattern.everywhere
         }

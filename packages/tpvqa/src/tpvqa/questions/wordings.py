@@ -105,7 +105,7 @@ def read_wordings(path: Path, task: Task) -> Wordings:
             for name, value in _named(sections.get("types"), task.types, "type")
         },
         of_objects=of_objects,
-        never_asked=[_never(item, task) for item in _items(sections.get("never_asked"))],
+        never_asked=[_never_asked(item, task) for item in _items(sections.get("never_asked"))],
         ways=_ways(sections.get("ways")),
         notices=notices,
     )
@@ -188,7 +188,7 @@ def _ways(place: Place | None) -> dict[ActionWay, Template]:
     return ways
 
 
-def _never(place: Place, task: Task) -> NeverAsked:
+def _never_asked(place: Place, task: Task) -> NeverAsked:
     parts = place.sections("fact", "in", "because")
     if "fact" not in parts:
         raise place.wrong("an entry needs 'fact', e.g. fact: \"(free ?h)\"")

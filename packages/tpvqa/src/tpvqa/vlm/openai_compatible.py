@@ -41,7 +41,7 @@ class _TimedReading:
     final: bool = True  # a failure may pass; a reading stays
 
 
-class _Again(Exception):  # noqa: N818 — a request to try again, not an error
+class _Retry(Exception):  # noqa: N818 — a request to try again, not an error
     def __init__(self, why: str, *, pause: float | None = None, unreachable: bool = False):
         super().__init__(why)
         self.why, self.pause, self.unreachable = why, pause, unreachable
@@ -193,11 +193,11 @@ class OpenAICompatibleVLM(NeedsPictures):
 
         async def one(text: str) -> _TimedReading:
             started = time.monotonic()
-            failures: list[_Again] = []
+            failures: list[_Retry] = []
             try:
                 async with asyncio.timeout_at(end), turn:
                     started = time.monotonic()
-                    return await self._insist(client, frames, text, failures, end)
+                    return await self._ask_with_retries(client, frames, text, failures, end)
             except TimeoutError:
                 why = f"late: nothing within {self._deadline:g} s"
                 if failures:
@@ -221,12 +221,12 @@ class OpenAICompatibleVLM(NeedsPictures):
             )
         return outcomes
 
-    async def _insist(
+    async def _ask_with_retries(
         self,
         client: "AsyncOpenAI",
         frames: Sequence[Frame],
         text: str,
-        failures: list[_Again],
+        failures: list[_Retry],
         end: float,
     ) -> _TimedReading:
         """Ask one question, again after failures that may pass.
@@ -241,10 +241,10 @@ class OpenAICompatibleVLM(NeedsPictures):
         started = time.monotonic()
         while True:
             try:
-                reading = await self._converse(client, frames, text)
+                reading = await self._ask_as_understood(client, frames, text)
                 return _TimedReading(reading, time.monotonic() - started)
-            except _Again as again:
-                failures.append(again)
+            except _Retry as retry:
+                failures.append(retry)
             last, times = failures[-1], len(failures)
             why = last.why if times == 1 else f"{last.why}, {times} times"
             if times <= self._retries:
@@ -263,7 +263,9 @@ class OpenAICompatibleVLM(NeedsPictures):
                 final=False,
             )
 
-    async def _converse(self, client: "AsyncOpenAI", frames: Sequence[Frame], text: str) -> Reading:
+    async def _ask_as_understood(
+        self, client: "AsyncOpenAI", frames: Sequence[Frame], text: str
+    ) -> Reading:
         """Ask one question, finding out what the server understands."""
         dialect = self._dialect
         while True:
@@ -301,10 +303,10 @@ class OpenAICompatibleVLM(NeedsPictures):
                     **parameters,
                 )
         except (TimeoutError, openai.APITimeoutError):
-            raise _Again(f"late: nothing within {self._request_timeout:g} s") from None
+            raise _Retry(f"late: nothing within {self._request_timeout:g} s") from None
         except openai.APIConnectionError as error:
             why = str(error.__cause__ or error) or type(error.__cause__).__name__
-            raise _Again(f"no connection: {why}", unreachable=True) from None
+            raise _Retry(f"no connection: {why}", unreachable=True) from None
         except openai.APIStatusError as error:
             return self._refused(error)
         if "html" in response.headers.get("content-type", ""):
@@ -335,7 +337,7 @@ class OpenAICompatibleVLM(NeedsPictures):
         if status in (408, 409, 429) or status >= 500:
             pause = error.response.headers.get("retry-after", "")
             wanted = float(pause) if pause.replace(".", "", 1).isdecimal() else None
-            raise _Again(f"HTTP status {status}: {said}", pause=wanted)
+            raise _Retry(f"HTTP status {status}: {said}", pause=wanted)
         raise AnswerError(f"{self._where()} refuses to be asked (HTTP status {status}): {said}")
 
     def _where(self) -> str:
@@ -350,10 +352,10 @@ def _grey() -> bytes:
     return file.getvalue()
 
 
-def _pause(again: _Again, attempt: int, text: str) -> float:
+def _pause(retry: _Retry, attempt: int, text: str) -> float:
     """Seconds until the next attempt: what the server asked for, or twice as long each time."""
-    if again.pause is not None:
-        return again.pause
+    if retry.pause is not None:
+        return retry.pause
     spread = 0.75 + 0.5 * chance(0, 0, "pause", text, attempt).random()
     return float(min(_LONGEST_PAUSE, 0.5 * 2**attempt * spread))
 

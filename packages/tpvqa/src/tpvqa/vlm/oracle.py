@@ -14,7 +14,7 @@ from tpvqa.vlm.protocol import TruthSource
 
 
 @dataclass(frozen=True, slots=True)
-class _Given:
+class _LastAnswer:
     """The last answer to a question: at which look, what was true then, what was said."""
 
     look: int
@@ -61,7 +61,7 @@ class Oracle(NoiseModel):
                 raise PluginError(f"The oracle's {what} is {value}; it must lie between 0 and 1.")
         self.accuracy, self.rho = float(accuracy), float(rho)
         self._truth, self._seed, self._episode = truth, seed, episode
-        self._last: dict[str, _Given] = {}
+        self._last: dict[str, _LastAnswer] = {}
 
     @classmethod
     def from_spec(
@@ -113,7 +113,7 @@ class Oracle(NoiseModel):
         """
         try:
             self._last = {
-                str(entry["text"]): _Given(
+                str(entry["text"]): _LastAnswer(
                     int(entry["look"]), bool(entry["truth"]), bool(entry["yes"])
                 )
                 for entry in snapshot["answers"]
@@ -159,5 +159,5 @@ class Oracle(NoiseModel):
         if self.rho and last is not None and last.truth == truth:
             again = chance(self._seed, self._episode, "answer again", *key).random()
             yes = last.yes if again < self.rho else yes
-        self._last[text] = _Given(look, truth, yes)
+        self._last[text] = _LastAnswer(look, truth, yes)
         return yes

@@ -17,7 +17,7 @@ from typing import Any
 
 from tpvqa.pddl.worker.known_task import KnownTask
 from tpvqa.pddl.worker.reading import ReadingError
-from tpvqa.pddl.worker.search import SearchEnd, Searcher
+from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
 _KEPT_TASKS = 8
 _HEARTBEAT = 0.5  # seconds
@@ -91,10 +91,12 @@ class Worker:
         except ReadingError as error:
             return {"error": [error.message, error.part, error.line]}
         except MemoryError:
-            return {"outcome": _as_json(SearchEnd("memory", reason="grounding ran out of memory"))}
+            return {
+                "outcome": _as_json(SearchOutcome("memory", reason="grounding ran out of memory"))
+            }
         except Exception as error:  # noqa: BLE001  the translator asserts and raises many kinds
             reason = f"the planning process failed: {type(error).__name__} {error}".rstrip()
-            return {"outcome": _as_json(SearchEnd("crash", reason=reason))}
+            return {"outcome": _as_json(SearchOutcome("crash", reason=reason))}
 
     def _task(self, request: dict[str, Any]) -> KnownTask | None:
         key = request["key"]
@@ -108,7 +110,7 @@ class Worker:
         return self._tasks[key]
 
 
-def _as_json(outcome: SearchEnd) -> dict[str, Any]:
+def _as_json(outcome: SearchOutcome) -> dict[str, Any]:
     return {
         "kind": outcome.kind,
         "steps": outcome.steps,

@@ -30,7 +30,7 @@ def to_fact(key: Sequence[str]) -> Any:
 
 
 @dataclass(frozen=True)
-class Template:
+class SASTemplate:
     """The text of a SAS+ task with a gap where the initial state stands.
 
     Attributes:
@@ -122,11 +122,11 @@ class Grounding:
         )
 
     @cached_property
-    def template(self) -> Template | None:
+    def template(self) -> SASTemplate | None:
         """The SAS+ text, written on first use; None where the goal asks for two of a group."""
         return self._write()
 
-    def _write(self) -> Template | None:
+    def _write(self) -> SASTemplate | None:
         ranges, places = translator.strips_to_sas_dictionary(self._groups, assert_partial=True)
         mutex_ranges, mutex_places = translator.strips_to_sas_dictionary(
             self._all_groups, assert_partial=False
@@ -167,7 +167,7 @@ class Grounding:
 
 def _split(
     task: sas_tasks.SASTask, defaults: tuple[int, ...], places: dict[AtomKey, tuple[int, int]]
-) -> Template:
+) -> SASTemplate:
     stream = StringIO()
     task.output(stream)
     text = stream.getvalue()
@@ -176,7 +176,7 @@ def _split(
     conditional = any(
         condition for operator in task.operators for _, _, _, condition in operator.pre_post
     )
-    return Template(
+    return SASTemplate(
         before=text[:start].encode(),
         after=text[end:].encode(),
         defaults=defaults,

@@ -12,7 +12,7 @@ from tpvqa.pddl.worker.describing import static_description
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
 from tpvqa.pddl.worker.invariants import described_groups
 from tpvqa.pddl.worker.reading import read
-from tpvqa.pddl.worker.search import SearchEnd, Searcher
+from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
 _KEPT_STATES = 8
 """So many states outside the first grounding widen the second one before it starts anew."""
@@ -90,7 +90,7 @@ class KnownTask:
         searches: dict[str, str],
         seconds: float | None,
         memory: int | None,
-    ) -> SearchEnd:
+    ) -> SearchOutcome:
         """Seek a plan from a state.
 
         Args:
@@ -105,19 +105,21 @@ class KnownTask:
         static, fluent = self._split(map(tuple, state))
         grounding = self._serving(static, fluent)
         if not grounding.goal_reachable:
-            return SearchEnd(
+            return SearchOutcome(
                 "unsolvable", reason="the goal is out of reach even where nothing is ever undone"
             )
         if grounding.goal_trivial:
-            return SearchEnd("plan")
+            return SearchOutcome("plan")
         with _quiet():
             template = grounding.template
         if template is None:
-            return SearchEnd("unsolvable", reason="the goal asks for facts that exclude each other")
+            return SearchOutcome(
+                "unsolvable", reason="the goal asks for facts that exclude each other"
+            )
         search = searches["simple" if template.simple else "other"]
         left = None if end is None else end - time.monotonic()
         if left is not None and left <= 0:
-            return SearchEnd("timeout")
+            return SearchOutcome("timeout")
         return searcher.run(template.fill(fluent), search, seconds=left, memory=memory)
 
     def _split(self, atoms: Iterable[AtomKey]) -> tuple[frozenset[AtomKey], frozenset[AtomKey]]:

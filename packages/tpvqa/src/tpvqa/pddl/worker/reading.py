@@ -82,7 +82,7 @@ def read(domain_text: str, problem_text: str) -> Any:
 def _explained(error: _LocatedError, blocks: dict[str, Block]) -> ReadingError:
     if "duplicate object" in error.message:
         name = error.message.split(":")[1].split(",")[0].strip()
-        part, line = _find(name, dict(reversed(blocks.items())))
+        part, line = _place_of(name, dict(reversed(blocks.items())))
         message = f"the object {name!r} is declared twice; expected it once"
         return ReadingError(message, part, line)
     layers = " / ".join(layer.removeprefix("Parsing ") for layer in error.layers[1:4])
@@ -96,7 +96,7 @@ def _explained(error: _LocatedError, blocks: dict[str, Block]) -> ReadingError:
     message += _names_that_exist(error)
     part, line = _innermost(error.__traceback__)
     if "does not match the name specified" in error.message:
-        part, line = _find(":domain", blocks)
+        part, line = _place_of(":domain", blocks)
     elif error.layers:
         part = "problem" if error.layers[0] == "Parsing problem" else "domain"
     elif "problem" in error.message:
@@ -172,7 +172,7 @@ def _check_types(task: Any, blocks: dict[str, Block]) -> None:
         names = entry.type_name[1:] if isinstance(entry.type_name, list) else [entry.type_name]
         for name in names:
             if name not in known:
-                part, line = _find(name, blocks)
+                part, line = _place_of(name, blocks)
                 raise ReadingError(
                     f"the type {str(name)!r} of {str(entry.name)!r} is not declared"
                     + suggestion_or_list(name, known),
@@ -261,7 +261,9 @@ def _check_costs(task: Any) -> None:
                 )
 
 
-def _find(word: str, blocks: dict[str, Block]) -> tuple[str, int | None]:
+def _place_of(word: str, blocks: dict[str, Block]) -> tuple[str, int | None]:
+    """The part and the line in which a word first stands."""
+
     def search(item: object) -> int | None:
         if isinstance(item, list):
             return next((line for line in map(search, item) if line is not None), None)

@@ -20,7 +20,7 @@ _PR_SET_PDEATHSIG = 1
 
 
 @dataclass(frozen=True)
-class SearchEnd:
+class SearchOutcome:
     """How a search ended.
 
     Attributes:
@@ -102,7 +102,7 @@ class _Child:
         self._process.wait()
         return True
 
-    def outcome(self) -> SearchEnd:
+    def outcome(self) -> SearchOutcome:
         """How the search ended, once the process has."""
         plan, log = _contents(self._plan), _contents(self._log)
         return _outcome(self._process.returncode, plan, log, self.memory)
@@ -169,7 +169,7 @@ class Searcher:
 
     def run(
         self, text: bytes, search: str, *, seconds: float | None, memory: int | None
-    ) -> SearchEnd:
+    ) -> SearchOutcome:
         """Search for a plan; a search that crashes is tried once more.
 
         Args:
@@ -184,30 +184,32 @@ class Searcher:
             outcome = self._once(text, search, end, memory)
         return outcome
 
-    def _once(self, text: bytes, search: str, end: float | None, memory: int | None) -> SearchEnd:
+    def _once(
+        self, text: bytes, search: str, end: float | None, memory: int | None
+    ) -> SearchOutcome:
         child = self._take(search, memory)
         try:
             child.feed(text, end)
-            return child.outcome() if child.wait(end) else SearchEnd("timeout")
+            return child.outcome() if child.wait(end) else SearchOutcome("timeout")
         finally:
             child.close()
 
 
-def _outcome(code: int, plan: str, log: str, memory: int | None) -> SearchEnd:
+def _outcome(code: int, plan: str, log: str, memory: int | None) -> SearchOutcome:
     if code in (0, 1, 2, 3) and "; cost = " in plan:
         steps = tuple(
             tuple(line.strip("()").split()) for line in plan.splitlines() if line.startswith("(")
         )
-        return SearchEnd("plan", steps, int(plan.rsplit("; cost = ", 1)[1].split()[0]))
+        return SearchOutcome("plan", steps, int(plan.rsplit("; cost = ", 1)[1].split()[0]))
     if code in (10, 11) or (code == 12 and "Completely explored state space" in log):
-        return SearchEnd("unsolvable", reason="the search went through all states that matter")
+        return SearchOutcome("unsolvable", reason="the search went through all states that matter")
     if code == 12:
-        return SearchEnd("incomplete", reason="the search gave up without a proof")
+        return SearchOutcome("incomplete", reason="the search gave up without a proof")
     if code in (22, 24) or "std::bad_alloc" in log:
         limit = f" (its limit is {memory} MiB)" if memory is not None else ""
-        return SearchEnd("memory", reason=f"Fast Downward ran out of memory{limit}")
+        return SearchOutcome("memory", reason=f"Fast Downward ran out of memory{limit}")
     if code == 23:
-        return SearchEnd("timeout")
+        return SearchOutcome("timeout")
     last = " | ".join(line for line in log.splitlines()[-3:] if line.strip())
     how = f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
-    return SearchEnd("crash", reason=f"Fast Downward {how}: {last}".rstrip(": "))
+    return SearchOutcome("crash", reason=f"Fast Downward {how}: {last}".rstrip(": "))
