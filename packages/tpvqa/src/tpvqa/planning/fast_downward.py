@@ -41,7 +41,7 @@ class FastDownward:
         search: "optimal" for a plan of least cost (A* with LM-cut, or with hmax where the task has
             axioms or conditional effects); "lama" for lazy greedy search with FF and landmarks,
             which finds plans in some large tasks where the default finds none. By default lazy
-            greedy search with FF where all actions cost the same, else as "lama".
+            greedy search with FF where every action costs 1, else as "lama".
         timeout: Seconds for a call; None for no limit.
         memory: The limit of the search's memory in MiB; None for none.
 
