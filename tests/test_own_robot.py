@@ -1,5 +1,7 @@
 """The robot and the VLM of docs/your-own-domain.md, run as they stand there."""
 
+import asyncio
+import importlib
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -10,7 +12,7 @@ import pytest
 from tpvqa import Trial, TrialConfig
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.errors import PluginError
-from tpvqa.events.events import Acting
+from tpvqa.events.events import Acting, Decided
 from tpvqa.resuming import resume
 
 PAGE = Path(__file__).parents[1] / "docs/your-own-domain.md"
@@ -92,6 +94,27 @@ def test_they_act_and_are_asked(package: Edit, tmp_path: Path) -> None:
     ]
     assert len(done) >= 4
     assert {path.read_bytes() for path in (tmp_path / "here/frames").iterdir()} == {b"a JPEG"}
+
+
+@pytest.mark.parametrize("way", ["watching", "stepping"])
+def test_they_can_be_driven_by_a_program_of_its_own(
+    package: Edit, tmp_path: Path, way: str
+) -> None:
+    folder = tmp_path / "here"
+    run(folder)
+    writer = EpisodeWriter(tmp_path / "there")
+    with Trial(CONFIG) as trial:
+        module = importlib.import_module(f"my_package.{way}")
+        if way == "watching":
+            asyncio.run(module.watch(trial, writer))
+        else:
+            assert module.step_through(trial, writer).because == "goal"
+    writer.close()
+
+    def decided(folder: Path) -> list[str]:
+        return [event.reason for event in read_episode(folder) if isinstance(event, Decided)]
+
+    assert decided(tmp_path / "there") == decided(folder)
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ class Writer(Protocol):
     resumable: bool
 
     def append(self, event: Event) -> Event:
-        """Write an event; returned with its number and its time."""
+        """Write an event; it is given its number and its time."""
 
     def save_frame(self, frame: Frame) -> str:
         """Save a picture; its path within the episode."""
@@ -58,14 +58,17 @@ class Journal:
     def take(self, event: Event) -> None:
         """Take in an event that is in the log."""
         self.state = self.state.after(event)
-        for listener in tuple(self._listeners):
+        broken: list[tuple[Listener, Exception]] = []
+        for listener in self._listeners:
             try:
                 listener(event)
             except Exception as error:  # noqa: BLE001 — whatever it is, the trial goes on
-                self._drop(listener, error)
+                broken.append((listener, error))
+        for listener, why in broken:
+            self._listeners.remove(listener)
+            self._name(listener, why)
 
-    def _drop(self, listener: Listener, error: Exception) -> None:
-        self._listeners.remove(listener)
+    def _name(self, listener: Listener, error: Exception) -> None:
         name = getattr(listener, "__qualname__", type(listener).__qualname__)
         _LOG.warning("%s broke and is told of nothing more", name, exc_info=error)
         self.write(ListenerDropped(listener=name, error=f"{type(error).__name__}: {error}"))

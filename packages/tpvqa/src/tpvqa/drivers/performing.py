@@ -17,7 +17,8 @@ from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending
 from tpvqa.vlm import VLM, Answer, Reply
 from tpvqa.worlds import Execution, Restorable, World
-from tpvqa.worlds.capabilities import last_outcome_of
+from tpvqa.worlds.capabilities import Telling
+from tpvqa.worlds.outcome import Outcome
 
 
 @dataclass
@@ -69,6 +70,8 @@ class Performer:
         self.parts, self._save_frame, self._snapshots = parts, save_frame, snapshots
         self._planning_timeout, self._action_deadline = planning_timeout, action_deadline
         self.cancel = cancel or Flag()
+        # asked once: such checks are slow
+        self._telling = parts.world if isinstance(parts.world, Telling) else None
 
     def perform(self, pending: Pending) -> Performed:
         """Do what is pending.
@@ -143,12 +146,12 @@ class Performer:
 
     def _act(self, action: Action) -> Performed:
         world = self.parts.world
-        before = last_outcome_of(world)
+        before = self._last_outcome()
         execution = called(
             world, "execute", Execution, action, deadline=self._action_deadline, cancel=self.cancel
         )
         try:
-            outcome = last_outcome_of(world)
+            outcome = self._last_outcome()
             acted = Acted(
                 report=execution.report,
                 seconds=execution.seconds,
@@ -159,6 +162,9 @@ class Performer:
         except MALFORMED as error:
             raise malformed(world, "execute", error) from error
         return Performed(execution, acted)
+
+    def _last_outcome(self) -> Outcome | None:
+        return None if self._telling is None else self._telling.last_outcome
 
     def _snapshot(self, part: object) -> dict[str, Any] | None:
         if self._snapshots and isinstance(part, Restorable):

@@ -72,10 +72,8 @@ class EpisodeWriter:
             ) from None
 
     def append(self, event: Event) -> Event:
-        """Write an event; returned with its number and its time since the beginning."""
-        event = event.model_copy(
-            update={"number": self._count, "time": round(monotonic() - self._began, 4)}
-        )
+        """Write an event; it is given its number and its time since the beginning."""
+        event.stamp(self._count, monotonic() - self._began)
         self._file.write(EVENT.dump_json(event, exclude_none=True, by_alias=True) + b"\n")
         self._file.flush()
         if self._durable:
@@ -121,9 +119,7 @@ class MemoryWriter:
 
     def append(self, event: Event) -> Event:
         """Keep an event."""
-        event = event.model_copy(
-            update={"number": self._count, "time": round(monotonic() - self._began, 4)}
-        )
+        event.stamp(self._count, monotonic() - self._began)
         self._count += 1
         if self._keep:
             self.events.append(event)

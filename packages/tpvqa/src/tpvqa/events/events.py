@@ -23,6 +23,11 @@ class _Event(_Record):
     number: int = -1
     time: float = 0.0
 
+    def stamp(self, number: int, time: float) -> None:
+        """Say where in the log it stands. Whoever writes it does so, once: a copy would cost more
+        than all else that happens to an event."""
+        self.__dict__.update(number=number, time=round(time, 4))
+
 
 class Started(_Event):
     """The first event: everything that is needed to run the trial again.

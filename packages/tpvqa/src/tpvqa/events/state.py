@@ -108,6 +108,7 @@ class TrialState:
     time: float = 0.0
     ended: Ended | None = None
     _checked: bool = False
+    _deadline: float | None = None
 
     @property
     def action(self) -> ActionRecord | None:
@@ -166,6 +167,7 @@ class TrialState:
                 change["when"] = "before"
             case Started():
                 change = {"started": event, "believed": frozenset(map(_atom, event.initial))}
+                change["_deadline"] = event.limits.seconds
             case Ended():
                 change = {"ended": event}
             case _:
@@ -209,12 +211,11 @@ class TrialState:
         return change
 
     def _but(self, change: dict[str, Any], time: float) -> Self:
-        if time >= self.time and time:
-            change["time"] = time
-            limit = None if self.started is None else self.started.limits.seconds
-            if limit is not None and time >= limit and self.over is None:
-                change["over"] = "limit of time"
+        if self._deadline is not None and time >= self._deadline and self.over is None:
+            change.setdefault("over", "limit of time")
         new = object.__new__(type(self))
         new.__dict__.update(self.__dict__)  # as `replace` does, in a fifth of the time
         new.__dict__.update(change)
+        if time:
+            new.__dict__["time"] = time
         return new

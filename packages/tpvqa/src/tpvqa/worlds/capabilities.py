@@ -87,8 +87,3 @@ def has_pictures(world: object) -> bool:
 def truth_of(world: object) -> TruthSource | None:
     """What is true in a world; None in one that does not know."""
     return world.truth if isinstance(world, Judged) else None
-
-
-def last_outcome_of(world: object) -> Outcome | None:
-    """What truly came of the last action; None where it did not happen or nobody knows."""
-    return world.last_outcome if isinstance(world, Telling) else None
