@@ -111,8 +111,9 @@ def test_they_can_be_driven_by_a_program_of_its_own(
             assert module.step_through(trial, writer).because == "goal"
     writer.close()
 
-    def decided(folder: Path) -> list[str]:
-        return [event.reason for event in read_episode(folder) if isinstance(event, Decided)]
+    def decided(folder: Path) -> list[tuple[str, int, str]]:
+        events = read_episode(folder)
+        return [(e.when, e.step, e.decision) for e in events if isinstance(e, Decided)]
 
     assert decided(tmp_path / "there") == decided(folder)
 

@@ -45,7 +45,6 @@ def test_the_papers_example_one_of_two_denied_replans_with_the_plate_on_the_tabl
         Atom("on", ("plate", "table")),
         Atom("free", ("left",)),
     }
-    assert IN_HAND in verdict.reason
 
 
 def test_a_strict_majority_goes_on_at_a_tie(at: Callable[..., Step]) -> None:
