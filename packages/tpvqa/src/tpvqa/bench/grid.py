@@ -53,9 +53,7 @@ class Grid:
             if can_answer(vlm, monitor)
         )
         groups = list(dict.fromkeys((cell.vlm, cell.world, cell.condition) for cell in found))
-        return sorted(
-            found, key=lambda cell: groups.index((cell.vlm, cell.world, cell.condition))
-        )
+        return sorted(found, key=lambda cell: groups.index((cell.vlm, cell.world, cell.condition)))
 
     def _seen(self, task: str) -> list[tuple[str, str]]:
         """The VLMs of a task, each with its worlds."""
@@ -80,9 +78,7 @@ def can_answer(vlm: str, monitor: str) -> bool:
     )
 
 
-def known_calibrations(
-    cells: Iterable[Cell], given: Calibration | None
-) -> dict[Cell, Calibration]:
+def known_calibrations(cells: Iterable[Cell], given: Calibration | None) -> dict[Cell, Calibration]:
     """What the monitors of cells are told where it is not what is shipped for their VLM.
 
     Args:

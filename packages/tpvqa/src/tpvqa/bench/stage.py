@@ -40,7 +40,9 @@ PICTURES = 512
 """Encoded pictures that are kept: all of the shipped set."""
 MOST_FACTS = 300_000
 """In the joint states of a shared action model, at about 1 KB each on the shipped tasks."""
-OF_A_TRIAL = frozenset({"*", "task", "book", "rules", "planner", "views", "limits", "seed", "episode"})
+OF_A_TRIAL = frozenset(
+    {"*", "task", "book", "rules", "planner", "views", "limits", "seed", "episode"}
+)
 """What a VLM may ask for that is of one task or one trial, so that trials cannot share it."""
 
 

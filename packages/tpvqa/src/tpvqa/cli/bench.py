@@ -120,7 +120,9 @@ def run(
         vlms=_some(vlm, config.vlm.spec or "", "--vlm"),
         worlds=_some(worlds, config.world.spec or "", "--worlds"),
         conditions=tuple(
-            dict.fromkeys(normalised(part) for text in conditions or [""] for part in text.split(";"))
+            dict.fromkeys(
+                normalised(part) for text in conditions or [""] for part in text.split(";")
+            )
         ),
     )
     calibration = _calibration(config)

@@ -78,9 +78,7 @@ class PartGroup(TyperGroup):
         """
         found = super().get_command(ctx, cmd_name)
         if found is None and (what := remedy("command", f"{self.name} {cmd_name}")):
-            raise UnknownNameError(
-                "command", f"{self.name} {cmd_name}", self.commands, remedy=what
-            )
+            raise UnknownNameError("command", f"{self.name} {cmd_name}", self.commands, remedy=what)
         return found
 
 
