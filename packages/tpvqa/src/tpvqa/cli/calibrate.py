@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tpvqa.belief import Calibration, LabelledAnswer
     from tpvqa.belief.held_out import HeldOut
     from tpvqa.bench.reliability import Line
+    from tpvqa.cli.progress import CountBar
     from tpvqa.questions import QuestionBook
 
 _EXIT = "Exit codes: 0 written, 2 bad input, 130 interrupted."
@@ -52,17 +53,26 @@ def calibrate(
         int | None, typer.Option(help="Run so many trials of every task.", min=1)
     ] = None,
     domain: Annotated[
-        Path | None, typer.Option(help="With --pictures: your own domain, which they are of.")
+        Path | None, typer.Option(help="With --pictures or --trials: your own domain.")
     ] = None,
-    problem: Annotated[Path | None, typer.Option(help="With --domain: your own problem.")] = None,
+    problem: Annotated[
+        list[Path] | None,
+        typer.Option(
+            help="With --domain: your own problem; with --trials also several, or a folder."
+        ),
+    ] = None,
     questions: Annotated[
         Path | None, typer.Option(help="With --domain: your questions; fallbacks without it.")
+    ] = None,
+    world_file: Annotated[
+        Path | None,
+        typer.Option(help="With --trials and --domain: what disturbances undo in your domain."),
     ] = None,
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="With --trials: shipped tasks, with commas. Default: those of the household, if "
-            "it is installed."
+            help="With --trials: shipped tasks, with commas. Default without --domain: those of "
+            "the household, if it is installed."
         ),
     ] = None,
     world: Annotated[
@@ -95,6 +105,8 @@ def calibrate(
     """
     from tpvqa.belief.fitting import fit
     from tpvqa.belief.held_out import held_out
+    from tpvqa.bench.labelled_trials import label_trials
+    from tpvqa.bench.own_task import own_tasks
     from tpvqa.bench.recorded_faults import experience_from
     from tpvqa.bench.reliability import lines
     from tpvqa.defaults import default_vlm
@@ -105,9 +117,10 @@ def calibrate(
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
     if experience is not None and not episodes:
         raise TpvqaError("--experience counts the faults of recorded episodes: name their folders.")
-    own = (domain, problem, questions)
-    if any(own) and (pictures is None or domain is None or problem is None):
-        raise TpvqaError("Give --domain and --problem (and --questions) beside --pictures FOLDER.")
+    problems = problem or []
+    if any((domain, problems, questions, world_file)):
+        _check_own(domain, problems, world_file, pictures=pictures is not None, trials=trials)
+    own = (domain, problems[0] if problems else None, questions)
     image = curves or out.with_suffix(".png")
     _check(out, image)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
@@ -120,8 +133,18 @@ def calibrate(
         name, rows = _from_pictures(vlm or default_vlm(), pictures, own, hidden=hidden)
     else:
         assert trials is not None
-        name = vlm or default_vlm()
-        rows = _from_trials(name, tasks, world, monitor, seed, trials)
+        name = vlm or default_vlm(pictures=not problems)
+        with _progress("trials") as bar:
+            rows = label_trials(
+                name,
+                trials,
+                tasks=_named(tasks, own=bool(problems)),
+                own=own_tasks(problems, domain=domain, questions=questions, world_file=world_file),
+                world=world,
+                monitor=monitor,
+                seed=seed,
+                progress=bar,
+            )
     calibration = fit(rows, name, chosen_looks=chosen_looks)
     judged = held_out(rows, name, chosen_looks=chosen_looks)
     calibration.save(out)
@@ -150,7 +173,7 @@ def _check(out: Path, image: Path) -> None:
 def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list[LabelledAnswer]"]:
     from tpvqa.bench.labelled_episodes import label_episodes
 
-    with _progress("episodes", len(folders)) as done:
+    with _counting("episodes", len(folders)) as done:
         found = label_episodes(folders, vlm=vlm, done=done)
     return found.vlm, found.rows
 
@@ -165,7 +188,7 @@ def _from_pictures(
     opened = load_set(_shipped_set() if where == "shipped" else Path(where))
     books = _own_book(*own)
     asked, _ = make_vlm(vlm, {})
-    with _progress("pictures", len(opened.manifest.pictures)) as done:
+    with _counting("pictures", len(opened.manifest.pictures)) as done:
         return asked.name, ask_pictures(asked, opened, books, hidden=hidden, done=done)
 
 
@@ -198,27 +221,39 @@ def _own_book(
     return [QuestionBook.load(questions, load_task(domain, problem))]
 
 
-def _from_trials(
-    vlm: str, tasks: str | None, world: str | None, monitor: str, seed: int, trials: int
-) -> "list[LabelledAnswer]":
-    from tpvqa.bench.cell import Cell
-    from tpvqa.bench.labelled import gather
-    from tpvqa.config import Limits, TrialConfig
-    from tpvqa.defaults import default_world
-    from tpvqa.errors import TpvqaError
-    from tpvqa.tasks import find_task
+def _check_own(
+    domain: Path | None,
+    problems: Sequence[Path],
+    world_file: Path | None,
+    *,
+    pictures: bool,
+    trials: int | None,
+) -> None:
+    """See that files of one's own are given where they are of use.
 
-    names = _tasks_with_pictures() if tasks is None else [part.strip() for part in tasks.split(",")]
-    names = [name for name in names if name]
+    Raises:
+        TpvqaError: They are not.
+    """
+    from tpvqa.errors import TpvqaError
+
+    if domain is None or not problems or not (pictures or trials is not None):
+        raise TpvqaError(
+            "Give --domain and --problem (and --questions) beside --pictures FOLDER or --trials N."
+        )
+    if pictures and (len(problems) > 1 or world_file is not None):
+        raise TpvqaError("Beside --pictures give one --problem, and no --world-file.")
+
+
+def _named(tasks: str | None, *, own: bool) -> list[str]:
+    """The shipped tasks that are named; by default those of the household, or one's own alone."""
+    from tpvqa.errors import TpvqaError
+
+    if tasks is None:
+        return [] if own else _tasks_with_pictures()
+    names = [part.strip() for part in tasks.split(",") if part.strip()]
     if not names:
         raise TpvqaError("--tasks names no task; write for example --tasks build_tower")
-    rows: list[LabelledAnswer] = []
-    with _progress("trials", trials * len(names)) as done:
-        for task in names:
-            cell = Cell(task, monitor, vlm, world or default_world(find_task(task), vlm))
-            common = TrialConfig(seed=seed, limits=Limits(actions=60))
-            rows += gather(cell, common, range(trials), done=done)
-    return rows
+    return names
 
 
 def _tasks_with_pictures() -> list[str]:
@@ -230,10 +265,8 @@ def _tasks_with_pictures() -> list[str]:
 
 
 @contextmanager
-def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
+def _counting(what: str, total: int) -> Iterator[Callable[[], None]]:
     """A bar on standard error that each call moves on by one."""
-    from tpvqa.cli.progress import CountBar
-
     done = 0
 
     def one() -> None:
@@ -241,9 +274,15 @@ def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
         done += 1
         bar(done, total)
 
-    with CountBar(what) as bar:
+    with _progress(what) as bar:
         bar(0, total)
         yield one
+
+
+def _progress(what: str) -> "CountBar":
+    from tpvqa.cli.progress import CountBar
+
+    return CountBar(what)
 
 
 def _draw(path: Path, judged: "Sequence[HeldOut]", vlm: str) -> None:
