@@ -46,7 +46,7 @@ class Yes:
 
     def ask(self, observation, questions):
         assert self.told[0] == "great"
-        return [Answer(Reply.YES, 0.9) for _ in questions]
+        return [Answer(question, Reply.YES, 0.9) for question in questions]
 
 class Robot:
     def views(self):

@@ -48,6 +48,12 @@ def finish(results: "Results", out: Path, *, as_json: bool) -> None:
         print_results(results)
         print(f"tables, figures and report: {out}/report.html")
     if results.errors:
+        first = next(row for rows in results.rows.values() for row in rows if row.error)
+        print(
+            f"note: {results.errors} episodes failed with an error, the first (episode "
+            f"{first.episode} of {first.cell}): {first.error.strip()}",
+            file=sys.stderr,
+        )
         raise typer.Exit(1)
 
 
