@@ -15,9 +15,11 @@ import pytest
 from tests.cli.conftest import Run
 from tests.conftest import Install
 from tpvqa.belief import Calibration
+from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import ROWS
 from tpvqa.bench.own_task import OwnTask, own_tasks
 from tpvqa.bench.stage import Stage
+from tpvqa.config import TrialConfig
 
 TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
 COLLECT = TOYS / "collect.pddl"
@@ -143,6 +145,8 @@ def test_a_worker_without_the_files_has_their_text(tmp_path: Path) -> None:
     away = Stage("row", OwnTask(own.domain, own.problem, own.questions, own.world, own.origin))
     assert away.task.init == here.task.init
     assert away.rules == here.rules
+    row = away.run(Cell("row", "tpvqa", "oracle", "symbolic"), TrialConfig(), 0)
+    assert (row.error, row.completed) == ("", True)
 
 
 @pytest.mark.slow
