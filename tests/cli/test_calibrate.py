@@ -16,6 +16,7 @@ from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.pictures import MANIFEST
 from tpvqa_household.images.manifest import load_pictures
 
+TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
 TRIALS = ["--trials", "10", "--tasks", "clean_dishes", "--vlm", "oracle:0.9:0.4"]
 
 
@@ -31,6 +32,19 @@ def test_from_trials(tpvqa: Run) -> None:
     with Image.open("made/c.png") as picture:
         assert picture.width > 1000
         assert len(picture.convert("RGB").getcolors(1 << 20) or ()) > 100
+
+
+def test_from_trials_of_tasks_of_ones_own(tpvqa: Run) -> None:
+    own = ["--domain", TOYS / "domain.pddl", "--problem", TOYS / "collect.pddl"]
+    words = ["--questions", TOYS / "questions.yaml", "--trials", 4, "--vlm", "oracle:0.9"]
+    code, out, err = tpvqa("calibrate", *own, *words)
+    assert code == 0, err
+    assert "pick_up" not in out  # facts are asked about, not actions
+    assert "found" in out
+    assert Calibration.load(Path("calibration.json")).vlm == "oracle:0.9"
+    code, _, err = tpvqa("calibrate", *own, "--world-file", "none.yaml", *words)
+    assert code == 2
+    assert "none.yaml" in err
 
 
 def test_json_has_the_promised_fields(tpvqa: Run) -> None:

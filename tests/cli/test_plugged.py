@@ -48,7 +48,7 @@ def test_a_group_gets_commands_of_several_packages(install: Install, tpvqa: Run)
     install("robot", SOURCE, "my-bench = robot:more", group=GROUP)
     assert tpvqa("bench", "mine")[:2] == (0, "measured\n")
     out = tpvqa("bench", "--help")[1]
-    assert all(name in out for name in ("paper", "belief", "mine"))
+    assert all(name in out for name in ("run", "paper", "belief", "mine"))
 
 
 @pytest.mark.parametrize(
@@ -77,11 +77,13 @@ def test_a_broken_package_leaves_the_other_commands(
     assert "cost 4" in tpvqa("plan", "clean_dishes")[1]
 
 
-@pytest.mark.parametrize(("command", "where"), [("dataset", "household"), ("bench", "experiments")])
+@pytest.mark.parametrize(
+    ("command", "where"), [("dataset", "household"), ("bench paper", "experiments")]
+)
 def test_a_command_that_is_not_installed_says_where_it_is(
     monkeypatch: pytest.MonkeyPatch, tpvqa: Run, command: str, where: str
 ) -> None:
     monkeypatch.setattr("tpvqa.cli.plugged.names", lambda kind: [])
-    code, _, err = tpvqa(command, "--help")
+    code, _, err = tpvqa(*command.split(), "--help")
     assert code == 2
     assert f"{command} comes with tpvqa-{where}. Install it: " in err

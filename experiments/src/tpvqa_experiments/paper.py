@@ -1,27 +1,23 @@
 """The paper's experiment: TPVQA against its four baselines on three tasks."""
 
 from collections import defaultdict
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.curve import curve_cells, curves
+from tpvqa.bench.engine import Bench, Told, run_bench
+from tpvqa.bench.grid import can_answer
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.report import WAYS, WORDS, AnswerLine, Results, write_bench_report
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.schedule import run_all
-from tpvqa.bench.settings import common_settings
 from tpvqa.bench.tables import write_tables
 from tpvqa.config import Limits, TrialConfig
 from tpvqa.defaults import looks
-from tpvqa.monitors.capabilities import asks_actions
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.plugins import Kind, load, load_spec, make
 from tpvqa.questions import Way
-from tpvqa.tasks import find_task
-from tpvqa.vlm.capabilities import answers_facts_only
 from tpvqa.vlm.making import make_vlm
 from tpvqa.vlm.metrics import measure
 from tpvqa_experiments.balanced import Judged, balanced
@@ -69,31 +65,16 @@ class PaperBench:
         """The cells of the accuracy curves."""
         return curve_cells(self.tasks, self.monitors) if self.curve else []
 
-    def check(self) -> None:
-        """See that everything can be found by its name, before anything is run.
-
-        Raises:
-            TpvqaError: A task, monitor, VLM or world is not there, or its extra is missing.
-        """
-        for task in self.tasks:
-            find_task(task)
-        for monitor in self.monitors:
-            make(Kind.MONITOR, monitor)
-        for kind, specs in ((Kind.VLM, self.vlms), (Kind.WORLD, filter(None, [self.world]))):
-            for spec in specs:
-                load(kind, spec.partition(":")[0])
+    def declared(self) -> Bench:
+        """What the engine is given."""
+        wanted: dict[Cell, int] = {}
+        for cells, episodes in ((self.cells(), self.episodes), (self.curve_cells(), self.curve)):
+            wanted |= {cell: max(episodes, wanted.get(cell, 0)) for cell in cells}
+        return Bench(wanted=wanted, common=self.common)
 
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""
-        return common_settings(self.common)
-
-
-def can_answer(vlm: str, monitor: str) -> bool:
-    """Whether a VLM has any answers to what a monitor asks; recorded ones know no whole actions."""
-    return not (
-        answers_facts_only(load_spec(Kind.VLM, vlm))
-        and asks_actions(load_spec(Kind.MONITOR, monitor))
-    )
+        return self.declared().settings
 
 
 def run_paper_bench(
@@ -102,7 +83,7 @@ def run_paper_bench(
     *,
     workers: int = 1,
     scheduler: str | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Told = lambda done, total: None,
 ) -> Results:
     """Run what is missing, and write tables, figures and the report.
 
@@ -116,28 +97,10 @@ def run_paper_bench(
     Raises:
         TpvqaError: Something is not there, or the folder cannot be used.
     """
-    bench.check()
-    ledger = Ledger(folder, bench.settings())
-    try:
-        wanted: dict[Cell, int] = {}
-        for cells, episodes in (
-            (bench.cells(), bench.episodes),
-            (bench.curve_cells(), bench.curve),
-        ):
-            wanted |= {cell: max(episodes, wanted.get(cell, 0)) for cell in cells}
-        total = sum(wanted.values())
-        done = total - sum(len(ledger.missing(cell, n)) for cell, n in wanted.items())
-        progress(done, total)
-
-        def count(more: int) -> None:
-            nonlocal done
-            done += more
-            progress(done, total)
-
-        run_all(ledger, wanted, bench.common, workers=workers, scheduler=scheduler, done=count)
-        results = _results(bench, ledger)
-    finally:
-        ledger.close()
+    ledger = run_bench(
+        bench.declared(), folder, workers=workers, scheduler=scheduler, progress=progress
+    )
+    results = _results(bench, ledger)
     write_tables(folder, results)
     write_bench_report(folder, results)
     return results
@@ -192,16 +155,3 @@ def balanced_lines(vlm_spec: str, tasks: Sequence[str], common: TrialConfig) -> 
     finally:
         planner.close()
     return lines
-
-
-def as_rows(results: Results) -> list[dict[str, Any]]:
-    """One row of plain values for every task and monitor, as `--json` prints them."""
-    rows = []
-    for each in results.summaries:
-        row = asdict(each)
-        against = row.pop("against")
-        row["endings"] = dict(each.endings)
-        if against is not None:
-            row["against_tpvqa"] = against
-        rows.append(row)
-    return rows

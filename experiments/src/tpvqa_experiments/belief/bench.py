@@ -1,21 +1,16 @@
 """Runs the belief bench: calibrations first, then every missing episode, then the tables."""
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.ledger import Ledger
-from tpvqa.bench.schedule import run_all
-from tpvqa.bench.settings import common_settings
-from tpvqa.bench.stage import stage
+from tpvqa.bench.engine import Bench, Told, run_bench
 from tpvqa.config import TrialConfig
-from tpvqa.defaults import looks
 from tpvqa.errors import BenchError
-from tpvqa.plugins import Kind, load, make
 from tpvqa.tasks import find_task
 from tpvqa_experiments.belief import calibrations as learnt
 from tpvqa_experiments.belief.parts import Extent, Part, believes
@@ -24,7 +19,6 @@ from tpvqa_experiments.belief.tables import write_results
 from tpvqa_experiments.belief.targets import Check
 from tpvqa_experiments.paper import PAPER
 
-Told = Callable[[int, int], None]
 SPEED_FILE = "speed.json"
 METHOD = 2
 """Changes with how calibrations are learnt, so that a bench does not go on with others."""
@@ -65,29 +59,53 @@ class BeliefBench:
         return learnt.source_of(cell, self.embedded_world)
 
     def check(self) -> None:
-        """See that everything can be found by its name, before anything is run.
+        """See that the tasks can be found by name: one of which no part has a cell, too.
 
         Raises:
-            TpvqaError: A task, monitor, VLM or world is not there, or its extra is missing.
+            TpvqaError: A task is not there.
         """
         for task in self.extent.tasks:
             find_task(task)
-        cells = self.wanted()
-        monitors = {cell.monitor: cell.task for cell in cells}
-        for monitor, task in monitors.items():
-            make(Kind.MONITOR, monitor, task=stage(task).task)
-        for vlm in {cell.vlm for cell in cells}:
-            load(Kind.VLM, vlm.partition(":")[0])
-            looks(vlm)
 
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""
-        return {
-            **common_settings(self.common),
-            "trials of a calibration": self.calibration_episodes,
-            "how calibrations are learnt": METHOD,
-            "the embedded network is calibrated in": self.embedded_world,
-        }
+        return self.declared({}).settings
+
+    def declared(
+        self,
+        wanted: Mapping[Cell, int],
+        folder: Path = Path(),
+        calibrating: Told = lambda done, total: None,
+    ) -> Bench:
+        """What the engine is given.
+
+        Args:
+            wanted: How many episodes of each cell.
+            folder: Where calibrations are kept.
+            calibrating: Told how many calibrations are there and how many there will be.
+        """
+
+        def told(missing: Sequence[Cell]) -> dict[Cell, Calibration]:
+            believing = [cell for cell in missing if believes(cell.monitor)]
+            known = learnt.calibrations(
+                folder / "calibrations",
+                {self.source_of(cell) for cell in believing},
+                self.common,
+                self.calibration_episodes,
+                done=calibrating,
+            )
+            return {cell: _told(cell, known[self.source_of(cell)]) for cell in believing}
+
+        return Bench(
+            wanted=wanted,
+            common=self.common,
+            calibrations=told,
+            more_settings={
+                "trials of a calibration": self.calibration_episodes,
+                "how calibrations are learnt": METHOD,
+                "the embedded network is calibrated in": self.embedded_world,
+            },
+        )
 
 
 def run_belief_bench(
@@ -120,41 +138,16 @@ def run_belief_bench(
         TpvqaError: Something is not there, or the folder cannot be used.
     """
     bench.check()
-    ledger = Ledger(folder, bench.settings(), published)
-    try:
-        wanted = {} if only_tables else bench.wanted()
-        believing = [
-            cell for cell, n in wanted.items() if believes(cell.monitor) and ledger.missing(cell, n)
-        ]
-        known = learnt.calibrations(
-            folder / "calibrations",
-            {bench.source_of(cell) for cell in believing},
-            bench.common,
-            bench.calibration_episodes,
-            done=calibrating,
-        )
-        total = sum(wanted.values())
-        done = total - sum(len(ledger.missing(cell, n)) for cell, n in wanted.items())
-        progress(done, total)
-
-        def count(more: int) -> None:
-            nonlocal done
-            done += more
-            progress(done, total)
-
-        run_all(
-            ledger,
-            wanted,
-            bench.common,
-            workers=workers,
-            scheduler=scheduler,
-            done=count,
-            calibrations={cell: _told(cell, known[bench.source_of(cell)]) for cell in believing},
-        )
-        found = ((cell, ledger.of(cell, n)) for cell, n in bench.wanted(Part).items())
-        rows = {cell: own for cell, own in found if own}
-    finally:
-        ledger.close()
+    ledger = run_bench(
+        bench.declared({} if only_tables else bench.wanted(), folder, calibrating),
+        folder,
+        workers=workers,
+        scheduler=scheduler,
+        progress=progress,
+        published=published,
+    )
+    found = ((cell, ledger.of(cell, n)) for cell, n in bench.wanted(Part).items())
+    rows = {cell: own for cell, own in found if own}
     results = BeliefResults(bench.settings(), rows, _speed(folder / SPEED_FILE))
     return results, write_results(folder, results, bench.extent)
 

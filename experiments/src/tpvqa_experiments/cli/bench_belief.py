@@ -1,11 +1,12 @@
 """`tpvqa bench belief`: the belief monitor against votes and the paper's baselines."""
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from tpvqa.cli.bench_running import bench_bar, listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -75,20 +76,19 @@ def belief(
     """Measure the belief monitor against votes over several looks and the paper's baselines."""
     import os
 
-    from tpvqa.cli.progress import CountBar
     from tpvqa_experiments.belief import BeliefBench, run_belief_bench
     from tpvqa_experiments.belief.parts import Extent
     from tpvqa_experiments.belief.tables import summary_rows
     from tpvqa_experiments.paper import PAPER
 
     bench = BeliefBench(
-        parts=[_part(name) for name in _list(parts)],
+        parts=[_part(name) for name in listed(parts)],
         extent=Extent(
-            tasks=_list(tasks),
+            tasks=listed(tasks),
             accuracies=_numbers(accuracies, "--accuracies"),
             rhos=_numbers(rhos, "--rhos"),
             prices=_numbers(prices, "--prices"),
-            models=_list(models),
+            models=listed(models),
             episodes=episodes,
             curve=curve_episodes,
             chains=chains,
@@ -97,30 +97,23 @@ def belief(
         embedded_world=embedded_calibration,
         common=PAPER.but(seed=seed),
     )
-    with CountBar("calibrations") as bar:
+    with bench_bar(out, "calibrations") as bar:
 
         def progress(done: int, total: int) -> None:
             if bar.what != "episodes":
                 bar.count("episodes")
             bar(done, total)
 
-        try:
-            results, checks = run_belief_bench(
-                bench,
-                out,
-                workers=workers or os.cpu_count() or 1,
-                scheduler=scheduler,
-                calibrating=bar,
-                progress=progress,
-                only_tables=only_tables,
-                published=rows,
-            )
-        except KeyboardInterrupt:
-            print(
-                f"interrupted; what is finished lies in {out}. The same command goes on there.",
-                file=sys.stderr,
-            )
-            raise typer.Exit(130) from None
+        results, checks = run_belief_bench(
+            bench,
+            out,
+            workers=workers or os.cpu_count() or 1,
+            scheduler=scheduler,
+            calibrating=bar,
+            progress=progress,
+            only_tables=only_tables,
+            published=rows,
+        )
     if as_json:
         told = {"targets": [check.flat() for check in checks], "cells": summary_rows(results)}
         print(json.dumps(told, indent=1))
@@ -161,15 +154,11 @@ def _print(checks: "Sequence[Check]") -> None:
         print(f"\n{missing} of {len(checks)} figures were not measured")
 
 
-def _list(text: str) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
-
-
 def _numbers(text: str, option: str) -> tuple[float, ...]:
     from tpvqa.errors import BenchError
 
     try:
-        return tuple(float(part) for part in _list(text))
+        return tuple(float(part) for part in listed(text))
     except ValueError:
         raise BenchError(f"{option} {text}: write numbers with commas, e.g. 0.6,0.8") from None
 

@@ -64,6 +64,7 @@ class Trial:
         experience: What was learned in earlier trials; goes before the file that `config` names.
         reading: Whether to read the files of these two that `config` names.
         person: Answers where the monitor asks a person.
+        every_option: Whether each of the config's options has to be one that a plug-in takes.
 
     Example:
         >>> config = TrialConfig(task="build_tower", vlm="oracle:0.9", world="symbolic")
@@ -86,8 +87,9 @@ class Trial:
         experience: Experience | None = None,
         reading: bool = True,
         person: VLM | None = None,
+        every_option: bool = True,
     ):
-        self.config, self._run = config, False
+        self.config, self._run, self._every_option = config, False, every_option
         self._closing: list[Callable[[], None]] = []
         try:
             self._find_files()
@@ -166,7 +168,8 @@ class Trial:
                 f"The VLM {self.vlm_spec!r} looks at pictures, and the world {self.world_spec!r} "
                 "has none. Choose a noise model, e.g. 'oracle:0.9', or a world with pictures."
             )
-        _all_taken(options, by_world | by_monitor | by_vlm, context)
+        if self._every_option:
+            _all_taken(options, by_world | by_monitor | by_vlm, context)
         if vlm is None and isinstance(made, Closing):
             self._closing.append(made.close)
         self.parts = Parts(self.task, self.book, planner, world, made, person)

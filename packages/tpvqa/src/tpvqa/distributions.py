@@ -18,7 +18,11 @@ _BROUGHT: Mapping[str, Mapping[str, str]] = {
     "task": dict.fromkeys(("clean_dishes", "eat_apple", "serve_breakfast"), HOUSEHOLD),
     "VLM": {"embedded": HOUSEHOLD, "paper-table": EXPERIMENTS},
     "world": dict.fromkeys(("images", "kitchen"), HOUSEHOLD),
-    "command": {"dataset": HOUSEHOLD, "bench": EXPERIMENTS},
+    "command": {
+        "dataset": HOUSEHOLD,
+        "bench paper": EXPERIMENTS,
+        "bench belief": EXPERIMENTS,
+    },
 }
 
 

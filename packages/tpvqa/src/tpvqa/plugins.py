@@ -195,6 +195,12 @@ def load_spec(kind: Kind, spec: str) -> Callable[..., Any]:
     return load(kind, split(spec)[0])
 
 
+def takes(target: Callable[..., Any]) -> set[str]:
+    """The names of what a plug-in asks for; "*" among them where it takes whatever there is."""
+    parameters = inspect.signature(getattr(target, "from_spec", target)).parameters.values()
+    return {"*" if each.kind is each.VAR_KEYWORD else each.name for each in parameters}
+
+
 def _construct(
     kind: Kind, name: str, target: Callable[..., Any], arguments: str, context: Mapping[str, Any]
 ) -> tuple[Any, set[str]]:

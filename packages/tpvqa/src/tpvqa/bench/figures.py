@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from io import BytesIO
+from pathlib import Path
 from typing import Any
 
 from tpvqa.bench.curve import Curve, crossing
@@ -56,6 +57,12 @@ def colours(monitors: Sequence[str]) -> dict[str, str]:
     return {monitor: COLOURS[k % len(COLOURS)] for k, monitor in enumerate(monitors)}
 
 
+def short(task: str) -> str:
+    """A task's name in a figure: of one that is called by its problem's path, the end."""
+    parts = Path(task).parts
+    return task if len(parts) < 3 else f"…/{parts[-2]}/{parts[-1]}"
+
+
 def completion(found: Sequence[Summary]) -> Figure:
     """Completion rates with 95% intervals: a group of bars for every task."""
     pyplot = styled_pyplot()
@@ -97,7 +104,7 @@ def completion(found: Sequence[Summary]) -> Figure:
                 ha="center",
                 fontsize=7,
             )
-    axes.set_xticks(range(len(tasks)), tasks)
+    axes.set_xticks(range(len(tasks)), [short(task) for task in tasks])
     axes.set_ylim(0, 1.08)
     axes.set_ylabel("completion rate")
     axes.legend(frameon=False, ncols=1, loc="center left", bbox_to_anchor=(1, 0.5))
@@ -119,7 +126,7 @@ def endings(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
             range(len(bars)), shares, left=left, label=name, color=ENDINGS.get(name), height=0.78
         )
         left = [a + b for a, b in zip(left, shares, strict=True)]
-    axes.set_yticks(range(len(bars)), [f"{task} · {monitor}" for task, monitor in bars])
+    axes.set_yticks(range(len(bars)), [f"{short(task)} · {monitor}" for task, monitor in bars])
     axes.invert_yaxis()
     axes.set_xlim(0, 1)
     axes.set_xlabel("share of episodes")
@@ -150,7 +157,7 @@ def limits(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
                 )
             axes.set_ylim(0, 1.03)
             axes.set_xlabel(f"limit of {name}")
-        line[0].set_ylabel(f"{task}\ncompletion rate")
+        line[0].set_ylabel(f"{short(task)}\ncompletion rate")
     figure.legend(
         *panels[0][0].get_legend_handles_labels(),
         frameon=False,

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.cell import Cell
+from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.right_answers import subject_of, yes_is_right
 from tpvqa.bench.stage import stage, true_simulation
 from tpvqa.config import TrialConfig
@@ -77,6 +78,7 @@ def gather(
     episodes: Iterable[int],
     *,
     done: Callable[[], None] = lambda: None,
+    own: OwnTask | None = None,
 ) -> list[LabelledAnswer]:
     """Run trials in a simulated world and label all their answers.
 
@@ -85,11 +87,12 @@ def gather(
         common: Seed, rates of faults, limits.
         episodes: Their numbers.
         done: Called after each.
+        own: The task, where it is the user's own.
 
     Raises:
         TpvqaError: A trial cannot be run.
     """
-    here, rows = stage(cell.task), []
+    here, rows = stage(cell.task, own), []
     for episode in episodes:
         with here.trial(cell.config(common, episode)) as trial:
             labeller = Labeller(

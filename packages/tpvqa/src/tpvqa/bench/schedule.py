@@ -10,6 +10,7 @@ from types import MappingProxyType
 from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
+from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.stage import run_batch
 from tpvqa.config import TrialConfig
@@ -63,6 +64,7 @@ def run_all(
     distributed: bool | None = None,
     done: Callable[[int], None] = lambda count: None,
     calibrations: Mapping[Cell, Calibration] = MappingProxyType({}),
+    own: Mapping[str, OwnTask] = MappingProxyType({}),
 ) -> None:
     """Run every missing episode; each batch is on disk as soon as it is back.
 
@@ -77,6 +79,7 @@ def run_all(
         distributed: Whether to use Dask; by default with more than one worker, or a scheduler.
         done: Told how many episodes have come back, after each batch.
         calibrations: What the VLM's answers are worth, of cells whose monitor is told.
+        own: Tasks of the user's own, by the names that cells have for them.
 
     Raises:
         MissingExtraError: Dask is needed and not installed.
@@ -87,7 +90,8 @@ def run_all(
         distributed = workers > 1 or scheduler is not None
 
     def given(batch: Batch) -> Given:
-        return batch.cell, common, batch.episodes, calibrations.get(batch.cell)
+        cell = batch.cell
+        return cell, common, batch.episodes, calibrations.get(cell), own.get(cell.task)
 
     results = _on_dask(todo, given, workers, scheduler) if distributed else _here(todo, given)
     for batch, rows in results:
@@ -95,7 +99,7 @@ def run_all(
         done(len(batch.episodes))
 
 
-Given = tuple[Cell, TrialConfig, tuple[int, ...], Calibration | None]
+Given = tuple[Cell, TrialConfig, tuple[int, ...], Calibration | None, OwnTask | None]
 """What `run_batch` is called with."""
 
 

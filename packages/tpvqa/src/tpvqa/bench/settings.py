@@ -1,9 +1,18 @@
 """What decides the figures of every bench, besides its cells."""
 
+import json
+from collections.abc import Iterator
 from typing import Any
 
 from tpvqa import DECIDES_AS
 from tpvqa.config import TrialConfig
+from tpvqa.config.layers import settings
+
+OF_CELLS = (("world", "spec"), ("vlm", "spec"), ("monitor", "spec"))
+"""What every cell says for itself."""
+TOLD_OTHERWISE = ("task", "seed", "episode", "simulation", "limits")
+DECIDES_NOTHING = (("vlm", "base_url"), ("monitor", "calibration"), ("monitor", "experience"))
+"""Where a server stands; and files, of which what they say counts."""
 
 
 def common_settings(common: TrialConfig) -> dict[str, Any]:
@@ -21,4 +30,17 @@ def common_settings(common: TrialConfig) -> dict[str, Any]:
             for name, value in common.limits.model_dump().items()
             if value is not None
         },
+        **dict(_others(common)),
     }
+
+
+def _others(common: TrialConfig) -> Iterator[tuple[str, Any]]:
+    """Every other setting that is not as it is by default, by its option."""
+    for each in settings():
+        if each.key[0] in TOLD_OTHERWISE or each.key in (*OF_CELLS, *DECIDES_NOTHING):
+            continue
+        value: Any = common
+        for name in each.key:
+            value = getattr(value, name)
+        if value != each.default:
+            yield each.option.lstrip("-"), json.loads(json.dumps(value, default=str))

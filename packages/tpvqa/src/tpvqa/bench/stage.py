@@ -1,8 +1,10 @@
 """What the episodes of a cell share, and running one of them."""
 
+import json
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from functools import lru_cache
 from threading import get_ident
@@ -14,6 +16,7 @@ from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
+from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
@@ -22,11 +25,10 @@ from tpvqa.events import Ended, Event
 from tpvqa.events.events import ListenerDropped
 from tpvqa.pddl import Action, Task, load_task
 from tpvqa.planning import Planner
-from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
-from tpvqa.plugins import Kind, load_spec
+from tpvqa.plugins import Kind, load_spec, make, takes
 from tpvqa.questions import QuestionBook
-from tpvqa.tasks import find_task
+from tpvqa.tasks import TaskFiles, find_task
 from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model
 from tpvqa.vlm.making import make_vlm
@@ -38,20 +40,32 @@ PICTURES = 512
 """Encoded pictures that are kept: all of the shipped set."""
 MOST_FACTS = 300_000
 """In the joint states of a shared action model, at about 1 KB each on the shipped tasks."""
+OF_A_TRIAL = frozenset(
+    {"*", "task", "book", "rules", "planner", "views", "limits", "seed", "episode"}
+)
+"""What a VLM may ask for that is of one task or one trial, so that trials cannot share it."""
 
 
 class Stage:
     """Runs episodes of one task. What does not change between them is read and made once.
 
     Args:
-        task: A shipped task.
+        task: A shipped task, or the name of one of the user's own.
+        own: The task, where it is the user's own.
     """
 
-    def __init__(self, task: str):
-        files = find_task(task)
-        self.task: Task = load_task(task)
-        self.book = QuestionBook.load(files.questions, self.task)
-        self.rules: WorldRules = load_world_file(files.world, self.task)
+    def __init__(self, task: str, own: OwnTask | None = None):
+        self._named: dict[str, Any] = {"name": task}
+        if own is not None:
+            self._named = {
+                "name": None,
+                "domain": str(own.origin.domain),
+                "problem": str(own.origin.problem),
+            }
+        with _files(task, own) as files:
+            self.task: Task = load_task(files.domain, files.problem)
+            self.book = QuestionBook.load(files.questions, self.task)
+            self.rules: WorldRules = load_world_file(files.world, self.task)
         self.actions: dict[str, Action] = {
             action.pddl(): action for action in self.task.ground_actions()
         }
@@ -117,16 +131,18 @@ class Stage:
     ) -> Trial:
         """A trial of the task, ready to run; made of what all its trials share."""
         assert config.vlm.spec is not None
+        options = json.dumps(config.plugin_options(), sort_keys=True, default=str)
         return Trial(
-            config,
+            config.but(task=self._named),
             task=self.task,
-            planner=_planner(),
-            vlm=_shared_vlm(config.vlm.spec),
+            planner=_planner(config.planner.spec),
+            vlm=_shared_vlm(config.vlm.spec, options),
             book=self.book,
             rules=self.rules,
             model=self.model,
             calibration=calibration,
             experience=experience,
+            every_option=False,
         )
 
     def play(self, trial: Trial, listener: Callable[[Event], None]) -> Ended:
@@ -184,27 +200,37 @@ def true_simulation(trial: Trial) -> Simulation:
     return simulation_of(trial.world)
 
 
-def stage(task: str) -> Stage:
+def stage(task: str, own: OwnTask | None = None) -> Stage:
     """The stage of a task, one in every thread of every process."""
-    return _stage(task, get_ident())
+    return _stage(task, own, get_ident())
 
 
 @lru_cache
-def _stage(task: str, thread: int) -> Stage:
-    return Stage(task)
+def _stage(task: str, own: OwnTask | None, thread: int) -> Stage:
+    return Stage(task, own)
+
+
+@contextmanager
+def _files(task: str, own: OwnTask | None) -> Iterator[TaskFiles]:
+    if own is None:
+        yield find_task(task)
+        return
+    with own.files() as files:
+        yield files
 
 
 @lru_cache
-def _planner() -> Planner:
-    return Remembering(FastDownward())
+def _planner(spec: str) -> Planner:
+    return Remembering(make(Kind.PLANNER, spec))
 
 
 @lru_cache
-def _shared_vlm(spec: str) -> VLM | None:
-    """A VLM that all episodes share; None for noise models, which belong to one world."""
-    if is_noise_model(load_spec(Kind.VLM, spec)):
+def _shared_vlm(spec: str, options: str) -> VLM | None:
+    """A VLM that all episodes share; None for one that belongs to one world or trial."""
+    target = load_spec(Kind.VLM, spec)
+    if is_noise_model(target) or takes(target) & OF_A_TRIAL:
         return None
-    return make_vlm(spec, {"remember": PICTURES})[0]
+    return make_vlm(spec, {"remember": PICTURES, **json.loads(options)})[0]
 
 
 def run_batch(
@@ -212,9 +238,10 @@ def run_batch(
     common: TrialConfig,
     episodes: tuple[int, ...],
     calibration: Calibration | None = None,
+    own: OwnTask | None = None,
 ) -> list[dict[str, object]]:
     """Run some episodes of a cell: what a worker is sent. Their rows as plain values."""
-    here = stage(cell.task)
+    here = stage(cell.task, own)
     carried, rows = cell.carried, []
     learned: Experience | None = None
     for episode in episodes:

@@ -11,7 +11,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import Paired, paired, wilson
 
 REFERENCE = "tpvqa"
-"""The monitor that all others are compared with."""
+"""The monitor that all others are compared with, where nothing else is said."""
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,7 @@ class Summary:
     """One cell of a bench. Counts are means over episodes.
 
     Attributes:
+        condition: As in `Cell`.
         ci_low: Of the 95% Wilson interval.
         ci_high: Of the 95% Wilson interval.
         wasted: Actions that could do nothing.
@@ -26,13 +27,14 @@ class Summary:
         ended_before_first_action: Episodes without any action.
         errors: Episodes that the program could not run to their end; not completed.
         endings: How episodes ended, most frequent first.
-        against: Comparison with TPVQA on the same episodes; None for itself.
+        against: Comparison with the reference on the same episodes; None for itself.
     """
 
     task: str
     monitor: str
     vlm: str
     world: str
+    condition: str
     episodes: int
     completed: int
     completion_rate: float
@@ -67,7 +69,8 @@ def summarise(cell: Cell, rows: Sequence[EpisodeRow], reference: Sequence[Episod
     Args:
         cell: Which.
         rows: Its episodes, in order.
-        reference: TPVQA's episodes with the same task and VLM; empty for TPVQA itself.
+        reference: Episodes of the monitor to compare with, of a cell that is the same otherwise;
+            empty for that monitor itself.
     """
     completed = sum(row.completed for row in rows)
     interval = wilson(completed, len(rows))
@@ -77,6 +80,7 @@ def summarise(cell: Cell, rows: Sequence[EpisodeRow], reference: Sequence[Episod
         monitor=cell.monitor,
         vlm=cell.vlm,
         world=cell.world,
+        condition=cell.condition,
         episodes=len(rows),
         completed=completed,
         completion_rate=interval.rate,
@@ -103,12 +107,27 @@ def _against(rows: Sequence[EpisodeRow], reference: Sequence[EpisodeRow]) -> Pai
     return paired([a for a, _ in both], [b for _, b in both]) if both else None
 
 
-def summaries(rows: Mapping[Cell, Sequence[EpisodeRow]]) -> list[Summary]:
-    """Figures of all cells that have episodes."""
+def summaries(
+    rows: Mapping[Cell, Sequence[EpisodeRow]], reference: str = REFERENCE
+) -> list[Summary]:
+    """Figures of all cells that have episodes, beside those of a reference monitor."""
     found = []
     for cell, own in rows.items():
         if own:
-            reference = replace(cell, monitor=REFERENCE)
-            others = [] if cell.monitor == REFERENCE else rows.get(reference, [])
+            beside = replace(cell, monitor=reference)
+            others = [] if cell.monitor == reference else rows.get(beside, [])
             found.append(summarise(cell, own, others))
     return found
+
+
+def plain_rows(found: Sequence[Summary], reference: str = REFERENCE) -> list[dict[str, Any]]:
+    """One row of plain values for every cell, as `--json` prints them."""
+    rows = []
+    for each in found:
+        row = asdict(each)
+        against = row.pop("against")
+        row["endings"] = dict(each.endings)
+        if against is not None:
+            row[f"against_{reference}"] = against
+        rows.append(row)
+    return rows

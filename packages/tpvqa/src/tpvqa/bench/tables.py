@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.bench.limits import sensitivity
-from tpvqa.bench.report import Results
+from tpvqa.bench.report import Group, Results
 from tpvqa.errors import BenchError, MissingExtraError
 
 
@@ -26,9 +26,9 @@ def write_tables(folder: Path, results: Results) -> list[Path]:
         "episodes": list(_episodes(results)),
         "answers": list(_answers(results)),
         "decisions": [
-            {"vlm": vlm, "task": task, "monitor": monitor, **asdict(each)}
-            for vlm in results.vlms
-            for task, monitor, each in results.decision_lines(vlm)
+            {**_of(group), "task": task, "monitor": monitor, **asdict(each)}
+            for group in results.groups
+            for task, monitor, each in results.decision_lines(group)
         ],
         "limits": list(_limits(results)),
         "curve": [
@@ -53,10 +53,10 @@ def _episodes(results: Results) -> Iterator[dict[str, Any]]:
 
 
 def _answers(results: Results) -> Iterator[dict[str, Any]]:
-    for vlm in results.vlms:
-        for line in results.lines(vlm):
+    for group in results.groups:
+        for line in results.lines(group):
             yield {
-                "vlm": vlm,
+                **_of(group),
                 "task": line.task,
                 "asked": line.way,
                 "on": line.source,
@@ -64,6 +64,10 @@ def _answers(results: Results) -> Iterator[dict[str, Any]]:
                 "paper": line.paper,
                 **asdict(line.metrics),
             }
+
+
+def _of(group: Group) -> dict[str, str]:
+    return {"vlm": group.vlm, "world": group.world, "condition": group.condition}
 
 
 def _limits(results: Results) -> Iterator[dict[str, Any]]:

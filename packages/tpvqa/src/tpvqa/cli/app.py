@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tpvqa.cli import calibrate, plan, questions, run
+from tpvqa.cli import bench, calibrate, plan, questions, run
 from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.errors import TpvqaError
 
@@ -54,6 +54,7 @@ plan.register(app)
 questions.register(app)
 run.register(app)
 calibrate.register(app)
+bench.register(app)
 
 
 def main() -> None:

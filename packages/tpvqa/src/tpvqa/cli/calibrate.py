@@ -3,16 +3,16 @@
 import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tpvqa.cli.calibration_table import draw, plain, print_calibration
+
 if TYPE_CHECKING:
-    from tpvqa.belief import Calibration, LabelledAnswer
-    from tpvqa.belief.held_out import HeldOut
-    from tpvqa.bench.reliability import Line
+    from tpvqa.belief import LabelledAnswer
+    from tpvqa.cli.progress import CountBar
     from tpvqa.questions import QuestionBook
 
 _EXIT = "Exit codes: 0 written, 2 bad input, 130 interrupted."
@@ -52,17 +52,26 @@ def calibrate(
         int | None, typer.Option(help="Run so many trials of every task.", min=1)
     ] = None,
     domain: Annotated[
-        Path | None, typer.Option(help="With --pictures: your own domain, which they are of.")
+        Path | None, typer.Option(help="With --pictures or --trials: your own domain.")
     ] = None,
-    problem: Annotated[Path | None, typer.Option(help="With --domain: your own problem.")] = None,
+    problem: Annotated[
+        list[Path] | None,
+        typer.Option(
+            help="With --domain: your own problem; with --trials also several, or a folder."
+        ),
+    ] = None,
     questions: Annotated[
         Path | None, typer.Option(help="With --domain: your questions; fallbacks without it.")
+    ] = None,
+    world_file: Annotated[
+        Path | None,
+        typer.Option(help="With --trials and --domain: what disturbances undo in your domain."),
     ] = None,
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="With --trials: shipped tasks, with commas. Default: those of the household, if "
-            "it is installed."
+            help="With --trials: shipped tasks, with commas. Default without --domain: those of "
+            "the household, if it is installed."
         ),
     ] = None,
     world: Annotated[
@@ -95,6 +104,8 @@ def calibrate(
     """
     from tpvqa.belief.fitting import fit
     from tpvqa.belief.held_out import held_out
+    from tpvqa.bench.labelled_trials import label_trials
+    from tpvqa.bench.own_task import own_tasks
     from tpvqa.bench.recorded_faults import experience_from
     from tpvqa.bench.reliability import lines
     from tpvqa.defaults import default_vlm
@@ -105,9 +116,10 @@ def calibrate(
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
     if experience is not None and not episodes:
         raise TpvqaError("--experience counts the faults of recorded episodes: name their folders.")
-    own = (domain, problem, questions)
-    if any(own) and (pictures is None or domain is None or problem is None):
-        raise TpvqaError("Give --domain and --problem (and --questions) beside --pictures FOLDER.")
+    problems = problem or []
+    if any((domain, problems, questions, world_file)):
+        _check_own(domain, problems, world_file, pictures=pictures is not None, trials=trials)
+    own = (domain, problems[0] if problems else None, questions)
     image = curves or out.with_suffix(".png")
     _check(out, image)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
@@ -120,17 +132,27 @@ def calibrate(
         name, rows = _from_pictures(vlm or default_vlm(), pictures, own, hidden=hidden)
     else:
         assert trials is not None
-        name = vlm or default_vlm()
-        rows = _from_trials(name, tasks, world, monitor, seed, trials)
+        name = vlm or default_vlm(pictures=not problems)
+        with _progress("trials") as bar:
+            rows = label_trials(
+                name,
+                trials,
+                tasks=_named(tasks, own=bool(problems)),
+                own=own_tasks(problems, domain=domain, questions=questions, world_file=world_file),
+                world=world,
+                monitor=monitor,
+                seed=seed,
+                progress=bar,
+            )
     calibration = fit(rows, name, chosen_looks=chosen_looks)
     judged = held_out(rows, name, chosen_looks=chosen_looks)
     calibration.save(out)
-    _draw(image, judged, name)
+    draw(image, judged, name)
     table = lines(rows, judged, chosen_looks=chosen_looks)
     if as_json:
-        typer.echo(json.dumps(_as_json(calibration, table, out, image), indent=1))
+        typer.echo(json.dumps(plain(calibration, table, out, image), indent=1))
     else:
-        _print(calibration, table)
+        print_calibration(calibration, table)
         typer.echo(f"wrote {out} and {image}")
 
 
@@ -150,7 +172,7 @@ def _check(out: Path, image: Path) -> None:
 def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list[LabelledAnswer]"]:
     from tpvqa.bench.labelled_episodes import label_episodes
 
-    with _progress("episodes", len(folders)) as done:
+    with _counting("episodes", len(folders)) as done:
         found = label_episodes(folders, vlm=vlm, done=done)
     return found.vlm, found.rows
 
@@ -165,7 +187,7 @@ def _from_pictures(
     opened = load_set(_shipped_set() if where == "shipped" else Path(where))
     books = _own_book(*own)
     asked, _ = make_vlm(vlm, {})
-    with _progress("pictures", len(opened.manifest.pictures)) as done:
+    with _counting("pictures", len(opened.manifest.pictures)) as done:
         return asked.name, ask_pictures(asked, opened, books, hidden=hidden, done=done)
 
 
@@ -198,27 +220,39 @@ def _own_book(
     return [QuestionBook.load(questions, load_task(domain, problem))]
 
 
-def _from_trials(
-    vlm: str, tasks: str | None, world: str | None, monitor: str, seed: int, trials: int
-) -> "list[LabelledAnswer]":
-    from tpvqa.bench.cell import Cell
-    from tpvqa.bench.labelled import gather
-    from tpvqa.config import Limits, TrialConfig
-    from tpvqa.defaults import default_world
-    from tpvqa.errors import TpvqaError
-    from tpvqa.tasks import find_task
+def _check_own(
+    domain: Path | None,
+    problems: Sequence[Path],
+    world_file: Path | None,
+    *,
+    pictures: bool,
+    trials: int | None,
+) -> None:
+    """See that files of one's own are given where they are of use.
 
-    names = _tasks_with_pictures() if tasks is None else [part.strip() for part in tasks.split(",")]
-    names = [name for name in names if name]
+    Raises:
+        TpvqaError: They are not.
+    """
+    from tpvqa.errors import TpvqaError
+
+    if domain is None or not problems or not (pictures or trials is not None):
+        raise TpvqaError(
+            "Give --domain and --problem (and --questions) beside --pictures FOLDER or --trials N."
+        )
+    if pictures and (len(problems) > 1 or world_file is not None):
+        raise TpvqaError("Beside --pictures give one --problem, and no --world-file.")
+
+
+def _named(tasks: str | None, *, own: bool) -> list[str]:
+    """The shipped tasks that are named; by default those of the household, or one's own alone."""
+    from tpvqa.errors import TpvqaError
+
+    if tasks is None:
+        return [] if own else _tasks_with_pictures()
+    names = [part.strip() for part in tasks.split(",") if part.strip()]
     if not names:
         raise TpvqaError("--tasks names no task; write for example --tasks build_tower")
-    rows: list[LabelledAnswer] = []
-    with _progress("trials", trials * len(names)) as done:
-        for task in names:
-            cell = Cell(task, monitor, vlm, world or default_world(find_task(task), vlm))
-            common = TrialConfig(seed=seed, limits=Limits(actions=60))
-            rows += gather(cell, common, range(trials), done=done)
-    return rows
+    return names
 
 
 def _tasks_with_pictures() -> list[str]:
@@ -230,10 +264,8 @@ def _tasks_with_pictures() -> list[str]:
 
 
 @contextmanager
-def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
+def _counting(what: str, total: int) -> Iterator[Callable[[], None]]:
     """A bar on standard error that each call moves on by one."""
-    from tpvqa.cli.progress import CountBar
-
     done = 0
 
     def one() -> None:
@@ -241,72 +273,12 @@ def _progress(what: str, total: int) -> Iterator[Callable[[], None]]:
         done += 1
         bar(done, total)
 
-    with CountBar(what) as bar:
+    with _progress(what) as bar:
         bar(0, total)
         yield one
 
 
-def _draw(path: Path, judged: "Sequence[HeldOut]", vlm: str) -> None:
-    from tpvqa.bench.figures import close, saved
-    from tpvqa.bench.reliability import reliability_figure
-    from tpvqa.errors import CalibrationError
+def _progress(what: str) -> "CountBar":
+    from tpvqa.cli.progress import CountBar
 
-    figure = reliability_figure(judged, vlm)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(saved(figure, "svg" if path.suffix == ".svg" else "png"))
-    except OSError as error:
-        raise CalibrationError(
-            f"{path}: cannot be written ({error.strerror}). Name another file with --curves"
-        ) from error
-    finally:
-        close(figure)
-
-
-def _as_json(
-    calibration: "Calibration", table: "Sequence[Line]", out: Path, image: Path
-) -> dict[str, object]:
-    return {
-        "vlm": calibration.vlm,
-        "rows": calibration.rows,
-        "file": str(out),
-        "curves": str(image),
-        "repeat_same_view": calibration.repeat_same_view,
-        "repeat_other_view": calibration.repeat_other_view,
-        "notices": calibration.notices,
-        "lines": [asdict(line) for line in table],
-    }
-
-
-def _print(calibration: "Calibration", table: "Sequence[Line]") -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    printed = Table(title=calibration.vlm, title_justify="left", title_style="bold", box=None)
-    for name in ("asked as", "about"):
-        printed.add_column(name, no_wrap=True)
-    for name in ("answers", "abstained", "accuracy", "yes if true", "yes if false"):
-        printed.add_column(name, justify="right", no_wrap=True)
-    printed.add_column("ECE before → after", justify="right", no_wrap=True)
-    for line in table:
-        figures = (line.abstained, line.accuracy, line.yes_if_true, line.yes_if_false)
-        printed.add_row(
-            line.way or "all",
-            line.predicate or "",
-            str(line.answers),
-            *map(_figure, figures),
-            f"{_figure(line.error_before)} → {_figure(line.error_after)}",
-            end_section=line is table[-2],
-        )
-    console = Console()
-    (console if console.is_terminal else Console(width=120)).print(printed)
-    typer.echo(
-        f"\nA further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
-        f"the same view, {calibration.repeat_other_view:.2f} from another."
-    )
-    for notice in calibration.notices:
-        typer.echo(f"note: {notice}")
-
-
-def _figure(value: float | None) -> str:
-    return "–" if value is None else f"{value:.3f}"
+    return CountBar(what)

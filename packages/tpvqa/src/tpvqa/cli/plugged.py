@@ -11,7 +11,7 @@ from collections.abc import MutableMapping
 from typing import Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from tpvqa.distributions import remedy
 from tpvqa.errors import PluginError, TpvqaError, UnknownNameError
@@ -28,13 +28,13 @@ class PluggedGroup(TyperGroup):
     _broken: dict[str, TpvqaError]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Command:
-        """A command; of another package only where there is none of this one.
+        """A command; of another package only where there is none of this one, or parts of a group.
 
         Raises:
             PluginError: It is broken.
             UnknownNameError: A package that has it is not installed.
         """
-        if cmd_name not in self.commands:
+        if not isinstance(self.commands.get(cmd_name), TyperCommand):
             self._plug()
         found = super().get_command(ctx, cmd_name)
         if found is None:
@@ -70,6 +70,21 @@ class PluggedGroup(TyperGroup):
                         f"The commands {name!r} hold {', '.join(twice)}, of which there is one "
                         "already. Uninstall one of the packages."
                     )
+
+
+class PartGroup(TyperGroup):
+    """A group of commands to which other packages add theirs."""
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Command:
+        """A command of the group.
+
+        Raises:
+            UnknownNameError: A package that has it is not installed.
+        """
+        found = super().get_command(ctx, cmd_name)
+        if found is None and (what := remedy("command", f"{self.name} {cmd_name}")):
+            raise UnknownNameError("command", f"{self.name} {cmd_name}", self.commands, remedy=what)
+        return found
 
 
 def _commands_of(name: str) -> dict[str, Command]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tpvqa.cli.notices import about_calibration
 from tpvqa.cli.options import trial_config, trial_options
 from tpvqa.config.layers import Layer, as_yaml
 
@@ -205,14 +206,7 @@ def _about_calibration(trial: "Trial") -> list[str]:
             f"how far to trust {known.vlm} was learned with another VLM or calibration, and is "
             "learned anew; how often actions fail is taken over"
         )
-    if calibration is None and vlm != "oracle":  # which is always right
-        notices += [
-            f"there is no calibration of {vlm}: its answers are taken to be right in 0.85. "
-            f"Calibrated, it is asked less: `tpvqa calibrate --vlm {vlm} …`"
-        ]
-    if calibration is not None and calibration.vlm not in ("", vlm):
-        notices.append(f"the calibration was learnt of {calibration.vlm}, and this VLM is {vlm}")
-    return notices
+    return [*notices, *about_calibration(vlm, calibration)]
 
 
 def _keep_experience(trial: "Trial", ended: "Ended") -> None:

@@ -1,6 +1,7 @@
 """One self-contained HTML page about a bench: tables and figures."""
 
 import base64
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +12,7 @@ from tpvqa.bench.accuracy import Decisions, answers_of, decisions_of
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.curve import Curve, crossing
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.summary import Summary, summaries
+from tpvqa.bench.summary import REFERENCE, Summary, summaries
 from tpvqa.errors import BenchError
 from tpvqa.questions import Way
 from tpvqa.vlm.metrics import Metrics
@@ -39,6 +40,25 @@ class AnswerLine:
     paper: float | None
 
 
+@dataclass(frozen=True, slots=True)
+class Group:
+    """What stands in one table: cells with one VLM, in one world and condition.
+
+    Attributes:
+        title: The VLM, and where it has several worlds or a condition, these.
+    """
+
+    vlm: str
+    world: str
+    condition: str
+    title: str
+
+    @property
+    def file(self) -> str:
+        """The end of the names of its files."""
+        return re.sub(r"[^\w.=,+-]+", "_", self.title)
+
+
 @dataclass(frozen=True)
 class Results:
     """All that a bench has found.
@@ -49,6 +69,7 @@ class Results:
         balanced: Lines about the balanced set, by VLM.
         curves: Completion by task, monitor and accuracy.
         published: Accuracies that others measured, by way of asking and task, to stand beside.
+        reference: The monitor that the others are compared with.
     """
 
     settings: Mapping[str, Any]
@@ -56,29 +77,52 @@ class Results:
     balanced: Mapping[str, Sequence[AnswerLine]] = field(default_factory=dict)
     curves: Mapping[str, Mapping[str, Curve]] = field(default_factory=dict)
     published: Mapping[Way, Mapping[str, float]] = field(default_factory=dict)
+    reference: str = REFERENCE
 
     @property
     def summaries(self) -> list[Summary]:
         """The figures of every cell."""
-        return summaries(self.rows)
+        return summaries(self.rows, self.reference)
 
     @property
-    def vlms(self) -> list[str]:
-        """The VLMs, in order."""
-        return list(dict.fromkeys(cell.vlm for cell in self.rows))
+    def errors(self) -> int:
+        """Episodes that the program could not run to their end."""
+        return sum(bool(row.error) for rows in self.rows.values() for row in rows)
 
-    def of(self, vlm: str) -> dict[str, dict[str, Sequence[EpisodeRow]]]:
-        """The episodes with a VLM, by task and monitor."""
+    @property
+    def groups(self) -> list[Group]:
+        """The tables, in order."""
+        found = dict.fromkeys((cell.vlm, cell.world, cell.condition) for cell in self.rows)
+        return [Group(*each, self._title(*each)) for each in found]
+
+    def _title(self, vlm: str, world: str, condition: str) -> str:
+        several = len({cell.world for cell in self.rows if cell.vlm == vlm}) > 1
+        return ", ".join(filter(None, (vlm, world if several else "", condition)))
+
+    def summaries_of(self, group: Group) -> list[Summary]:
+        """The figures of the cells of a group."""
+        return summaries(self._rows(group), self.reference)
+
+    def of(self, group: Group) -> dict[str, dict[str, Sequence[EpisodeRow]]]:
+        """The episodes of a group, by task and monitor."""
         found: dict[str, dict[str, Sequence[EpisodeRow]]] = {}
-        for cell, rows in self.rows.items():
-            if cell.vlm == vlm and rows:
+        for cell, rows in self._rows(group).items():
+            if rows:
                 found.setdefault(cell.task, {})[cell.monitor] = rows
         return found
 
-    def answer_lines(self, vlm: str) -> list[AnswerLine]:
-        """How right the answers given in the episodes with a VLM were."""
+    def _rows(self, group: Group) -> dict[Cell, Sequence[EpisodeRow]]:
+        own = (group.vlm, group.world, group.condition)
+        return {
+            cell: rows
+            for cell, rows in self.rows.items()
+            if (cell.vlm, cell.world, cell.condition) == own
+        }
+
+    def answer_lines(self, group: Group) -> list[AnswerLine]:
+        """How right the answers given in the episodes of a group were."""
         lines = []
-        for task, by_monitor in self.of(vlm).items():
+        for task, by_monitor in self.of(group).items():
             rows = [row for own in by_monitor.values() for row in own]
             for way in WORDS:
                 metrics = answers_of(rows, way)
@@ -87,14 +131,14 @@ class Results:
                     lines.append(AnswerLine(task, WORDS[way], "episodes", metrics, None, paper))
         return lines
 
-    def lines(self, vlm: str) -> list[AnswerLine]:
-        """How right a VLM's answers were: on the balanced set, then in the episodes."""
-        return [*self.balanced.get(vlm, ()), *self.answer_lines(vlm)]
+    def lines(self, group: Group) -> list[AnswerLine]:
+        """How right a VLM's answers were: on the balanced set, then in a group's episodes."""
+        return [*self.balanced.get(group.vlm, ()), *self.answer_lines(group)]
 
-    def decision_lines(self, vlm: str) -> list[tuple[str, str, Decisions]]:
+    def decision_lines(self, group: Group) -> list[tuple[str, str, Decisions]]:
         """How right the decisions of every monitor were."""
         found = []
-        for task, by_monitor in self.of(vlm).items():
+        for task, by_monitor in self.of(group).items():
             for monitor, rows in by_monitor.items():
                 for when in ("before", "after"):
                     decisions = decisions_of(rows, when)
@@ -117,13 +161,12 @@ class Results:
 def draw(results: Results) -> dict[str, Any]:
     """All figures by name."""
     drawn: dict[str, Any] = {}
-    for vlm in results.vlms:
-        name = vlm.replace(":", "_")
-        own = [each for each in results.summaries if each.vlm == vlm]
+    for group in results.groups:
+        own = results.summaries_of(group)
         if own:
-            drawn[f"completion-{name}"] = figures.completion(own)
-            drawn[f"endings-{name}"] = figures.endings(results.of(vlm))
-            drawn[f"limits-{name}"] = figures.limits(results.of(vlm))
+            drawn[f"completion-{group.file}"] = figures.completion(own)
+            drawn[f"endings-{group.file}"] = figures.endings(results.of(group))
+            drawn[f"limits-{group.file}"] = figures.limits(results.of(group))
     if results.curves:
         drawn["accuracy"] = figures.accuracy_curves(results.curves)
     return drawn

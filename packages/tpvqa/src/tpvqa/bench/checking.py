@@ -1,0 +1,64 @@
+"""Sees before a bench that everything that it names is there and fits together."""
+
+from collections.abc import Hashable, Mapping, Sequence
+
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.own_task import OwnTask
+from tpvqa.bench.stage import stage
+from tpvqa.config import TrialConfig
+from tpvqa.errors import BenchError, UnknownNameError
+from tpvqa.plugins import Kind, load_spec, takes
+from tpvqa.tasks import find_task
+from tpvqa.worlds.capabilities import is_simulated
+
+
+def check(cells: Sequence[Cell], common: TrialConfig, own: Mapping[str, OwnTask]) -> None:
+    """See that every part of every cell is there, and can be made.
+
+    Args:
+        cells: What is to be run.
+        common: What all trials share.
+        own: Tasks of the user's own, by name.
+
+    Raises:
+        TpvqaError: A task, monitor, VLM, world or planner is not there, lacks an extra, does not
+            take its arguments or does not fit to the others; an option is one of none of them.
+    """
+    for task in dict.fromkeys(cell.task for cell in cells):
+        if task not in own:
+            find_task(task)
+    _names(cells, common)
+    tried: set[Hashable] = set()
+    for cell in cells:
+        seen = (cell.vlm, cell.world)
+        parts = {(cell.task, cell.monitor), (cell.task, *seen), cell.condition}
+        if parts <= tried:
+            continue
+        cell.carried  # noqa: B018 — says what is wrong with it
+        here = stage(cell.task, own.get(cell.task))
+        with here.trial(cell.config(common, 0)) as trial:
+            if seen not in tried:
+                trial.check()
+        tried |= {*parts, seen}
+
+
+def _names(cells: Sequence[Cell], common: TrialConfig) -> None:
+    taken: set[str] = set()
+    for kind, specs in (
+        (Kind.MONITOR, {cell.monitor: None for cell in cells}),
+        (Kind.VLM, {cell.vlm: None for cell in cells}),
+        (Kind.WORLD, {cell.world: None for cell in cells}),
+    ):
+        for spec in specs:
+            target = load_spec(kind, spec)
+            taken |= takes(target)
+            if kind is Kind.WORLD and not is_simulated(target):
+                raise BenchError(
+                    f"The world {spec!r} is not simulated: nobody knows what is true in it, so no "
+                    "bench can judge it. Choose a simulated one, e.g. symbolic"
+                )
+    for option in common.plugin_options():
+        if cells and option not in taken and "*" not in taken:
+            raise UnknownNameError(
+                "option for these worlds, monitors and VLMs", option, taken - {"arguments"}
+            )

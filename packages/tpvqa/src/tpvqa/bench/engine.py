@@ -1,0 +1,138 @@
+"""The one engine of all benches: a declaration goes in, rows of finished episodes come out."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tpvqa.belief.calibration import Calibration
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.checking import check
+from tpvqa.bench.ledger import Ledger
+from tpvqa.bench.own_task import OwnTask
+from tpvqa.bench.schedule import run_all
+from tpvqa.bench.settings import common_settings
+from tpvqa.config import TrialConfig
+from tpvqa.errors import BenchError
+
+Told = Callable[[int, int], None]
+"""Told how many are done, and how many there are."""
+TASKS = "tasks.json"
+"""The fingerprints of the user's own tasks, by name."""
+
+
+def _nothing(cells: Sequence[Cell]) -> Mapping[Cell, Calibration]:
+    return {}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bench:
+    """What is run.
+
+    Attributes:
+        wanted: How many episodes of each cell.
+        common: What all trials share: seed, rates of faults, limits, options.
+        own: Tasks of the user's own, by the names that cells have for them.
+        calibrations: Gives what monitors are told of the VLM's answers, for cells that have
+            episodes to run; of others the calibration that is shipped for their VLM, if any.
+        more_settings: What else decides the figures.
+    """
+
+    wanted: Mapping[Cell, int]
+    common: TrialConfig = field(default_factory=TrialConfig)
+    own: Mapping[str, OwnTask] = field(default_factory=dict)
+    calibrations: Callable[[Sequence[Cell]], Mapping[Cell, Calibration]] = _nothing
+    more_settings: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What decides the figures, besides the cells and the number of episodes."""
+        return {**common_settings(self.common), **self.more_settings}
+
+    def check(self) -> None:
+        """See that every part of every cell is there and can be made, before anything is run.
+
+        Raises:
+            TpvqaError: What is not.
+        """
+        check(list(self.wanted), self.common, self.own)
+
+
+def run_bench(
+    bench: Bench,
+    folder: Path,
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    progress: Told = lambda done, total: None,
+    published: Path | None = None,
+) -> Ledger:
+    """Run what is missing.
+
+    Args:
+        bench: What to run.
+        folder: Where rows go; a bench that was stopped goes on there.
+        workers: Local processes.
+        scheduler: Address of a Dask scheduler to use instead.
+        progress: Told how many episodes are done and how many there are.
+        published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
+
+    Returns:
+        All rows that lie in the folder. It is closed: it is to be read from only.
+
+    Raises:
+        TpvqaError: Something is not there, or the folder cannot be used.
+    """
+    bench.check()
+    ledger = Ledger(folder, bench.settings, published)
+    try:
+        _keep_tasks(folder, bench, {cell.task for cell, _ in ledger.rows})
+        missing = {cell: len(ledger.missing(cell, n)) for cell, n in bench.wanted.items()}
+        told = bench.calibrations([cell for cell, count in missing.items() if count])
+        total = sum(bench.wanted.values())
+        done = total - sum(missing.values())
+        progress(done, total)
+
+        def count(more: int) -> None:
+            nonlocal done
+            done += more
+            progress(min(done, total), total)  # chains are run to their end
+
+        run_all(
+            ledger,
+            bench.wanted,
+            bench.common,
+            workers=workers,
+            scheduler=scheduler,
+            done=count,
+            calibrations=told,
+            own=bench.own,
+        )
+    finally:
+        ledger.close()
+    return ledger
+
+
+def _keep_tasks(folder: Path, bench: Bench, ran: set[str]) -> None:
+    """Note what the files of own tasks say; other files need another folder.
+
+    Raises:
+        BenchError: A task was run with other files.
+    """
+    path = folder / TASKS
+    try:
+        there = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    except ValueError:
+        raise BenchError(f"{path}: damaged. Remove the folder, or name another") from None
+    here = {name: own.fingerprint for name, own in bench.own.items()}
+    for task in {cell.task for cell in bench.wanted} & ({*there} | ran):
+        if there.get(task) != here.get(task):
+            raise BenchError(
+                f"{folder} holds episodes of a task {task!r} whose files say something else. "
+                "Name another folder with --out"
+            )
+    if here.keys() - there.keys():
+        temporary = path.with_suffix(".part")
+        temporary.write_text(json.dumps(there | here, indent=1) + "\n", encoding="utf-8")
+        temporary.replace(path)

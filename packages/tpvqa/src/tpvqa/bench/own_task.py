@@ -1,0 +1,164 @@
+"""Tasks of users' own in a bench: their files, carried to wherever an episode is run."""
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tpvqa.errors import BenchError
+from tpvqa.tasks import TaskFiles, shipped_tasks
+
+DOMAIN = "domain.pddl"
+_COMMENT = re.compile(r";[^\n]*")
+_NAME = re.compile(r"\(\s*define\s*\(\s*problem\s+([^\s()]+)", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class OwnTask:
+    """The texts of a task's files, and where they were read.
+
+    Attributes:
+        domain: The PDDL domain.
+        problem: The PDDL problem.
+        questions: How facts and actions are put into questions; None for fallbacks alone.
+        world: How facts come undone in a simulated world; None where they do not.
+        origin: The files. Another machine may not have them.
+    """
+
+    domain: str
+    problem: str
+    questions: str | None
+    world: str | None
+    origin: TaskFiles = field(compare=False)
+
+    @classmethod
+    def read(cls, files: TaskFiles) -> "OwnTask":
+        """Read the files of a task.
+
+        Raises:
+            BenchError: One cannot be read.
+        """
+        return cls(
+            _text(files.domain),
+            _text(files.problem),
+            None if files.questions is None else _text(files.questions),
+            None if files.world is None else _text(files.world),
+            files,
+        )
+
+    @property
+    def fingerprint(self) -> str:
+        """Tells it from a task whose files say something else."""
+        texts = (self.domain, self.problem, self.questions, self.world)
+        return sha256(repr(texts).encode()).hexdigest()[:12]
+
+    @contextmanager
+    def files(self) -> Iterator[TaskFiles]:
+        """Its files: those it was read from, or copies where they are not there (any more)."""
+        try:
+            as_it_was = OwnTask.read(self.origin) == self
+        except BenchError:
+            as_it_was = False
+        if as_it_was:
+            yield self.origin
+            return
+        with TemporaryDirectory(prefix="tpvqa-task-") as name:
+            folder = Path(name)
+            yield TaskFiles(
+                name=self.origin.name,
+                domain=_written(folder / DOMAIN, self.domain),
+                problem=_written(folder / "problem.pddl", self.problem),
+                questions=None
+                if self.questions is None
+                else _written(folder / "questions.yaml", self.questions),
+                world=None if self.world is None else _written(folder / "world.yaml", self.world),
+            )
+
+
+def own_tasks(
+    problems: Sequence[Path],
+    *,
+    domain: Path | None = None,
+    questions: Path | None = None,
+    world_file: Path | None = None,
+) -> dict[str, OwnTask]:
+    """Tasks of one's own, by the names that they have in rows.
+
+    A task has the name of its problem. Where several have that name, or a shipped task does, it is
+    the problem's path instead.
+
+    Args:
+        problems: Problem files, and folders of them.
+        domain: Their domain; by default the `domain.pddl` beside each problem.
+        questions: Their questions; by default, without a domain, the `questions.yaml` beside it.
+        world_file: How facts come undone; by default, without a domain, the `world.yaml` beside it.
+
+    Raises:
+        BenchError: A file is missing or cannot be read, or a folder holds no problem.
+    """
+    found = [
+        OwnTask.read(_files(path.resolve(), domain, questions, world_file))
+        for path in dict.fromkeys(_expanded(problems, domain))
+    ]
+    names = Counter(each.origin.name for each in found)
+    names.update(files.name for files in shipped_tasks())
+    return {
+        each.origin.name if names[each.origin.name] == 1 else str(each.origin.problem): each
+        for each in found
+    }
+
+
+def _expanded(problems: Sequence[Path], domain: Path | None) -> Iterator[Path]:
+    for path in problems:
+        if not path.is_dir():
+            yield path
+            continue
+        domains = {path / DOMAIN} if domain is None else {path / DOMAIN, domain}
+        known = {each.resolve() for each in domains}
+        inside = [each for each in sorted(path.glob("*.pddl")) if each.resolve() not in known]
+        if not inside:
+            raise BenchError(f"{path} holds no problem: *.pddl besides the domain")
+        yield from inside
+
+
+def _files(
+    problem: Path, domain: Path | None, questions: Path | None, world_file: Path | None
+) -> TaskFiles:
+    text = _COMMENT.sub("", _text(problem))
+    named = _NAME.search(text)
+    if domain is None:
+        folder = problem.parent
+        domain = folder / DOMAIN
+        if not domain.exists():
+            raise BenchError(f"{problem}: there is no {DOMAIN} beside it. Name it with --domain")
+        questions = questions or _if_there(folder / "questions.yaml")
+        world_file = world_file or _if_there(folder / "world.yaml")
+    return TaskFiles(
+        name=named[1].lower() if named else problem.stem,
+        domain=domain.resolve(),
+        problem=problem,
+        questions=None if questions is None else questions.resolve(),
+        world=None if world_file is None else world_file.resolve(),
+    )
+
+
+def _if_there(path: Path) -> Path | None:
+    return path if path.exists() else None
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise BenchError(f"{path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise BenchError(f"{path}: no text in UTF-8 ({error.reason})") from error
+
+
+def _written(path: Path, text: str) -> Path:
+    path.write_text(text, encoding="utf-8")
+    return path

@@ -1,0 +1,62 @@
+"""What all commands of `tpvqa bench` have in common: their bar, Ctrl-C, their end."""
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+if TYPE_CHECKING:
+    from tpvqa.bench.report import Results
+    from tpvqa.cli.progress import CountBar
+
+EXIT = "Exit codes: 0 all episodes ran, 1 some failed with an error, 2 bad input, 130 interrupted."
+
+
+@contextmanager
+def bench_bar(out: Path, what: str = "episodes") -> Iterator["CountBar"]:
+    """A bar while a bench runs; Ctrl-C leaves what is finished, and says so.
+
+    Args:
+        out: The bench's folder.
+        what: What is counted.
+    """
+    from tpvqa.cli.progress import CountBar
+
+    with CountBar(what) as bar:
+        try:
+            yield bar
+        except KeyboardInterrupt:
+            print(
+                f"interrupted; what is finished lies in {out}. The same command goes on there.",
+                file=sys.stderr,
+            )
+            raise typer.Exit(130) from None
+
+
+def finish(results: "Results", out: Path, *, as_json: bool) -> None:
+    """Print what was found, and end with 1 where an episode failed with an error."""
+    from tpvqa.bench.summary import plain_rows
+    from tpvqa.cli.bench_tables import print_results
+
+    if as_json:
+        print(json.dumps(plain_rows(results.summaries, results.reference), indent=1))
+    else:
+        print_results(results)
+        print(f"tables, figures and report: {out}/report.html")
+    if results.errors:
+        first = next(row for rows in results.rows.values() for row in rows if row.error)
+        print(
+            f"note: {results.errors} episodes failed with an error, the first (episode "
+            f"{first.episode} of {first.cell}): {first.error.strip()}",
+            file=sys.stderr,
+        )
+        raise typer.Exit(1)
+
+
+def listed(text: str) -> tuple[str, ...]:
+    """What a text with commas names, each once."""
+    return tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))

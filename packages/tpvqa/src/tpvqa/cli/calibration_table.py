@@ -1,0 +1,86 @@
+"""What a calibration has learnt, as a table, as JSON and as a picture."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+if TYPE_CHECKING:
+    from tpvqa.belief import Calibration
+    from tpvqa.belief.held_out import HeldOut
+    from tpvqa.bench.reliability import Line
+
+
+def draw(path: Path, judged: "Sequence[HeldOut]", vlm: str) -> None:
+    """Draw reliability before and after.
+
+    Raises:
+        CalibrationError: It cannot be written.
+    """
+    from tpvqa.bench.figures import close, saved
+    from tpvqa.bench.reliability import reliability_figure
+    from tpvqa.errors import CalibrationError
+
+    figure = reliability_figure(judged, vlm)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(saved(figure, "svg" if path.suffix == ".svg" else "png"))
+    except OSError as error:
+        raise CalibrationError(
+            f"{path}: cannot be written ({error.strerror}). Name another file with --curves"
+        ) from error
+    finally:
+        close(figure)
+
+
+def plain(
+    calibration: "Calibration", table: "Sequence[Line]", out: Path, image: Path
+) -> dict[str, object]:
+    """What `--json` prints."""
+    return {
+        "vlm": calibration.vlm,
+        "rows": calibration.rows,
+        "file": str(out),
+        "curves": str(image),
+        "repeat_same_view": calibration.repeat_same_view,
+        "repeat_other_view": calibration.repeat_other_view,
+        "notices": calibration.notices,
+        "lines": [asdict(line) for line in table],
+    }
+
+
+def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> None:
+    """Print how reliable answers are, before and after."""
+    from rich.console import Console
+    from rich.table import Table
+
+    printed = Table(title=calibration.vlm, title_justify="left", title_style="bold", box=None)
+    for name in ("asked as", "about"):
+        printed.add_column(name, no_wrap=True)
+    for name in ("answers", "abstained", "accuracy", "yes if true", "yes if false"):
+        printed.add_column(name, justify="right", no_wrap=True)
+    printed.add_column("ECE before → after", justify="right", no_wrap=True)
+    for line in table:
+        figures = (line.abstained, line.accuracy, line.yes_if_true, line.yes_if_false)
+        printed.add_row(
+            line.way or "all",
+            line.predicate or "",
+            str(line.answers),
+            *map(_figure, figures),
+            f"{_figure(line.error_before)} → {_figure(line.error_after)}",
+            end_section=line is table[-2],
+        )
+    console = Console()
+    (console if console.is_terminal else Console(width=120)).print(printed)
+    typer.echo(
+        f"\nA further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
+        f"the same view, {calibration.repeat_other_view:.2f} from another."
+    )
+    for notice in calibration.notices:
+        typer.echo(f"note: {notice}")
+
+
+def _figure(value: float | None) -> str:
+    return "–" if value is None else f"{value:.3f}"
