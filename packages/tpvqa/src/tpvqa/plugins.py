@@ -40,21 +40,6 @@ PROTOCOL = 2
 
 
 @runtime_checkable
-class Versioned(Protocol):
-    """A plug-in that says which `PROTOCOL` it was written for."""
-
-    tpvqa_protocol: int
-
-
-@runtime_checkable
-class Specified(Protocol):
-    """A plug-in that is made from the arguments of a specification."""
-
-    def from_spec(self, arguments: str, **context: Any) -> Any:
-        """Make it from what follows the first colon of a specification."""
-
-
-@runtime_checkable
 class Checked(Protocol):
     """A world or a VLM that can see whether all that it needs is there, before a robot moves."""
 
@@ -143,10 +128,11 @@ def load(kind: Kind, name: str) -> Callable[..., Any]:
             f"The {kind.value} {name!r} of {_package(point)} is {point.value}, which is neither "
             "a class nor a function."
         )
-    if isinstance(target, Versioned) and target.tpvqa_protocol != PROTOCOL:
+    written_for = getattr(target, "tpvqa_protocol", PROTOCOL)
+    if written_for != PROTOCOL:
         raise PluginError(
             f"The {kind.value} {name!r} of {_package(point)} is written for protocol "
-            f"{target.tpvqa_protocol} of plug-ins, and this is tpvqa {version('tpvqa')} with "
+            f"{written_for} of plug-ins, and this is tpvqa {version('tpvqa')} with "
             f"protocol {PROTOCOL}. Install a version of that package that fits."
         )
     return target  # type: ignore[no-any-return]
@@ -212,7 +198,7 @@ def _construct(
     Raises:
         PluginError: It does not take these arguments, or needs what the context does not have.
     """
-    from_spec = target.from_spec if isinstance(target, Specified) else None
+    from_spec = getattr(target, "from_spec", None)
     if from_spec is None and arguments:
         raise PluginError(
             f"The {kind.value} {name!r} takes no arguments, but {arguments!r} was given. "

@@ -213,9 +213,8 @@ class TrialState:
     def _but(self, change: dict[str, Any], time: float) -> Self:
         if self._deadline is not None and time >= self._deadline and self.over is None:
             change.setdefault("over", "limit of time")
-        new = object.__new__(type(self))
-        new.__dict__.update(self.__dict__)  # as `replace` does, in a fifth of the time
-        new.__dict__.update(change)
         if time:
-            new.__dict__["time"] = time
+            change["time"] = time
+        new = object.__new__(type(self))  # as `replace` does, in a fifth of the time
+        object.__setattr__(new, "__dict__", self.__dict__ | change)
         return new
