@@ -8,7 +8,7 @@ cannot explain is taken in when answers call for it (`open`).
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from tpvqa.belief.faults import FaultModel, Hypothesis, Rates
+from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.pddl import Action, Atom, State
 
 SMALLEST = 1e-5
@@ -49,7 +49,7 @@ class Belief:
         self.model, self._smallest, self._most = model, smallest, most
         self._surprise = model.surprise
         first = model.task.init if state is None else state
-        self.weights: dict[int, float] = {model.number(Hypothesis(first)): 1.0}
+        self.weights: dict[int, float] = {model.number(JointState(first)): 1.0}
         self.came: Came | None = None
         self._predicted: dict[int, float] = {}
         self._marginals: dict[tuple[Atom, ...], float] = {}
