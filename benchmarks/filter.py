@@ -17,7 +17,7 @@ from tpvqa.assembly import Trial
 from tpvqa.belief.belief import MOST, SMALLEST, Belief
 from tpvqa.belief.calibration import Calibration, Curve, Group
 from tpvqa.belief.calibration import Rates as AnswerRates
-from tpvqa.belief.faults import FaultModel, Hypothesis, Rates
+from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.monitors.belief import BeliefMonitor
@@ -47,7 +47,7 @@ class Factored(Belief):
             grown = {s | v: w * p for s, w in joint.items() for v, p in values if w * p > 1e-9}
             joint = dict(sorted(grown.items(), key=lambda each: -each[1])[:MOST])
         self.came = None
-        self._become({self.model.number(Hypothesis(s)): w for s, w in joint.items()})
+        self._become({self.model.number(JointState(s)): w for s, w in joint.items()})
 
 
 class Beside:

@@ -124,8 +124,8 @@ def test_a_broken_plug_in_is_a_clear_error(
 @pytest.mark.parametrize(
     ("module", "extras", "says"),
     [
-        ("ortools", {}, r"pip install 'tpvqa\[belief\]'"),
-        ("ortools", {"fast": "ortools>=9"}, r"pip install 'colours\[fast\]'"),
+        ("scipy", {}, r"pip install 'tpvqa\[bench\]'"),
+        ("scipy", {"fast": "scipy>=1"}, r"pip install 'colours\[fast\]'"),
         ("lidar", {"laser": "lidar", "all": "radar"}, r"pip install 'colours\[laser\]'"),
     ],
 )

@@ -49,7 +49,7 @@ SPEED = {
     "annotation of a plan, median": 15.0,
     "check of a plan, median": 0.2,
     "belief step, 500 facts": 20.0,
-    "most probable consistent state, 12,000 facts": 150.0,
+    "nearest consistent state, 12,000 facts": 150.0,
 }
 """Most milliseconds."""
 

@@ -15,8 +15,8 @@ TpvqaError
 ├── GeneratorError         pictures cannot be varied or generated (no key, say)
 │   └── PictureRefused     this one picture was refused, others may be made
 ├── EpisodeError           an episode cannot be read or resumed
-├── BeliefError            what is believed could not be made consistent in the time allowed
-│   └── ContradictionError facts that are taken as given cannot hold together
+├── BeliefError            no consistent state was found near what is believed
+│   └── ContradictionError there is none: facts that are wished for cannot hold together
 ├── BenchError             a bench cannot be run, read or written
 ├── CalibrationError       a calibration cannot be learnt, read or written
 ├── UnknownNameError       no plug-in or task of that name
@@ -119,11 +119,11 @@ class EpisodeError(TpvqaError):
 
 
 class BeliefError(TpvqaError):
-    """What is believed could not be made consistent in the time allowed."""
+    """No consistent state was found near what is believed."""
 
 
 class ContradictionError(BeliefError):
-    """Facts that are taken as given cannot hold together."""
+    """Facts that are wished for cannot hold together, so there is no consistent state."""
 
 
 class BenchError(TpvqaError):

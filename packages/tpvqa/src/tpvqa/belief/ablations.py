@@ -3,7 +3,7 @@
 from itertools import product
 
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.faults import FaultModel, Hypothesis, Rates
+from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.pddl import Action
 
 PARTS = ("consistency", "relevance", "calibration", "model", "learning")
@@ -31,7 +31,7 @@ class FactwiseBelief(Belief):
             for atom, value in zip(doubted, values, strict=True):
                 weight *= chances[atom] if value else 1 - chances[atom]
             true = {atom for atom, value in zip(doubted, values, strict=True) if value}
-            weights[self.model.number(Hypothesis(frozenset(certain | true)))] = weight
+            weights[self.model.number(JointState(frozenset(certain | true)))] = weight
         self.came = None
         self._become(weights)
 

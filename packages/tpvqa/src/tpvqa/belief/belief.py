@@ -1,16 +1,14 @@
 """What is probably true: a Bayes filter over joint states of the ground facts.
 
 The filter is exact over the joint states that the action model with its faults can reach, as long
-as they are few; states whose probability falls under a threshold are dropped, and `lost` bounds
-what that can have changed. What the action model cannot explain is taken in when answers call
-for it (`open`).
+as they are few; states whose probability falls under a threshold are dropped. What the action model
+cannot explain is taken in when answers call for it (`open`).
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf, log
 
-from tpvqa.belief.faults import FaultModel, Hypothesis, Rates
+from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.pddl import Action, Atom, State
 
 SMALLEST = 1e-5
@@ -51,8 +49,7 @@ class Belief:
         self.model, self._smallest, self._most = model, smallest, most
         self._surprise = model.surprise
         first = model.task.init if state is None else state
-        self.weights: dict[int, float] = {model.number(Hypothesis(first)): 1.0}
-        self.lost = 0.0
+        self.weights: dict[int, float] = {model.number(JointState(first)): 1.0}
         self.came: Came | None = None
         self._predicted: dict[int, float] = {}
         self._marginals: dict[tuple[Atom, ...], float] = {}
@@ -202,20 +199,6 @@ class Belief:
         self._become(grown, self._smallest / most)
         return new
 
-    def margin(self, atom: Atom) -> float:
-        """How close the call is: log odds of the best joint state with the fact to that without.
-
-        Positive where the fact holds in the most probable joint state; infinite where it is the
-        same in all of them.
-        """
-        best = {True: 0.0, False: 0.0}
-        for number, weight in self.weights.items():
-            holds = atom in self.model.state(number)
-            best[holds] = max(best[holds], weight)
-        if not best[True] or not best[False]:
-            return inf if best[True] else -inf
-        return log(best[True] / best[False])
-
     def outcome_shares(self) -> Mapping[str, float]:
         """How the last action came out, after all that was seen since.
 
@@ -249,7 +232,6 @@ class Belief:
             ranked = sorted(kept, key=lambda n: (-kept[n], keys[n]))[: self._most]
             kept = {n: kept[n] for n in ranked}
         share = sum(kept.values())
-        self.lost += 1 - share
         self.weights = {n: w / share for n, w in kept.items()}
         self._marginals.clear()
         self._ranked = None

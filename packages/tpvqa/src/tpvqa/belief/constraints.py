@@ -1,38 +1,28 @@
 """What can hold together: groups of facts of which one holds, and pairs that never do."""
 
-from collections.abc import Collection, Iterable, Iterator
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-
-import numpy as np
+from typing import NamedTuple
 
 from tpvqa.belief.disturbances import reaching
-from tpvqa.belief.incidence import Flags, Incidence, Numbers
 from tpvqa.belief.transitions import Transition, of_action
 from tpvqa.pddl import Atom, State, Task
 
 Atoms = frozenset[Atom]
 
 
-@dataclass(frozen=True, slots=True)
-class Contradiction:
-    """Facts that cannot all be as they are believed to be.
+class Group(NamedTuple):
+    """Facts of which at most one holds.
 
     Attributes:
-        atoms: They all hold, or, where `missing`, none of them does.
-        missing: Whether one of them must hold and none does.
+        atoms: They, in alphabetical order.
+        needed: Whether one of them must hold.
     """
 
     atoms: tuple[Atom, ...]
-    missing: bool = False
-
-    def __str__(self) -> str:
-        *others, last = map(str, self.atoms)
-        if self.missing:
-            return f"one of {', '.join((*others, last))} must hold, and none does"
-        if len(others) == 1:
-            return f"{others[0]} and {last} cannot both hold"
-        return f"only one of {', '.join(others)} and {last} can hold"
+    needed: bool
 
 
 @dataclass(frozen=True)
@@ -101,77 +91,31 @@ class Constraints:
             frozenset(groups_of) - (reachable - frozenset(never)),
         )
 
-    def violated(self, state: State) -> list[Contradiction]:
-        """What in a state cannot be so; empty where it is consistent.
-
-        Args:
-            state: The facts that are believed to hold; all others are believed not to.
-        """
-        found = set(self._too_many(state))
-        for group in self.exactly_one:
-            if group.isdisjoint(state):
-                found.add(Contradiction(tuple(sorted(group)), missing=True))
-        return sorted(found, key=lambda each: (each.missing, each.atoms))
-
-    def _too_many(self, state: State) -> Iterator[Contradiction]:
-        held: dict[Atoms, list[Atom]] = {}
-        for atom in state:
-            for group in self._groups_of.get(atom, ()):
-                held.setdefault(group, []).append(atom)
-        for atoms in held.values():
-            if len(atoms) > 1:
-                yield Contradiction(tuple(sorted(atoms)))
+    @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """Every group and pair once, in an order of its own; those of `exactly_one` come first."""
+        needed = set(self.exactly_one)
+        groups = needed.union(self.at_most_one, self.pairs)
+        listed = sorted((group not in needed, tuple(sorted(group))) for group in groups)
+        return tuple(Group(atoms, not optional) for optional, atoms in listed)
 
     @cached_property
-    def atoms(self) -> tuple[Atom, ...]:
-        """Every atom that a constraint speaks of, in a fixed order."""
-        return tuple(sorted(self._groups_of, key=lambda atom: (atom.predicate, atom.arguments)))
+    def groups_of(self) -> Mapping[Atom, Sequence[int]]:
+        """The places in `groups` of those in which each atom lies."""
+        found: dict[Atom, list[int]] = {}
+        for number, group in enumerate(self.groups):
+            for atom in group.atoms:
+                found.setdefault(atom, []).append(number)
+        return found
 
-    @cached_property
-    def numbers(self) -> dict[Atom, int]:
-        """The place of each atom in `atoms`."""
-        return {atom: number for number, atom in enumerate(self.atoms)}
-
-    @cached_property
-    def incidence(self) -> Incidence:
-        """The constraints over the places of their atoms; those of `exactly_one` come first."""
-        needing = set(self.exactly_one)
-        groups = needing.union(self.at_most_one, self.pairs)
-        # Sorted, as equally good states are told apart by the numbers of groups.
-        listed = sorted(
-            (group not in needing, sorted(self.numbers[atom] for atom in group)) for group in groups
-        )
-        return Incidence.of(
-            len(self.atoms),
-            [members for _, members in listed],
-            [not optional for optional, _ in listed],
-        )
-
-    @cached_property
-    def parts(self) -> tuple[tuple[Numbers, Incidence], ...]:
-        """The parts that share no constraint: places of their atoms, and their constraints."""
-        return tuple(self.incidence.parts())
-
-    @cached_property
-    def part_of(self) -> Numbers:
-        """The number of the part in which each atom of `atoms` lies."""
-        numbers = np.zeros(len(self.atoms), dtype=np.intp)
-        for number, (members, _) in enumerate(self.parts):
-            numbers[members] = number
-        return numbers
-
-    @cached_property
-    def barred(self) -> Flags:
-        """Whether each atom of `atoms` is unreachable."""
-        return np.array([atom in self.unreachable for atom in self.atoms], dtype=np.bool_)
-
-    @cached_property
-    def _groups_of(self) -> dict[Atom, list[Atoms]]:
-        index: dict[Atom, list[Atoms]] = {}
-        for group in dict.fromkeys((*self.exactly_one, *self.at_most_one, *self.pairs)):
-            for atom in group:
-                index.setdefault(atom, []).append(group)
-        return index
+    def violated(self, state: State) -> list[int]:
+        """The places in `groups` of those that a state violates; empty where it is consistent."""
+        held = Counter(number for atom in state for number in self.groups_of.get(atom, ()))
+        return [
+            number
+            for number, group in enumerate(self.groups)
+            if held[number] > 1 or (group.needed and not held[number])
+        ]
 
 
 def _keeps_one(transition: Transition, group: Atoms) -> bool:

@@ -54,8 +54,10 @@ class Rates:
 
 
 @dataclass(frozen=True, slots=True)
-class Hypothesis:
-    """A joint state, with what it takes to say how faults would undo its facts.
+class JointState:
+    """What may be the case, with what it takes to say how faults would undo it.
+
+    It goes by its number, which a `FaultModel` gives it.
 
     Attributes:
         state: The atoms that hold.
@@ -68,7 +70,7 @@ class Hypothesis:
 
 @dataclass(frozen=True, slots=True)
 class Outcomes:
-    """What an action can lead to from one hypothesis, by number.
+    """What an action can lead to from one joint state, by number.
 
     Attributes:
         intended: What its effects say; None where a precondition does not hold.
@@ -86,12 +88,12 @@ class Outcomes:
 class Truth(dict[int, bool]):
     """In which joint states any of some facts holds, by number; worked out as they are met."""
 
-    def __init__(self, atoms: Iterable[Atom], hypotheses: Sequence[Hypothesis]):
+    def __init__(self, atoms: Iterable[Atom], joint_states: Sequence[JointState]):
         super().__init__()
-        self._atoms, self._hypotheses = frozenset(atoms), hypotheses
+        self._atoms, self._joint_states = frozenset(atoms), joint_states
 
     def __missing__(self, number: int) -> bool:
-        holds = not self._atoms.isdisjoint(self._hypotheses[number].state)
+        holds = not self._atoms.isdisjoint(self._joint_states[number].state)
         self[number] = holds
         return holds
 
@@ -130,38 +132,38 @@ class FaultModel:
         )
         self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
         self._keep = _Keep(self._undo, task)
-        self.hypotheses: list[Hypothesis] = []
+        self.joint_states: list[JointState] = []
         self.keys: list[bytes] = []
         self.facts = 0
-        self._numbers: dict[Hypothesis, int] = {}
+        self._numbers: dict[JointState, int] = {}
         self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
         self._truths: dict[tuple[Atom, ...], Truth] = {}
         self._bound: dict[tuple[Action, State], Action] = {}
         self._undone: dict[int, tuple[tuple[float, int], ...]] = {}
 
-    def number(self, hypothesis: Hypothesis) -> int:
-        """The number of a hypothesis, the same for equal ones."""
-        number = self._numbers.get(hypothesis)
+    def number(self, joint_state: JointState) -> int:
+        """The number of a joint state, the same for equal ones."""
+        number = self._numbers.get(joint_state)
         if number is None:
-            number = self._numbers[hypothesis] = len(self.hypotheses)
-            self.facts += len(hypothesis.state)
-            self.hypotheses.append(hypothesis)
-            self.keys.append(_key(hypothesis))
+            number = self._numbers[joint_state] = len(self.joint_states)
+            self.facts += len(joint_state.state)
+            self.joint_states.append(joint_state)
+            self.keys.append(_key(joint_state))
         return number
 
     def state(self, number: int) -> State:
-        """The joint state of a hypothesis."""
-        return self.hypotheses[number].state
+        """The atoms that hold in a joint state."""
+        return self.joint_states[number].state
 
     def truth(self, atoms: tuple[Atom, ...]) -> Truth:
         """In which joint states any of some facts holds, by number."""
         found = self._truths.get(atoms)
         if found is None:
-            found = self._truths[atoms] = Truth(atoms, self.hypotheses)
+            found = self._truths[atoms] = Truth(atoms, self.joint_states)
         return found
 
     def outcomes(self, action: Action) -> Mapping[int, Outcomes]:
-        """What an action can lead to, by the number of the hypothesis."""
+        """What an action can lead to, by the number of the joint state."""
         found = self._outcomes.get(action)
         if found is None:
             found = _OutcomesOf(partial(self._work_out, action))
@@ -200,22 +202,22 @@ class FaultModel:
         return found
 
     def become(self, number: int, after: State) -> int:
-        """The hypothesis after a change of its state."""
-        before = self.hypotheses[number]
+        """The joint state after a change of its atoms."""
+        before = self.joint_states[number]
         ended = self._keep(before.ended, before.state - after)
-        return self.number(Hypothesis(after, ended))
+        return self.number(JointState(after, ended))
 
     def undone(self, number: int) -> tuple[tuple[float, int], ...]:
         """What a disturbance leads to: an achieved fact is undone, each as probable."""
         found = self._undone.get(number)
         if found is None:
-            hypothesis, results = self.hypotheses[number], []
-            for atom in sorted(hypothesis.state - self.task.init):
+            joint_state, results = self.joint_states[number], []
+            for atom in sorted(joint_state.state - self.task.init):
                 states = [
                     after
                     for rule in self._undo
                     for _, after in rule.results(
-                        atom, hypothesis.state, hypothesis.ended, self.task
+                        atom, joint_state.state, joint_state.ended, self.task
                     )
                 ]
                 if states:
@@ -230,9 +232,9 @@ class FaultModel:
         return found
 
 
-def _key(hypothesis: Hypothesis) -> bytes:
-    """Orders hypotheses the same in every process, whichever were met first."""
-    words = sorted(map(str, hypothesis.state)), list(map(str, hypothesis.ended))
+def _key(joint_state: JointState) -> bytes:
+    """Orders joint states the same in every process, whichever were met first."""
+    words = sorted(map(str, joint_state.state)), list(map(str, joint_state.ended))
     return blake2b(repr(words).encode(), digest_size=8).digest()
 
 

@@ -4,15 +4,13 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from tpvqa.belief.consistency import most_probable
 from tpvqa.belief.constraints import Constraints
 from tpvqa.belief.disturbances import disturbances
 from tpvqa.belief.mutexes import h2_mutexes
-from tpvqa.errors import BeliefError, ContradictionError, MissingExtraError, PlannerError
+from tpvqa.belief.nearest import Nearest
+from tpvqa.errors import BeliefError, PlannerError
 from tpvqa.pddl import Atom, State, Task
 
-KEPT = 2.0
-"""Log odds that a fact stayed as it was: any positive number gives the nearest state."""
 FARTHER = 2
 """Facts by which a state may differ more than the nearest does."""
 
@@ -59,30 +57,28 @@ class Surprise:
             self._known[key] = tuple(self._find(state, atoms))
         return self._known[key]
 
+    @cached_property
+    def _can_hold(self) -> State:
+        return self._task.atoms() | self._task.init
+
     def _find(self, state: State, atoms: tuple[Atom, ...]) -> list[State]:
-        can_hold = self._task.atoms() | self._task.init
         true = [atom for atom in atoms if atom in state]
         if not true:
-            wishes = [{atom: True} for atom in sorted(atoms) if atom in can_hold]
+            wishes = [{atom: True} for atom in sorted(atoms) if atom in self._can_hold]
         else:
             gone = dict.fromkeys(atoms, False)
             homes = [g.atoms for g in self._task.groups_of(true[0]) if g.exactly_one]
-            elsewhere = sorted((max(homes, key=len, default=frozenset()) & can_hold) - set(atoms))
+            places = max(homes, key=len, default=frozenset[Atom]()) & self._can_hold
+            elsewhere = sorted(places.difference(atoms))
             wishes = [{**gone, other: True} for other in elsewhere] or [gone]
-        fluents = self._task.fluents
-        odds = {
-            atom: KEPT if atom in state else -KEPT
-            for atom in can_hold | state
-            if atom.predicate in fluents
-        }
-        static = frozenset(atom for atom in state if atom.predicate not in fluents)
+        nearest = Nearest(self.constraints, state, self._can_hold)
         found: dict[State, int] = {}
         for wish in wishes:
             try:
-                after = static | most_probable(odds, self.constraints, fixed=wish).state
-            except (ContradictionError, BeliefError, MissingExtraError):
+                after = nearest.where(wish)
+            except BeliefError:
                 continue
             if after != state:
                 found[after] = len(after ^ state)
-        nearest = min(found.values(), default=0)
-        return [after for after, changes in found.items() if changes <= nearest + FARTHER]
+        least = min(found.values(), default=0)
+        return [after for after, changes in found.items() if changes <= least + FARTHER]
