@@ -14,8 +14,7 @@ from collections.abc import Callable, Sequence
 from statistics import mean, quantiles
 
 from tpvqa.belief.belief import MOST, SMALLEST, Belief
-from tpvqa.belief.calibration import Calibration, Curve, Group
-from tpvqa.belief.calibration import Rates as AnswerRates
+from tpvqa.belief.calibration import AnswerRates, Calibration, Curve, Group
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.episodes import MemoryWriter
 from tpvqa.monitors.belief import BeliefMonitor

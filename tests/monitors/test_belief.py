@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tpvqa.belief import Calibration, Group, Rates, faults
+from tpvqa.belief import AnswerRates, Calibration, Group, faults
 from tpvqa.belief.calibration import Curve
 from tpvqa.episodes import Ended, Limits, MemoryWriter
 from tpvqa.episodes.events import Acting, Asked, Decided, Event, PlanMade
@@ -39,7 +39,9 @@ def right_in(accuracy: float, repeat: float = 0.0) -> Calibration:
     return Calibration(
         vlm="oracle",
         rows=5000,
-        whole=Group(rows=5000, rates=Rates(accuracy, 1 - accuracy, 0, 0), curve=Curve(slope=1)),
+        whole=Group(
+            rows=5000, rates=AnswerRates(accuracy, 1 - accuracy, 0, 0), curve=Curve(slope=1)
+        ),
         repeat_same_view=repeat,
         repeat_other_view=repeat,
     )
@@ -363,7 +365,7 @@ def test_it_learns_from_trial_to_trial_that_the_vlm_is_worse_than_it_was_told(
             planner,
             accuracy=0.7,
             calibration=right_in(0.9).model_copy(
-                update={"whole": Group(rows=5000, rates=Rates(0.9, 0.1, 0, 0))}
+                update={"whole": Group(rows=5000, rates=AnswerRates(0.9, 0.1, 0, 0))}
             ),
             experience=experience,
             episode=episode,
