@@ -15,8 +15,7 @@ from statistics import mean, quantiles
 
 from tpvqa.assembly import Trial
 from tpvqa.belief.belief import MOST, SMALLEST, Belief
-from tpvqa.belief.calibration import Calibration, Curve, Group
-from tpvqa.belief.calibration import Rates as AnswerRates
+from tpvqa.belief.calibration import AnswerRates, Calibration, Curve, Group
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief import Apart, Calibration, Curve, Group, Rates
+from tpvqa.belief import AnswerRates, Apart, Calibration, Curve, Group
 from tpvqa.belief.calibration import BOUND
 from tpvqa.errors import CalibrationError
 from tpvqa.pddl import Action, Atom, Conjunction
@@ -20,10 +20,10 @@ P = st.floats(0, 1)
 SLOPE = st.floats(0.01, 3)
 
 
-RATES = Rates(0.8, 0.2, 0.1, 0.1)
+RATES = AnswerRates(0.8, 0.2, 0.1, 0.1)
 
 
-def calibration(curve: Curve | None, rates: Rates = RATES) -> Calibration:
+def calibration(curve: Curve | None, rates: AnswerRates = RATES) -> Calibration:
     return Calibration(
         vlm="v",
         whole=Group(rates=rates, curve=curve),
@@ -33,14 +33,14 @@ def calibration(curve: Curve | None, rates: Rates = RATES) -> Calibration:
 
 
 def group(way: Way, predicate: str | None, yes_if_true: float) -> Group:
-    return Group(way=way, predicate=predicate, rates=Rates(yes_if_true, 0.1, 0.0, 0.0))
+    return Group(way=way, predicate=predicate, rates=AnswerRates(yes_if_true, 0.1, 0.0, 0.0))
 
 
 @given(P, SLOPE, st.floats(0, 2), st.floats(0.01, 0.99))
 def test_a_symmetric_calibration_is_antisymmetric(
     p: float, slope: float, sign: float, rate: float
 ) -> None:
-    one = calibration(Curve(slope=slope, sign=sign), Rates(rate, 1 - rate, 0.1, 0.1))
+    one = calibration(Curve(slope=slope, sign=sign), AnswerRates(rate, 1 - rate, 0.1, 0.1))
     for p_yes, p_no in ((p, 1 - p), (None, None)):
         yes = one.log_ratio(Answer(ON, Reply.YES, p_yes))
         no = one.log_ratio(Answer(ON, Reply.NO, p_no))
@@ -73,7 +73,7 @@ def test_it_grows_strictly_within_its_bounds() -> None:
 
 
 def test_without_p_yes_the_counts_decide() -> None:
-    one = calibration(Curve(slope=0.7), Rates(0.9, 0.3, 0.0, 0.0))
+    one = calibration(Curve(slope=0.7), AnswerRates(0.9, 0.3, 0.0, 0.0))
     assert one.log_ratio(Answer(ON, Reply.YES)) == pytest.approx(log(0.9 / 0.3))
     assert one.log_ratio(Answer(ON, Reply.NO)) == pytest.approx(log(0.1 / 0.7))
 
@@ -82,7 +82,7 @@ def test_without_data_it_trusts_p_yes_half() -> None:
     one = Calibration.default("v")
     assert one.log_ratio(Answer(ON, Reply.YES, 0.9)) == pytest.approx(log(9) / 2)
     assert one.log_ratio(Answer(ON, Reply.YES)) == pytest.approx(log(0.85 / 0.15))
-    assert one.group(ON).rates == Rates(0.85, 0.15, 0.05, 0.05)
+    assert one.group(ON).rates == AnswerRates(0.85, 0.15, 0.05, 0.05)
     assert (one.repeat(Apart.SAME_VIEW), one.repeat(Apart.OTHER_VIEW)) == (0.5, 0.25)
 
 
@@ -91,7 +91,7 @@ def test_words_that_are_the_same_stand_in_for_each_other() -> None:
         vlm="v",
         groups=(group(Way.PRECONDITION, "on", 0.91), group(Way.ALTERNATIVE, "near", 0.92)),
         ways=(group(Way.PRECONDITION, None, 0.93), group(Way.DID, None, 0.94)),
-        whole=Group(rates=Rates(0.95, 0.1, 0.0, 0.0)),
+        whole=Group(rates=AnswerRates(0.95, 0.1, 0.0, 0.0)),
         repeat_same_view=0.5,
         repeat_other_view=0.2,
     )
@@ -119,7 +119,7 @@ def test_words_that_are_the_same_stand_in_for_each_other() -> None:
 def test_the_file_gives_back_what_was_written(
     tmp_path_factory: pytest.TempPathFactory, ways: list[Way], rate: float, slope: float
 ) -> None:
-    rates = Rates(rate, 1 - rate, 0.5, 0.25)
+    rates = AnswerRates(rate, 1 - rate, 0.5, 0.25)
     kinds = tuple(Group(way=way, predicate="on", rates=rates) for way in ways)
     one = Calibration(
         vlm="openai:ü",

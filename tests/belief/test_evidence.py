@@ -6,11 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief import Calibration, Group, Rates
+from tpvqa.belief import AnswerRates, Calibration, Group
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.faults import Rates as Faults
+from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.trust import Trust
 from tpvqa.pddl import Literal, load_task
 from tpvqa.questions import QuestionBook, Way
@@ -34,10 +33,10 @@ def told(reply: Reply) -> Answer:
 def found(repeat: float, *, unexplained: float = 0.0, rows: int = 10**9) -> tuple[Belief, Evidence]:
     """After `find plate`, with a VLM that is right in .8 of its answers."""
     belief = Belief(MODEL)
-    belief.act(FIND, Faults(0.25, 0.25, 0.0))
+    belief.act(FIND, Rates(0.25, 0.25, 0.0))
     calibration = Calibration(
         vlm="",
-        whole=Group(rates=Rates(0.8, 0.2, 0, 0), rows=rows),
+        whole=Group(rates=AnswerRates(0.8, 0.2, 0, 0), rows=rows),
         repeat_same_view=repeat,
         repeat_other_view=repeat / 2,
     )
@@ -115,7 +114,7 @@ def test_after_an_action_an_answer_is_worth_all_where_the_fact_has_changed() -> 
     for look in range(60):
         evidence.take(QUESTION, told(Reply.NO), look, None)
     assert belief.probability(NEAR) < 0.02
-    belief.act(FIND, Faults(0.25, 0.25, 0.0))
+    belief.act(FIND, Rates(0.25, 0.25, 0.0))
     evidence.acted()
     before = odds(belief)
     evidence.take(QUESTION, told(Reply.YES), 61, None)
@@ -138,7 +137,7 @@ def test_a_surprising_answer_opens_what_the_model_does_not_explain() -> None:
     belief = Belief(MODEL)
     calibration = Calibration(
         vlm="",
-        whole=Group(rates=Rates(0.9, 0.1, 0, 0), rows=1000),
+        whole=Group(rates=AnswerRates(0.9, 0.1, 0, 0), rows=1000),
         repeat_same_view=0,
         repeat_other_view=0,
     )
@@ -188,7 +187,7 @@ def test_what_is_expected_of_an_answer_is_a_probability(
         trust.learn(0.99, 3.0)
     calibration = Calibration(
         vlm="",
-        whole=Group(rates=Rates(if_true, if_false, 0, 0)),
+        whole=Group(rates=AnswerRates(if_true, if_false, 0, 0)),
         repeat_same_view=0.3,
         repeat_other_view=0.1,
     )

@@ -11,7 +11,7 @@ import pytest
 
 from tests.doubles import configured, known_truth, truthful
 from tpvqa.assembly import Trial
-from tpvqa.belief import Calibration, Group, Rates
+from tpvqa.belief import AnswerRates, Calibration, Group
 from tpvqa.belief.calibration import Curve
 from tpvqa.belief.faults import FaultModel
 from tpvqa.config import TrialConfig
@@ -48,7 +48,9 @@ def right_in(accuracy: float, repeat: float = 0.0) -> Calibration:
     return Calibration(
         vlm="oracle",
         rows=5000,
-        whole=Group(rows=5000, rates=Rates(accuracy, 1 - accuracy, 0, 0), curve=Curve(slope=1)),
+        whole=Group(
+            rows=5000, rates=AnswerRates(accuracy, 1 - accuracy, 0, 0), curve=Curve(slope=1)
+        ),
         repeat_same_view=repeat,
         repeat_other_view=repeat,
     )
@@ -383,7 +385,7 @@ def test_it_learns_from_trial_to_trial_that_the_vlm_is_worse_than_it_was_told(
             planner,
             accuracy=0.7,
             calibration=right_in(0.9).model_copy(
-                update={"whole": Group(rows=5000, rates=Rates(0.9, 0.1, 0, 0))}
+                update={"whole": Group(rows=5000, rates=AnswerRates(0.9, 0.1, 0, 0))}
             ),
             experience=experience,
             episode=episode,

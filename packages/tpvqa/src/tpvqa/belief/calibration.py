@@ -33,7 +33,7 @@ class Apart(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Rates:
+class AnswerRates:
     """How often each reply comes.
 
     Attributes:
@@ -79,7 +79,7 @@ class Group(_Model):
     way: Way | None = None
     predicate: str | None = None
     rows: int = 0
-    rates: Rates
+    rates: AnswerRates
     curve: Curve | None = None
 
     def log_ratio(self, reply: Reply, p_yes: float | None) -> float:
@@ -187,7 +187,7 @@ class Calibration(_Model):
         """
         return cls(
             vlm=vlm,
-            whole=Group(rates=Rates(0.85, 0.15, 0.05, 0.05), curve=Curve(slope=0.5)),
+            whole=Group(rates=AnswerRates(0.85, 0.15, 0.05, 0.05), curve=Curve(slope=0.5)),
             repeat_same_view=0.5,
             repeat_other_view=0.25,
         )

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from tpvqa.belief.calibration import Rates
+from tpvqa.belief.calibration import AnswerRates
 from tpvqa.belief.labelled_answer import LabelledAnswer
 from tpvqa.belief.runs import ANSWERS
 from tpvqa.vlm.answer import Reply
@@ -14,8 +14,8 @@ is better told by the wider one, a group of more by itself."""
 
 
 def shrunk(
-    every: Sequence[LabelledAnswer], answers: Sequence[LabelledAnswer], wider: Rates
-) -> Rates:
+    every: Sequence[LabelledAnswer], answers: Sequence[LabelledAnswer], wider: AnswerRates
+) -> AnswerRates:
     """The rates of some answers, shrunk towards those of a wider group.
 
     Args:
@@ -23,7 +23,7 @@ def shrunk(
         answers: Answers, for the rates of yes.
         wider: The rates of the wider group.
     """
-    return Rates(
+    return AnswerRates(
         yes_if_true=_share(
             (row.reply is Reply.YES for row in answers if row.truth), wider.yes_if_true
         ),

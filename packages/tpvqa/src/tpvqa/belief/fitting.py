@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import zip_longest
 
-from tpvqa.belief.calibration import Calibration, Group, Rates
+from tpvqa.belief.calibration import AnswerRates, Calibration, Group
 from tpvqa.belief.counts import shrunk
 from tpvqa.belief.labelled_answer import LabelledAnswer
 from tpvqa.belief.platt import WHOLE, Key, fit_curves
@@ -42,7 +42,7 @@ def fit(rows: Iterable[LabelledAnswer], vlm: str, *, chosen_looks: bool = True) 
     with_p = [row for row in answers if row.p_yes is not None]
     curves = fit_curves(with_p) if with_p else None
 
-    def rates(key: Key) -> Rates:
+    def rates(key: Key) -> AnswerRates:
         """Shrunk towards the rest of the way, and that towards the rest of all: in the rates of a
         group no answer counts twice."""
         found = default.whole.rates
@@ -103,7 +103,7 @@ def telling(
     return every, [row for row in every if row.reply in ANSWERS]
 
 
-def _never_swapped(rates: Rates) -> Rates:
+def _never_swapped(rates: AnswerRates) -> AnswerRates:
     """Rates by which a yes never speaks for no, as with the curves."""
     if rates.yes_if_true >= rates.yes_if_false:
         return rates

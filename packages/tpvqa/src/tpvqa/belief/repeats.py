@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tpvqa.belief.calibration import Rates
+from tpvqa.belief.calibration import AnswerRates
 from tpvqa.belief.labelled_answer import LabelledAnswer
 from tpvqa.belief.runs import Placed
 from tpvqa.vlm.answer import Reply
@@ -23,7 +23,7 @@ class Repeats(NamedTuple):
 
 def fit_repeats(
     placed: Iterable[Placed],
-    rates: Callable[[LabelledAnswer], Rates],
+    rates: Callable[[LabelledAnswer], AnswerRates],
     *,
     same_view: float,
     other_view: float,
@@ -53,7 +53,7 @@ def fit_repeats(
     )
 
 
-def _fresh(row: LabelledAnswer, rates: Rates) -> float:
+def _fresh(row: LabelledAnswer, rates: AnswerRates) -> float:
     """P(answer | truth) of an answer that is drawn afresh."""
     yes = rates.yes_if_true if row.truth else rates.yes_if_false
     return yes if row.reply is Reply.YES else 1 - yes
