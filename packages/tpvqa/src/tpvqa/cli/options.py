@@ -120,8 +120,9 @@ def _parameter(setting: Setting, defaults: Layer | None) -> inspect.Parameter:
     known = (
         setting.default if defaults is None else defaults.values.get(setting.key, setting.default)
     )
-    shown = None if known in (None, {}) else str(known)
-    option = typer.Option(setting.option, help=setting.says, show_default=shown or False)
+    shown = "" if known in (None, {}) else f" Default: {known}."
+    says = setting.says if setting.says.endswith(".") else f"{setting.says}."
+    option = typer.Option(setting.option, help=f"{says}{shown}", show_default=False)
     return inspect.Parameter(
         _name(setting),
         inspect.Parameter.KEYWORD_ONLY,
@@ -133,5 +134,7 @@ def _parameter(setting: Setting, defaults: Layer | None) -> inspect.Parameter:
 def _type(setting: Setting) -> Any:
     if setting.key == ("options",):
         return list[str] | None
+    if setting.file:
+        return Path | None
     kind = setting.kind
     return _TYPES.get(str(kind), kind) | None
