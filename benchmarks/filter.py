@@ -45,7 +45,7 @@ class Factored(Belief):
             values.append((frozenset(), max(1 - sum(p for _, p in values), 0.0)))
             grown = {s | v: w * p for s, w in joint.items() for v, p in values if w * p > 1e-9}
             joint = dict(sorted(grown.items(), key=lambda each: -each[1])[:MOST])
-        self.came = None
+        self.outcome_weights = None
         self._become({self.model.number(JointState(s)): w for s, w in joint.items()})
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.curve import curve_cells, curves
-from tpvqa.bench.engine import Bench, Told, run_bench
+from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.grid import can_answer
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.report import WAYS, WORDS, AnswerLine, Results, write_bench_report
@@ -83,7 +83,7 @@ def run_paper_bench(
     *,
     workers: int = 1,
     scheduler: str | None = None,
-    progress: Told = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
 ) -> Results:
     """Run what is missing, and write tables, figures and the report.
 
@@ -92,7 +92,7 @@ def run_paper_bench(
         folder: Where everything goes; a bench that was stopped goes on there.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
-        progress: Told how many episodes are done and how many there are.
+        progress: Progress how many episodes are done and how many there are.
 
     Raises:
         TpvqaError: Something is not there, or the folder cannot be used.

@@ -8,7 +8,7 @@ from typing import Any
 
 from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.engine import Bench, Told, run_bench
+from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.tasks import find_task
@@ -75,14 +75,14 @@ class BeliefBench:
         self,
         wanted: Mapping[Cell, int],
         folder: Path = Path(),
-        calibrating: Told = lambda done, total: None,
+        calibrating: Progress = lambda done, total: None,
     ) -> Bench:
         """What the engine is given.
 
         Args:
             wanted: How many episodes of each cell.
             folder: Where calibrations are kept.
-            calibrating: Told how many calibrations are there and how many there will be.
+            calibrating: Progress how many calibrations are there and how many there will be.
         """
 
         def told(missing: Sequence[Cell]) -> dict[Cell, Calibration]:
@@ -114,8 +114,8 @@ def run_belief_bench(
     *,
     workers: int = 1,
     scheduler: str | None = None,
-    calibrating: Told = lambda done, total: None,
-    progress: Told = lambda done, total: None,
+    calibrating: Progress = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
     only_tables: bool = False,
     published: Path | None = None,
 ) -> tuple[BeliefResults, list[Check]]:
@@ -126,8 +126,8 @@ def run_belief_bench(
         folder: Where everything goes; a bench that was stopped goes on there.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
-        calibrating: Told how many calibrations are there and how many there will be.
-        progress: Told how many episodes are done and how many there are.
+        calibrating: Progress how many calibrations are there and how many there will be.
+        progress: Progress how many episodes are done and how many there are.
         only_tables: Run nothing.
         published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
 

@@ -18,7 +18,7 @@ MOST = 300
 
 
 @dataclass(slots=True)
-class Came:
+class OutcomeWeights:
     """How an action's outcome is shared between its ways, by joint state. Unnormalised."""
 
     success: dict[int, float] = field(default_factory=dict)
@@ -50,7 +50,7 @@ class Belief:
         self._surprise = model.surprise
         first = model.task.init if state is None else state
         self.weights: dict[int, float] = {model.number(JointState(first)): 1.0}
-        self.came: Came | None = None
+        self.outcome_weights: OutcomeWeights | None = None
         self._predicted: dict[int, float] = {}
         self._marginals: dict[tuple[Atom, ...], float] = {}
         self._ranked: list[tuple[int, float]] | None = None
@@ -93,7 +93,7 @@ class Belief:
     def act(self, action: Action, rates: Rates) -> None:
         """Predict what an action leads to."""
         after: dict[int, float] = {}
-        came = Came()
+        came = OutcomeWeights()
 
         def add(number: int, weight: float, kind: dict[int, float] | None = None) -> None:
             after[number] = after.get(number, 0.0) + weight
@@ -125,7 +125,7 @@ class Belief:
                 mass = failing * d * share
                 add(other, mass, came.failure if possible else None)
                 came.disturbed[other] = came.disturbed.get(other, 0.0) + mass
-        self.came = came
+        self.outcome_weights = came
         self._predicted = dict(after)
         self._become(after)
 
@@ -163,10 +163,13 @@ class Belief:
 
     def weigh_outcome(self, *, succeeded: float, failed: float) -> None:
         """Weigh by how probable something is where the last action succeeded, and where not."""
-        if self.came is None:
+        if self.outcome_weights is None:
             return
         shares = {
-            number: (self.came.success.get(number, 0.0) + self.came.achieved.get(number, 0.0))
+            number: (
+                self.outcome_weights.success.get(number, 0.0)
+                + self.outcome_weights.achieved.get(number, 0.0)
+            )
             / self._predicted[number]
             for number in self.weights
         }
@@ -207,14 +210,14 @@ class Belief:
             something could be disturbed, "disturbed" and "undisturbed". Empty before the first
             action.
         """
-        if self.came is None:
+        if self.outcome_weights is None:
             return {}
         shares = {}
         for name, masses in (
-            ("success", self.came.success),
-            ("failure", self.came.failure),
-            ("disturbed", self.came.disturbed),
-            ("undisturbed", self.came.could_disturb),
+            ("success", self.outcome_weights.success),
+            ("failure", self.outcome_weights.failure),
+            ("disturbed", self.outcome_weights.disturbed),
+            ("undisturbed", self.outcome_weights.could_disturb),
         ):
             shares[name] = sum(
                 self.weights.get(number, 0.0) * mass / self._predicted[number]

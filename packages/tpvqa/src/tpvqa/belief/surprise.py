@@ -54,14 +54,14 @@ class Surprise:
         """
         key = (state, atoms)
         if key not in self._known:
-            self._known[key] = tuple(self._find(state, atoms))
+            self._known[key] = tuple(self._nearest(state, atoms))
         return self._known[key]
 
     @cached_property
     def _can_hold(self) -> State:
         return self._task.atoms() | self._task.init
 
-    def _find(self, state: State, atoms: tuple[Atom, ...]) -> list[State]:
+    def _nearest(self, state: State, atoms: tuple[Atom, ...]) -> list[State]:
         true = [atom for atom in atoms if atom in state]
         if not true:
             wishes = [{atom: True} for atom in sorted(atoms) if atom in self._can_hold]

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from tpvqa.belief.calibration import Calibration
-from tpvqa.bench.engine import Bench, Told, run_bench
+from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.grid import Grid, known_calibrations
 from tpvqa.bench.report import Results, write_bench_report
 from tpvqa.bench.tables import write_tables
@@ -20,7 +20,7 @@ def run_compared(
     calibration: Calibration | None = None,
     workers: int = 1,
     scheduler: str | None = None,
-    progress: Told = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
 ) -> Results:
     """Run what is missing, and write tables, figures and the report.
 
@@ -32,7 +32,7 @@ def run_compared(
         calibration: What monitors that weigh answers are told; None for what is shipped.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
-        progress: Told how many episodes are done and how many there are.
+        progress: Progress how many episodes are done and how many there are.
 
     Raises:
         TpvqaError: Something is not there, or the folder cannot be used.

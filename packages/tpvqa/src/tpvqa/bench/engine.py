@@ -16,7 +16,7 @@ from tpvqa.bench.settings import common_settings
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 
-Told = Callable[[int, int], None]
+Progress = Callable[[int, int], None]
 """Told how many are done, and how many there are."""
 TASKS = "tasks.json"
 """The fingerprints of the user's own tasks, by name."""
@@ -65,7 +65,7 @@ def run_bench(
     *,
     workers: int = 1,
     scheduler: str | None = None,
-    progress: Told = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
     published: Path | None = None,
 ) -> Ledger:
     """Run what is missing.
@@ -75,7 +75,7 @@ def run_bench(
         folder: Where rows go; a bench that was stopped goes on there.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
-        progress: Told how many episodes are done and how many there are.
+        progress: Progress how many episodes are done and how many there are.
         published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
 
     Returns:
