@@ -63,7 +63,7 @@ def test_the_librarys_defaults_are_the_commands(tpvqa: Run) -> None:
     code, out, _ = tpvqa("config", "eat_apple", "--json")
     assert code == 0
     assert TrialConfig.model_validate_json(out) == TrialConfig(task="eat_apple")
-    assert TrialConfig().monitor.spec == "belief"
+    assert TrialConfig().monitor.named == "belief"
 
 
 def test_each_setting_says_where_it_came_from(tpvqa: Run, tmp_path: Path) -> None:
@@ -102,6 +102,12 @@ def test_a_file_is_run(tpvqa: Run, tmp_path: Path) -> None:
         ("limits: [1]\n", r"trial\.yaml:1: limits: expected 'name: value' entries"),
         ("seed: 1\nseed: 2\n", r"trial\.yaml:2: .*given twice"),
         (": :\n", r"trial\.yaml"),
+        ("options: [1, 2]\n", r"trial\.yaml:1: options"),
+        ("options: 3\n", r"trial\.yaml:1: options"),
+        ("options: {1: 2}\n", r"trial\.yaml:1: options"),
+        ("seed: 2024-99-99\n", r"trial\.yaml:1: seed: cannot be read"),
+        ("seed: !!int foo\n", r"trial\.yaml:1: seed: cannot be read"),
+        ("task:\n  name: a\n  domain: b\n", r"trial\.yaml:2: task: .*either a shipped task"),
     ],
 )
 def test_what_is_wrong_in_a_file_is_said_with_its_line(
@@ -127,3 +133,27 @@ def test_what_cannot_be_is_refused(tpvqa: Run) -> None:
         TrialConfig(limits=Limits(repeats=-1))
     with pytest.raises(ValidationError):
         TrialConfig.model_validate({"limit": {}})
+
+
+def test_a_printed_configuration_can_be_changed_to_a_majority(tpvqa: Run, tmp_path: Path) -> None:
+    file = tmp_path / "trial.yaml"
+    file.write_text(tpvqa("config", "build_tower")[1])
+    code, out, _ = tpvqa("config", "--config", file, "--majority", "strict", "--json")
+    assert code == 0
+    assert TrialConfig.model_validate_json(out).monitor.named == "tpvqa"
+    assert TrialConfig().but(monitor={"majority": "strict"}).monitor.named == "tpvqa"
+
+
+def test_a_robots_configuration_is_printed_and_read(tmp_path: Path) -> None:
+    config = TrialConfig(task="eat_apple", simulation=None)
+    file = tmp_path / "trial.yaml"
+    file.write_text(as_yaml(config, []))
+    assert combined([file_layer(file)]) == config
+
+
+@pytest.mark.parametrize("name", ["seed", "truth", "arguments", "task"])
+def test_an_option_does_not_say_what_plug_ins_are_given(tpvqa: Run, name: str) -> None:
+    words = ("--world", "symbolic", "--vlm", "oracle", "--option", f"{name}=1")
+    code, _, err = tpvqa("run", "build_tower", *words)
+    assert code == 2
+    assert f"--option {name}" in err

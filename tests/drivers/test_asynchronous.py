@@ -1,6 +1,7 @@
 """A trial beside other tasks: it can be killed anywhere, and looked at while it acts."""
 
 import asyncio
+import contextlib
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 from tests.doubles import configured
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
+from tpvqa.drivers import AsynchronousTrial
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import TpvqaError
@@ -111,9 +113,12 @@ def test_a_look_can_be_taken_while_an_action_runs(planner: Planner, tmp_path: Pa
         async for event in running.events():
             told.append(event)
             if isinstance(event, Acting):
-                assert (await running.look()).look == event_looks(told)
-        with pytest.raises(TpvqaError, match="No action is running"):
-            await running.look()
+                seen = await running.look()
+                assert seen is not None
+                assert seen.look == event_looks(told)
+        assert await running.look() is None  # nothing is running any more
+        with pytest.raises(TpvqaError, match="has run already"):
+            await anext(running.events())
         return told
 
     def event_looks(told: list[Event]) -> int:
@@ -144,16 +149,15 @@ def test_a_look_can_be_taken_while_an_action_runs(planner: Planner, tmp_path: Pa
     assert (ended.because, ended.completed) == ("goal", True)
 
 
-def test_whoever_stops_listening_stops_the_trial(planner: Planner) -> None:
+def test_whoever_leaves_has_stopped_the_trial(planner: Planner) -> None:
     writer = MemoryWriter()
 
     async def leave() -> float:
-        running = trial.asynchronous(writer).events()
-        async for event in running:
-            if isinstance(event, Acting):
-                break
-        began = time.monotonic()
-        await running.aclose()  # type: ignore[attr-defined]
+        async with trial.asynchronous(writer) as running:
+            async for event in running.events():
+                if isinstance(event, Acting):
+                    break
+            began = time.monotonic()
         return time.monotonic() - began
 
     with slow(planner) as trial:
@@ -161,7 +165,41 @@ def test_whoever_stops_listening_stops_the_trial(planner: Planner) -> None:
     ended = writer.events[-1]
     assert isinstance(ended, Ended)
     assert ended.because == "cancelled"
+    assert isinstance(writer.events[-2], Acted)
     assert waited < 2
+
+
+def test_a_loop_that_shuts_down_leaves_no_robot_acting(planner: Planner) -> None:
+    writer, tasks = MemoryWriter(), list[object]()
+
+    async def consume(running: AsynchronousTrial) -> None:
+        async for _ in running.events():
+            pass
+
+    async def main() -> None:
+        tasks.append(asyncio.create_task(consume(trial.asynchronous(writer))))
+        while not any(isinstance(event, Acting) for event in writer.events):
+            await asyncio.sleep(0.001)
+
+    with slow(planner) as trial:
+        asyncio.run(main())
+    assert [event.kind for event in writer.events[-2:]] == ["acted", "ended"]
+
+
+def test_a_look_that_is_given_up_is_still_one_look(planner: Planner) -> None:
+    writer = MemoryWriter()
+
+    async def impatient() -> None:
+        async with trial.asynchronous(writer) as running:
+            async for event in running.events():
+                if isinstance(event, Acting):
+                    with contextlib.suppress(TimeoutError):
+                        await asyncio.wait_for(running.look(), 1e-4)
+
+    with slow(planner) as trial:
+        asyncio.run(impatient())
+    looks = [event.look for event in writer.events if isinstance(event, Observed)]
+    assert looks == list(range(len(looks)))
 
 
 def test_trials_run_beside_each_other_as_they_do_alone(planner: Planner) -> None:

@@ -63,3 +63,20 @@ def test_a_log_of_another_version_is_refused_with_the_version_that_reads_it(
     (tmp_path / LOG).write_text('{"kind": "started", "version": "0.1.0", "task": "x"}\n')
     with pytest.raises(EpisodeError, match=r"written by tpvqa 0\.1\.0.*tpvqa 0\.1\.0 reads it"):
         read_episode(tmp_path)
+
+
+def test_what_was_ended_by_ctrl_c_and_is_gone_on_with_is_followed_on(tmp_path: Path) -> None:
+    with Trial(CONFIG) as trial:
+        writer = EpisodeWriter(tmp_path, durable=False)
+        trial.run(writer)
+        writer.close()
+    whole = (tmp_path / LOG).read_bytes()
+    lines = whole.splitlines(keepends=True)
+    (tmp_path / LOG).write_bytes(b"".join(lines[:8]))
+    following = follow(tmp_path, poll=0.001, timeout=5)
+    told = [next(following) for _ in range(8)]
+    (tmp_path / LOG).write_bytes(b"".join(lines[:5]))
+    shorter = threading.Timer(0.05, lambda: (tmp_path / LOG).write_bytes(whole))
+    shorter.start()
+    told += list(following)
+    assert told == read_episode(tmp_path)

@@ -143,6 +143,7 @@ class Trial:
             "seed": config.seed,
             "episode": config.episode,
         }
+        _not_taken_already(config.options, context)
         world, by_world = make_world(self.world_spec, context)
         self._closing.append(world.close)
         context |= {"truth": truth_of(world), "views": tuple(world.views())}
@@ -158,7 +159,7 @@ class Trial:
             "noise_model": is_noise_model(vlm or load_spec(Kind.VLM, self.vlm_spec)),
         }
         self.monitor: Monitor
-        self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor.spec, context)
+        self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor.named, context)
         self.weighs_answers = "calibration" in by_monitor
         if not self.weighs_answers:
             self.calibration = None
@@ -211,12 +212,13 @@ class Trial:
     def started(self) -> Started:
         """The first event of the trial's episode."""
         simulated = self.simulation is not None
+        faults = self.config.simulation or SimulationConfig()
         goal = (self.book.fact(literal).text for literal in literals(self.task.goal))
         return Started(
             version=__version__,
-            config=self.config if simulated else self.config.model_copy(update=_NOT_SIMULATED),
+            config=self.config.model_copy(update={"simulation": faults if simulated else None}),
             task=self.task.name,
-            monitor=self.config.monitor.spec,
+            monitor=self.config.monitor.named,
             vlm=self.vlm_spec,
             world=self.world_spec,
             planner=self.parts.planner.name,
@@ -290,7 +292,12 @@ class Trial:
             raise TpvqaError("This trial has run already. Make another Trial to run it again.")
         self._run = True
         return SteppingTrial(
-            trial(self.task, self.book, self.monitor, started or self.started()),
+            trial(
+                self.task,
+                self.book,
+                self.monitor,
+                self.started() if started is None else started.model_copy(),
+            ),
             Journal(writer, listeners),
             recording=Recording(recorded, self.task, folder) if recorded else None,
             restore=self._restore,
@@ -361,7 +368,12 @@ class Trial:
         self.close()
 
 
-_NOT_SIMULATED = {"simulation": None}
+def _not_taken_already(options: Mapping[str, Any], context: Mapping[str, Any]) -> None:
+    """What plug-ins are given anyway is not for options to say."""
+    for name, value in options.items():
+        later = ("truth", "views", "calibration", "experience", "noise_model", "arguments")
+        if name in later or context.get(name) is not value:
+            raise TpvqaError(f"--option {name}: plug-ins are given {name!r} already; leave it out")
 
 
 def _all_taken(

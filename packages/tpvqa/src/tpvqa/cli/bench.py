@@ -112,7 +112,7 @@ def run(
     config = combined(layers)
     given = {key for layer in layers for key in layer.values}
     shipped, own = _tasks(tasks or [], [*(problem or [])], domain, questions, world_file, config)
-    named = config.monitor.spec if ("monitor", "spec") in given else MONITORS
+    named = config.monitor.named if ("monitor", "spec") in given else MONITORS
     grid = Grid(
         tasks=shipped,
         own=own,

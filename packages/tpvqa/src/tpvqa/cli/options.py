@@ -84,8 +84,9 @@ def trial_config(
             raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
         own = {("task", "name"): task}
     config = combined([*layers, Layer(own, dict.fromkeys(own, "argument"))])
-    if not config.monitor.spec.strip() or (config.vlm.spec is not None and not config.vlm.spec):
-        raise TpvqaError("--monitor and --vlm must not be empty.")
+    for name, spec in (("--monitor", config.monitor.spec), ("--vlm", config.vlm.spec)):
+        if spec is not None and not spec.strip():
+            raise TpvqaError(f"{name} must not be empty.")
     return config
 
 

@@ -154,7 +154,11 @@ def show(
 
     events = read_episode(episode)
     if as_json:
-        print(json.dumps([EVENT.dump_python(event, mode="json") for event in events], indent=1))
+        print(
+            json.dumps(
+                [EVENT.dump_python(event, mode="json", by_alias=True) for event in events], indent=1
+            )
+        )
         return
     view = EpisodeView(Console(), live=False)
     for event in events:

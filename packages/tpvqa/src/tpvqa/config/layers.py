@@ -15,6 +15,7 @@ from tpvqa.yaml_places import Place, read_yaml
 
 Key = tuple[str, ...]
 """Where a setting stands in the configuration: ("limits", "actions")."""
+DEFAULT = "default"
 SPECS = {"task": "name", "world": "spec", "vlm": "spec", "monitor": "spec", "planner": "spec"}
 """The setting of a part for which a name alone stands."""
 
@@ -93,25 +94,35 @@ def combined(layers: Sequence[Layer]) -> TrialConfig:
     for layer in layers:
         for (first, *rest), value in layer.values.items():
             if not rest:
-                nested[first] = {**nested.get(first, {}), **value} if first == "options" else value
+                known = nested.get(first)
+                if isinstance(known, Mapping) and isinstance(value, Mapping):
+                    value = {**known, **value}
+                nested[first] = value
             else:
-                nested.setdefault(first, {})[rest[0]] = value
+                part = nested.get(first)
+                nested[first] = {**(part if isinstance(part, Mapping) else {}), rest[0]: value}
     try:
         return TrialConfig.model_validate(nested)
     except ValidationError as error:
         first_error = error.errors()[0]
         key = tuple(str(part) for part in first_error["loc"][:2])
-        place = origin(key, layers)
+        place = next((o for n in (2, 1) if (o := origin(key[:n], layers)) != DEFAULT), DEFAULT)
+        if place == DEFAULT:  # two settings that do not go together
+            place = next(
+                (layer.places[k] for layer in layers for k in layer.places if k[:1] == key[:1]),
+                DEFAULT,
+            )
         raise ConfigError(f"{place}: {'.'.join(key)}: {first_error['msg']}") from None
 
 
 def origin(key: Key, layers: Sequence[Layer]) -> str:
     """Where a setting was given; "default" where nowhere."""
-    return next((layer.places[key] for layer in reversed(layers) if key in layer.places), "default")
+    return next((layer.places[key] for layer in reversed(layers) if key in layer.places), DEFAULT)
 
 
 def file_layer(path: Path) -> Layer:
-    """What a configuration file says. Paths in it are relative to its folder.
+    """What a configuration file says. Paths in it are relative to its folder, but for those within
+    specifications (`scripted:FILE`).
 
     Raises:
         ConfigError: It cannot be read, or names something that there is not.
@@ -123,6 +134,9 @@ def file_layer(path: Path) -> Layer:
     for each in settings():
         known.setdefault(each.key[0], {})[each.key[-1]] = each
     for name, part in top.sections("schema", *known).items() if top is not None else ():
+        if name == "simulation" and _value(part) is None:
+            values[(name,)], places[(name,)] = None, f"{path}:{part.line}"
+            continue
         if name == "schema":
             values[("schema",)], places[("schema",)] = _value(part), f"{path}:{part.line}"
             continue
@@ -138,6 +152,8 @@ def _given(name: str, part: Place, known: Mapping[str, Setting]) -> list[tuple[S
     """The settings of a part, and their values."""
     if (name,) in {setting.key for setting in known.values()}:
         return [(known[name], part)]
+    if isinstance(part.node, yaml.ScalarNode) and part.node.tag == "tag:yaml.org,2002:null":
+        return []
     if name in SPECS and part.is_text():
         return [(known[SPECS[name]], part)]
     return [(known[key], place) for key, place in part.sections(*known).items()]
@@ -148,7 +164,7 @@ def _value(place: Place) -> Any:
     loader = yaml.SafeLoader("")
     try:
         return loader.construct_object(place.node, deep=True)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError) as error:
         raise place.wrong(f"cannot be read: {error}") from None
     finally:
         loader.dispose()
@@ -162,6 +178,11 @@ def as_yaml(config: TrialConfig, layers: Sequence[Layer]) -> str:
         value: Any = config
         for name in setting.key:
             value = None if value is None else getattr(value, name)
+        if len(setting.key) > 1 and getattr(config, setting.key[0]) is None:
+            if setting.key[0] != part:
+                part = setting.key[0]
+                lines.append(f"{part}: null")
+            continue
         if len(setting.key) > 1 and setting.key[0] != part:
             part = setting.key[0]
             lines.append(f"{part}:")

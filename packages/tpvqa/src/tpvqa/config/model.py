@@ -47,6 +47,12 @@ class TaskConfig(_Part):
         "--world-file", "What disturbances undo in your domain.", file=True
     )
 
+    @model_validator(mode="after")
+    def _one_task(self) -> Self:
+        if self.name is not None and (self.domain is not None or self.problem is not None):
+            raise ValueError("give either a shipped task, or a domain and a problem of your own")
+        return self
+
 
 class WorldConfig(_Part):
     """Where the robot acts and looks."""
@@ -78,12 +84,11 @@ class VLMConfig(_Part):
 class MonitorConfig(_Part):
     """Who decides."""
 
-    spec: str = setting(
+    spec: str | None = setting(
         "--monitor",
         "belief (the default), belief:COST=VALUE (question, look, action, person, failure), tpvqa "
         "(the paper's; the default with --majority), tpvqa:LOOKS, effectvqa, palmevqa, successvqa, "
         "tp or none. With a cost of person you are asked, too.",
-        "belief",
         min_length=1,
     )
     majority: str | None = setting(
@@ -100,13 +105,11 @@ class MonitorConfig(_Part):
         file=True,
     )
 
-    @model_validator(mode="before")
-    @classmethod
-    def _paper_for_a_majority(cls, given: Any) -> Any:
-        if isinstance(given, Mapping) and given.get("spec") is None:
-            rest = {name: value for name, value in given.items() if name != "spec"}
-            return {**rest, "spec": "belief" if rest.get("majority") is None else "tpvqa"}
-        return given
+    @property
+    def named(self) -> str:
+        """The specification: where none is given, the paper's monitor with a majority, else
+        belief."""
+        return self.spec or ("belief" if self.majority is None else "tpvqa")
 
 
 class PlannerConfig(_Part):

@@ -33,7 +33,8 @@ class Writer(Protocol):
 class Journal:
     """Writes events, folds them into where the trial stands, and tells listeners.
 
-    A listener that raises is named in the log and told of nothing more; it never ends a trial.
+    A listener that raises is told of nothing more, and named in the log before the next event; it
+    never ends a trial.
 
     Args:
         writer: Where events go.
@@ -44,6 +45,7 @@ class Journal:
         self.writer = writer
         self.state = TrialState()
         self._listeners = list(listeners)
+        self._unsaid: list[ListenerDropped] = []
 
     def listen(self, listener: Listener) -> None:
         """Tell one more listener from now on."""
@@ -51,24 +53,20 @@ class Journal:
 
     def write(self, event: Event) -> Event:
         """Write an event that happens now."""
-        event = self.writer.append(event)
-        self.take(event)
+        unsaid, self._unsaid = self._unsaid, []
+        for each in (*unsaid, event):
+            self.take(self.writer.append(each))
         return event
 
     def take(self, event: Event) -> None:
         """Take in an event that is in the log."""
         self.state = self.state.after(event)
-        broken: list[tuple[Listener, Exception]] = []
-        for listener in self._listeners:
+        for listener in tuple(self._listeners):
             try:
                 listener(event)
-            except Exception as error:  # noqa: BLE001 — whatever it is, the trial goes on
-                broken.append((listener, error))
-        for listener, why in broken:
-            self._listeners.remove(listener)
-            self._name(listener, why)
-
-    def _name(self, listener: Listener, error: Exception) -> None:
-        name = getattr(listener, "__qualname__", type(listener).__qualname__)
-        _LOG.warning("%s broke and is told of nothing more", name, exc_info=error)
-        self.write(ListenerDropped(listener=name, error=f"{type(error).__name__}: {error}"))
+            except (Exception, SystemExit) as error:  # noqa: BLE001 — whatever it is, the trial goes on
+                self._listeners.remove(listener)
+                name = getattr(listener, "__qualname__", type(listener).__qualname__)
+                _LOG.warning("%s broke and is told of nothing more: %r", name, error)
+                said = f"{type(error).__name__}: {error}"
+                self._unsaid.append(ListenerDropped(listener=name, error=said))

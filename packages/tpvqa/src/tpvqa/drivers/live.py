@@ -6,7 +6,6 @@ from tpvqa.events import Ended
 from tpvqa.trial import Conclusion
 from tpvqa.worlds.goal import goal_holds
 
-CANCELLED = Conclusion("cancelled")
 INTERRUPTED = Conclusion("cancelled", "interrupted by the user")
 
 
@@ -40,8 +39,9 @@ def run(trial: SteppingTrial, performer: Performer) -> Ended:
     try:
         trial.begin()
         while trial.pending is not None and not performer.cancel.is_set():
+            trial.begun()
             trial.send(performer.perform(trial.pending))
-        conclusion = trial.conclusion or CANCELLED
+        conclusion = trial.conclusion
     except KeyboardInterrupt:
         if trial.replaying:  # the log is right as it is
             raise

@@ -12,7 +12,7 @@ from tpvqa.events.records import answered_record, frame_record, outcome_record, 
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Task
-from tpvqa.planning import Planner
+from tpvqa.planning import Planner, PlanningResult
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending
 from tpvqa.vlm import VLM, Answer, Reply
@@ -87,9 +87,9 @@ class Performer:
             case AskPerson(question):
                 return self._ask_person(pending.seen, question)
             case PlanFrom():
-                return self._plan(pending.request)
+                return self._plan(pending.request, pending.seconds)
             case Act(action):
-                return self._act(action)
+                return self._act(action, pending.seconds)
 
     def look(self, view: str | None, number: int, *, during: bool = False) -> Performed:
         """Look at the world.
@@ -119,11 +119,18 @@ class Performer:
     def _frame(self, frame: Frame) -> FrameRecord:
         return frame_record(frame, self._save_frame(frame))
 
-    def _plan(self, request: PlanFrom) -> Performed:
-        result = self.parts.planner.plan(
-            self.parts.task, request.state, timeout=self._planning_timeout
-        )
-        made = plan_record(result, request.state, self.parts.book)
+    def _plan(self, request: PlanFrom, seconds: float | None) -> Performed:
+        parts, timeout = self.parts, _less(self._planning_timeout, seconds)
+        result = called(parts.planner, "plan", object, parts.task, request.state, timeout=timeout)
+        if not isinstance(result, PlanningResult):
+            raise PluginError(
+                f"{parts.planner.name} has to return a Plan, Unsolvable, TimedOut or Crashed, not "
+                f"{type(result).__name__}"
+            )
+        try:
+            made = plan_record(result, request.state, parts.book)
+        except MALFORMED as error:
+            raise malformed(parts.planner, "plan", error) from error
         return Performed(result, made.model_copy(update={"considered": not request.followed}))
 
     def _ask(self, seen: Observation | None, questions: Sequence[Question]) -> Performed:
@@ -144,11 +151,16 @@ class Performer:
         except MALFORMED as error:
             raise malformed(asked, "ask", error) from error
 
-    def _act(self, action: Action) -> Performed:
+    def _act(self, action: Action, seconds: float | None) -> Performed:
         world = self.parts.world
         before = self._last_outcome()
         execution = called(
-            world, "execute", Execution, action, deadline=self._action_deadline, cancel=self.cancel
+            world,
+            "execute",
+            Execution,
+            action,
+            deadline=_less(self._action_deadline, seconds),
+            cancel=self.cancel,
         )
         try:
             outcome = self._last_outcome()
@@ -170,6 +182,12 @@ class Performer:
         if self._snapshots and isinstance(part, Restorable):
             return dict(part.snapshot())
         return None
+
+
+def _less(one: float | None, other: float | None) -> float | None:
+    """The lower of two limits, either of which may be none."""
+    given = [each for each in (one, other) if each is not None]
+    return min(given, default=None)
 
 
 def _named(frames: Mapping[str, Frame], look: int) -> dict[str, Frame]:

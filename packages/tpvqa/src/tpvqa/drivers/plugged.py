@@ -1,4 +1,4 @@
-"""Calls into worlds and VLMs of other packages: what they raise or return may be anything."""
+"""Calls into planners, worlds and VLMs: what plug-ins raise or return may be anything."""
 
 import traceback
 from typing import TypeVar
@@ -11,10 +11,10 @@ T = TypeVar("T")
 
 
 def called(part: object, method: str, wanted: type[T], /, *given: object, **named: object) -> T:
-    """What a method of a world or a VLM returns.
+    """What a method of a planner, a world or a VLM returns.
 
     Args:
-        part: The world or VLM.
+        part: The planner, world or VLM.
         method: Which of its methods.
         wanted: What it has to return.
         *given: Its arguments.

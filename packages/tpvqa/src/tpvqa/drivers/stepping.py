@@ -6,8 +6,11 @@ from typing import Any
 from tpvqa.drivers.journal import Journal
 from tpvqa.drivers.performing import Performed
 from tpvqa.drivers.replaying import Recording
+from tpvqa.errors import EpisodeError
 from tpvqa.events import Ended, Event, Resumed, TrialState
 from tpvqa.trial import Conclusion, Pending, Result, Steps, Unwatched
+
+CANCELLED = Conclusion("cancelled")
 
 Restore = Callable[[Mapping[str, Mapping[str, Any]]], bool]
 """Puts "world" and "vlm" back into recorded states; whether the world is as the log left it."""
@@ -31,9 +34,11 @@ class SteppingTrial:
 
     Example:
         >>> def through(trial, performer):
+        ...     trial.begin()
         ...     while trial.pending is not None:
+        ...         trial.begun()
         ...         trial.send(performer.perform(trial.pending))
-        ...     return trial.conclusion
+        ...     return trial.end()
     """
 
     def __init__(
@@ -48,7 +53,7 @@ class SteppingTrial:
         self._recording = recording
         if recording is not None:
             recording.tell(journal.take)
-        self._unwatched = False
+        self._unwatched = self._announced = False
         self.pending: Pending | None = None
         self.conclusion: Conclusion | None = None
 
@@ -66,19 +71,35 @@ class SteppingTrial:
         """Go to the first thing that is to be done."""
         self._advance(None)
 
+    def begun(self) -> None:
+        """Say in the log, before anything happens, that what is pending is being done."""
+        if self.pending is not None and self.pending.announced is not None and not self._announced:
+            self.journal.write(self.pending.announced)
+        self._announced = True
+
     def send(self, performed: Performed) -> None:
         """Go on with what came of what was pending, to the next thing that is to be done."""
+        self.begun()
         self.journal.write(performed.event)
         self._advance(Result(performed.value, self.state))
 
-    def end(self, conclusion: Conclusion, *, goal_holds: bool | None) -> Ended:
+    def end(self, conclusion: Conclusion | None = None, *, goal_holds: bool | None = None) -> Ended:
         """Write the last event.
 
         Args:
-            conclusion: How the trial ended, or was ended.
+            conclusion: How the trial was ended; by default as it ended itself, or "cancelled".
             goal_holds: Whether the goal holds in truth; None where nobody knows.
+
+        Raises:
+            EpisodeError: The trial is gone on with, and ends before its log does.
         """
+        if self._recording:
+            raise EpisodeError(
+                "the log goes on where this version would end the trial: it cannot be resumed, "
+                "only shown"
+            )
         self.take_over()
+        conclusion = conclusion or self.conclusion or CANCELLED
         state, believes = self.state, conclusion.believes_goal
         ended = Ended(
             because=conclusion.because,
@@ -103,7 +124,7 @@ class SteppingTrial:
             self._recording = None
 
     def _advance(self, sent: TrialState | Result | None) -> None:
-        self.pending, unwatched = None, None
+        self.pending, self._announced, unwatched = None, False, None
         while True:
             try:
                 step = self._steps.throw(unwatched) if unwatched else self._steps.send(sent)
@@ -114,6 +135,7 @@ class SteppingTrial:
             if not isinstance(step, Pending):
                 sent = self._say(step)
                 continue
+            self._announced = False
             try:
                 sent = self._replayed(step)
             except Unwatched as error:
@@ -144,7 +166,7 @@ class SteppingTrial:
                 raise Unwatched(self.state)
             if announced is not None:
                 record.event(type(announced))
-                announced = None
+                self._announced = True
                 if record.resumed():
                     raise Unwatched(self.state)
             if record:
@@ -154,6 +176,4 @@ class SteppingTrial:
             self._unwatched = False
             self.journal.write(Resumed())
             raise Unwatched(self.state)
-        if announced is not None:
-            self.journal.write(announced)
         return None

@@ -1,5 +1,6 @@
 """Reading a log while it grows, at no cost to whoever writes it."""
 
+import os
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -32,30 +33,37 @@ def follow(
     path = episode_folder(folder) / LOG
     position, number, quiet = 0, 0, time.monotonic()
     while True:
-        lines, position = _lines_after(path, position)
+        lines, position, cut = _lines_after(path, position)
+        if cut:  # it was gone on with: what ended it before is cut off
+            number = 0
         for line in lines:
-            quiet = time.monotonic()
             event = event_of(path, number + 1, line)
-            if number >= start:
-                yield event
-                if isinstance(event, Ended):
-                    return
             number += 1
+            if number > start:
+                start = number
+                yield event
+            if isinstance(event, Ended):
+                return
+            quiet = time.monotonic()
         if not lines:
             if timeout is not None and time.monotonic() - quiet > timeout:
                 raise EpisodeError(f"{path}: no further event within {timeout:g} s")
             time.sleep(poll)
 
 
-def _lines_after(path: Path, position: int) -> tuple[list[bytes], int]:
-    """The whole lines after a position, and the position after them."""
+def _lines_after(path: Path, position: int) -> tuple[list[bytes], int, bool]:
+    """The whole lines after a position, and the position after them; from the beginning, where the
+    file is shorter by now."""
     try:
         with path.open("rb") as file:
+            cut = file.seek(0, os.SEEK_END) < position
+            position = 0 if cut else position
             file.seek(position)
             data = file.read()
     except FileNotFoundError:
-        return [], position
+        return [], position, False
     except OSError as error:
         raise EpisodeError(f"{path}: cannot be read ({error.strerror})") from error
     whole, newline, _ = data.rpartition(b"\n")
-    return (whole.split(b"\n") if newline else []), position + len(whole) + len(newline)
+    lines = whole.split(b"\n") if newline else []
+    return lines, position + len(whole) + len(newline), cut

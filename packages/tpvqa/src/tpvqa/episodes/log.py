@@ -51,7 +51,9 @@ class EpisodeWriter:
             self._file = path.open("ab")
             self._lock()
             if resume:
-                whole = path.read_bytes().split(b"\n")[:resume]
+                lines = path.read_bytes().split(b"\n")
+                whole = lines[:resume]
+                self._nothing_new(lines[resume:-1])
                 with path.open("r+b") as file:
                     file.truncate(sum(len(line) + 1 for line in whole))
         except OSError as error:
@@ -70,6 +72,14 @@ class EpisodeWriter:
                 f"{self.folder} is still being written by another process, or by a writer that was "
                 "not closed; wait for it or end it"
             ) from None
+
+    def _nothing_new(self, more: list[bytes]) -> None:
+        """Cut nothing off but an end by Ctrl-C; what else follows was written since."""
+        if more and not (len(more) == 1 and b'"because":"cancelled"' in more[0]):
+            self._file.close()
+            raise EpisodeError(
+                f"{self.folder} was written to by another process since it was read; try again"
+            )
 
     def append(self, event: Event) -> Event:
         """Write an event; it is given its number and its time since the beginning."""

@@ -101,6 +101,7 @@ class PlanMade(_Event):
     """A planner's result: a plan, or why there is none.
 
     A plan that is only `considered` is not followed: a monitor wanted to know what it would be.
+    `limit` is that of the time, in seconds, where it passed.
     """
 
     kind: Literal["plan made"] = "plan made"
@@ -110,6 +111,7 @@ class PlanMade(_Event):
     cost: int = 0
     planner: str = ""
     seconds: float = 0.0
+    limit: float | None = None
     reason: str = ""
     considered: bool = False
 

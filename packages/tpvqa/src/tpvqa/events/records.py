@@ -51,7 +51,8 @@ def plan_record(result: PlanningResult, state: State, book: QuestionBook) -> Pla
             return record.model_copy(update={"result": "unsolvable", "reason": result.reason})
         case TimedOut():
             reason = f"no plan within {result.limit:g} s"
-            return record.model_copy(update={"result": "timed out", "reason": reason})
+            passed = {"result": "timed out", "reason": reason, "limit": result.limit}
+            return record.model_copy(update=passed)
         case Crashed():
             return record.model_copy(update={"result": "crashed", "reason": result.reason})
 
@@ -65,7 +66,7 @@ def plan_from(record: PlanMade, task: Task) -> PlanningResult:
     if record.result == "unsolvable":
         return Unsolvable(record.reason, planner, seconds)
     if record.result == "timed out":
-        return TimedOut(seconds, planner, seconds)
+        return TimedOut(seconds if record.limit is None else record.limit, planner, seconds)
     return Crashed(record.reason, planner, seconds)
 
 

@@ -139,18 +139,24 @@ class TrialState:
         """Repeats of this step's action that the limit still allows."""
         return None if self.started is None else self.started.limits.repeats - self.attempt
 
+    @property
+    def seconds_left(self) -> float | None:
+        """Seconds that the limit of time still allows; None for any number."""
+        return None if self._deadline is None else max(self._deadline - self.time, 0.0)
+
     def after(self, event: Event) -> Self:
         """Where the trial stands after one more event."""
         match event:
             case Asked():
-                change = {**self._asking(), "asked": event}
+                change = {**self._asking(), "asked": event, "_checked": False}
                 change["questions"] = self.questions + len(event.questions)
             case Answered():
                 change = self._answers(event)
             case Observed(during=True):
                 change = {"observed": event, "looks": self.looks + 1}
             case Observed():
-                change = {**self._asking(), "observed": event, "looks": self.looks + 1}
+                change = {**self._asking(), "observed": event, "_checked": False}
+                change["looks"] = self.looks + 1
             case Decided():
                 change = self._decision(event)
             case Believed():
@@ -176,7 +182,7 @@ class TrialState:
 
     def _asking(self) -> dict[str, Any]:
         """A new check begins with its first look or question."""
-        return {"exchanges": (), "answered": 0, "_checked": False} if self._checked else {}
+        return {"exchanges": (), "answered": 0} if self._checked else {}
 
     def _answers(self, event: Answered) -> dict[str, Any]:
         asked = self.asked
@@ -190,6 +196,7 @@ class TrialState:
 
     def _decision(self, event: Decided) -> dict[str, Any]:
         change: dict[str, Any] = {"decided": event, "index": event.step, "_checked": True}
+        change |= self._asking()  # nothing was asked since the decision before
         if event.belief:
             change["belief"] = event.belief
         if event.acts:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Generator
 from dataclasses import replace
 from typing import Any, Literal
 
+from tpvqa.errors import PluginError
 from tpvqa.events import Decision, Event, Started, TrialState
 from tpvqa.events.events import Acted, Acting, Asked, Believed, Decided, QuestionRecord
 from tpvqa.events.records import action_record, atoms, plan_record, question_record
@@ -76,11 +77,16 @@ class _Loop:
                     break
                 case Decision.GIVE_UP:
                     return Conclusion("gave up", verdict.reason)
-            if self.state.over is not None:
+            if self.state.over is not None and not self._finished(verdict):
                 return Conclusion(self.state.over)
             if verdict.decision is Decision.REPLAN:
                 failed = yield from self._replan(verdict.plan)
         return failed or Conclusion("goal", believes_goal=True)
+
+    def _finished(self, verdict: Verdict) -> bool:
+        """Whether a verdict leads beyond the plan's last step: what is over then is the plan."""
+        assert self.plan is not None
+        return verdict.decision is Decision.GO_ON and self._index >= len(self.plan.actions)
 
     @property
     def _index(self) -> int:
@@ -112,7 +118,8 @@ class _Loop:
         if self.state.over == "limit of time":
             raise _Over
         try:
-            result = yield Pending(request, announced, self.state.looks, self._seen)
+            state = self.state
+            result = yield Pending(request, announced, state.looks, self._seen, state.seconds_left)
         except Unwatched as unwatched:
             self.state = unwatched.state
             raise
@@ -172,6 +179,11 @@ class _Loop:
                     value = yield from self._ask(request, (question,))
                 case PlanFrom():
                     value = yield from self._do(request)
+                case _:
+                    raise PluginError(
+                        f"The monitor {self.monitor.name} asked for {request!r}; it can ask for "
+                        "Look, Ask, AskPerson and PlanFrom"
+                    )
 
     def _ask(
         self, request: Ask | AskPerson, questions: tuple[Question, ...]
@@ -231,6 +243,8 @@ class _Loop:
         if isinstance(result, Plan):
             self.plan = result
             return None
+        if self.state.over is not None:
+            return Conclusion(self.state.over)
         if isinstance(result, TimedOut):
             message = f"the planner found no plan within {result.limit:g} s"
             return Conclusion("planner timed out", message)

@@ -27,12 +27,14 @@ class Pending:
         announced: What the log has to say before it is begun, if anything.
         look: The number of the next look.
         seen: The latest observation, which questions are about; None before the first.
+        seconds: What the limit of time leaves for it; None for any time.
     """
 
     request: Request | Act
     announced: Asked | Acting | None = None
     look: int = 0
     seen: Observation | None = None
+    seconds: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
