@@ -93,9 +93,18 @@ class Watched(Belief):
             lambda belief: belief.act(action, rates), lambda: Belief.act(self, action, rates)
         )
 
-    def weigh(self, likelihood: Callable[[int], float]) -> float:
-        self._pass(lambda belief: belief.weigh(likelihood), lambda: Belief.weigh(self, likelihood))
+    def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
+        self._pass(
+            lambda belief: belief.see(atoms, if_true, if_false),
+            lambda: Belief.see(self, atoms, if_true, if_false),
+        )
         return 1.0
+
+    def weigh_outcome(self, *, succeeded: float, failed: float) -> None:
+        self._pass(
+            lambda belief: belief.weigh_outcome(succeeded=succeeded, failed=failed),
+            lambda: Belief.weigh_outcome(self, succeeded=succeeded, failed=failed),
+        )
 
     def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
         self._pass(
