@@ -24,9 +24,11 @@ CELLS = [Cell("clean_dishes", m, "oracle:0.8", "symbolic") for m in ("tpvqa", "t
 
 
 def rows_of(folder: Path) -> dict[tuple[str, str, str, int], dict[str, Any]]:
-    """All rows, without how long they took."""
+    """All whole rows, without how long they took; a kill may have torn the last one."""
     found = {}
-    for line in (folder / ROWS).read_text(encoding="utf-8").splitlines():
+    for line in (folder / ROWS).read_text(encoding="utf-8").splitlines(keepends=True):
+        if not line.endswith("\n"):
+            continue
         values = json.loads(line)
         values.pop("seconds")
         key = (values["task"], values["monitor"], values["vlm"], values["episode"])

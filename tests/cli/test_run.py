@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -104,7 +105,7 @@ def test_what_answers_are_taken_to_be_worth_is_said(tpvqa: Run) -> None:
 
 
 def test_without_standard_input(tmp_path: Path) -> None:
-    command = f"{sys.executable} -m tpvqa run clean_dishes --world symbolic <&-"
+    command = f"{shlex.quote(sys.executable)} -m tpvqa run clean_dishes --world symbolic <&-"
     done = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
 

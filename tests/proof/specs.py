@@ -3,6 +3,7 @@
 Whatever has a default that could change is written out, so that a trial stays the same trial.
 """
 
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,9 +12,9 @@ GIVEN = Path(__file__).parent / "given"
 TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
 
 DISHES, BREAKFAST, APPLE, TOWER = "clean_dishes", "serve_breakfast", "eat_apple", "build_tower"
-COLLECT = f"{TOYS}/domain.pddl {TOYS}/collect.pddl"
-WORDED = f"{COLLECT} --questions {TOYS}/questions.yaml"
-STUCK = f"{TOYS}/domain.pddl unreachable.pddl --questions {TOYS}/questions.yaml"
+COLLECT = f"'{TOYS}/domain.pddl' '{TOYS}/collect.pddl'"
+WORDED = f"{COLLECT} --questions '{TOYS}/questions.yaml'"
+STUCK = f"'{TOYS}/domain.pddl' unreachable.pddl --questions '{TOYS}/questions.yaml'"
 CALIBRATED = "--calibration calibration.json"
 EXPERIENCED = "--experience experience.json"
 FAULTY = "--failure 0.5 --disturbance 0.9"
@@ -53,7 +54,7 @@ class Spec:
 
 
 def _trial(name: str, task: str, world: str, vlm: str, monitor: str, seed: int, more: str) -> Spec:
-    given = more.split()
+    given = shlex.split(more)
     rest = [
         word
         for option, value in DEFAULTS.items()
@@ -61,7 +62,7 @@ def _trial(name: str, task: str, world: str, vlm: str, monitor: str, seed: int, 
         for word in (option, str(value))
     ]
     chosen = ["--world", world, "--vlm", vlm, "--monitor", monitor, "--seed", str(seed)]
-    return Spec(name, (*task.split(), *chosen, *given, *rest))
+    return Spec(name, (*shlex.split(task), *chosen, *given, *rest))
 
 
 # fmt: off

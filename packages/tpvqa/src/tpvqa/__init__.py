@@ -13,7 +13,7 @@ from typing import Any
 
 __version__ = "0.2.0"
 DECIDES_AS = "0.1.0"
-"""The first version that decides all trials as this one does: its published figures still stand."""
+"""The first version that decides trials as this one does: its published figures still stand."""
 
 _PUBLIC = {
     "Action": "tpvqa.pddl",
