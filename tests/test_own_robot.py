@@ -12,7 +12,7 @@ import pytest
 from tpvqa import Trial, TrialConfig
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.errors import PluginError
-from tpvqa.events.events import Acting, Decided
+from tpvqa.events.events import Acting, Decided, Started
 from tpvqa.resuming import resume
 
 PAGE = Path(__file__).parents[1] / "docs/your-own-domain.md"
@@ -93,6 +93,10 @@ def test_they_act_and_are_asked(package: Edit, tmp_path: Path) -> None:
         if isinstance(event, Acting)
     ]
     assert len(done) >= 4
+    started = events[0]
+    assert isinstance(started, Started)
+    assert started.config.simulation is None  # nobody says how often a robot fails
+    assert "failure" not in (tmp_path / "here/episode.jsonl").read_text().partition("\n")[0]
     assert {path.read_bytes() for path in (tmp_path / "here/frames").iterdir()} == {b"a JPEG"}
 
 
