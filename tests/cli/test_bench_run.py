@@ -182,7 +182,7 @@ def test_plug_ins_and_options(install: Install, tpvqa: Run) -> None:
     code, out, err = tpvqa(*words, "--option", "eagerness=great", "--failure", 0)
     assert code == 0, err
     assert [row["completed"] for row in json.loads(out)] == [2, 2]
-    assert json.loads(Path("bench/bench.json").read_text())["option"] == {"eagerness": "great"}
+    assert json.loads(Path("bench-run/bench.json").read_text())["option"] == {"eagerness": "great"}
     code, _, err = tpvqa(*words, "--option", "eagernes=great", "--out", "b")
     assert code == 2
     assert "Did you mean 'eagerness'" in err
@@ -197,7 +197,7 @@ def test_a_calibration_of_ones_own(tpvqa: Run) -> None:
     code, _, err = tpvqa(*words, "--monitors", "belief")
     assert code == 0, err
     assert "note" not in err
-    assert "calibration" in json.loads(Path("bench/bench.json").read_text())
+    assert "calibration" in json.loads(Path("bench-run/bench.json").read_text())
     code, _, err = tpvqa(*words, "--monitors", "tp")
     assert code == 2
     assert "No monitor weighs answers" in err

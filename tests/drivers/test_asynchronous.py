@@ -12,7 +12,7 @@ import pytest
 from tests.doubles import configured
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
-from tpvqa.drivers import AsynchronousTrial
+from tpvqa.drivers.asynchronous import AsynchronousTrial
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import TpvqaError

@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from threading import Event as Flag
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import BaseModel
 
@@ -16,7 +16,6 @@ from tpvqa.belief.shipped import shipped_calibration
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.defaults import default_vlm, default_world
 from tpvqa.drivers import (
-    AsynchronousTrial,
     Journal,
     Listener,
     Parts,
@@ -46,6 +45,9 @@ from tpvqa.worlds.capabilities import has_pictures, is_simulated, truth_of
 from tpvqa.worlds.making import make_world
 from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
+
+if TYPE_CHECKING:
+    from tpvqa.drivers.asynchronous import AsynchronousTrial
 
 
 class Trial:
@@ -312,8 +314,10 @@ class Trial:
         folder: Path | None = None,
         listeners: Sequence[Listener] = (),
         cancel: Flag | None = None,
-    ) -> AsynchronousTrial:
+    ) -> "AsynchronousTrial":
         """The trial as an asynchronous iterator of its events; arguments and errors as of `run`."""
+        from tpvqa.drivers.asynchronous import AsynchronousTrial
+
         stepping = self.stepping(
             writer, started=started, recorded=recorded, folder=folder, listeners=listeners
         )

@@ -70,7 +70,7 @@ def resume(
     assert isinstance(started, Started)
     if isinstance(last, Ended):
         if last.because != "cancelled":
-            raise EpisodeError(f"{folder}: the episode has ended ({last.because}); show it instead")
+            raise EpisodeError(f"{folder}: the episode has ended ({last.ending}); show it instead")
         events.pop()
     folder = Path(folder)
     with trial_of(started, person=person) as trial:

@@ -1,12 +1,13 @@
 """Sees before a bench that everything that it names is there and fits together."""
 
 from collections.abc import Hashable, Mapping, Sequence
+from importlib.util import find_spec
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
-from tpvqa.errors import BenchError, UnknownNameError
+from tpvqa.errors import BenchError, MissingExtraError, UnknownNameError
 from tpvqa.plugins import Kind, load_spec, takes
 from tpvqa.tasks import find_task
 from tpvqa.worlds.capabilities import is_simulated
@@ -24,6 +25,7 @@ def check(cells: Sequence[Cell], common: TrialConfig, own: Mapping[str, OwnTask]
         TpvqaError: A task, monitor, VLM, world or planner is not there, lacks an extra, does not
             take its arguments or does not fit to the others; an option is one of none of them.
     """
+    need_extras()
     for task in dict.fromkeys(cell.task for cell in cells):
         if task not in own:
             find_task(task)
@@ -40,6 +42,17 @@ def check(cells: Sequence[Cell], common: TrialConfig, own: Mapping[str, OwnTask]
             if seen not in tried:
                 trial.check()
         tried |= {*parts, seen}
+
+
+def need_extras() -> None:
+    """See that what makes tables and figures is installed.
+
+    Raises:
+        MissingExtraError: It is not.
+    """
+    for package in ("scipy", "matplotlib", "pyarrow"):
+        if find_spec(package) is None:
+            raise MissingExtraError(package, "bench", "A bench")
 
 
 def _names(cells: Sequence[Cell], common: TrialConfig) -> None:

@@ -97,7 +97,7 @@ def run(
         str | None, typer.Option(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder; a bench that was stopped goes on.")] = Path(
-        "bench"
+        "bench-run"
     ),
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:

@@ -59,10 +59,10 @@ def trial_options(
     return decorate
 
 
-def trial_config(
+def trial_layers(
     layers: Sequence[Layer], task: str | None = None, problem: Path | None = None
-) -> TrialConfig:
-    """The configuration that a command line gives.
+) -> list[Layer]:
+    """What a command line gives, with its arguments.
 
     Args:
         layers: Of a command with `trial_options`.
@@ -70,7 +70,7 @@ def trial_config(
         problem: One's own problem.
 
     Raises:
-        TpvqaError: A task is given in two ways, or a value does not fit.
+        TpvqaError: A task is given in two ways.
     """
     files = {("task", "domain"), ("task", "problem")}
     given = files & {key for layer in layers for key in layer.values}
@@ -82,8 +82,21 @@ def trial_config(
     elif task is not None:
         if given:
             raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
+        if task.lower().endswith(".pddl"):
+            raise TpvqaError(f"{task} is a domain or a problem alone; name both, the domain first.")
         own = {("task", "name"): task}
-    config = combined([*layers, Layer(own, dict.fromkeys(own, "argument"))])
+    return [*layers, Layer(own, dict.fromkeys(own, "argument"))]
+
+
+def trial_config(
+    layers: Sequence[Layer], task: str | None = None, problem: Path | None = None
+) -> TrialConfig:
+    """The configuration that a command line gives; arguments and errors as of `trial_layers`.
+
+    Raises:
+        TpvqaError: A value does not fit.
+    """
+    config = combined(trial_layers(layers, task, problem))
     for name, spec in (("--monitor", config.monitor.spec), ("--vlm", config.vlm.spec)):
         if spec is not None and not spec.strip():
             raise TpvqaError(f"{name} must not be empty.")

@@ -1,6 +1,7 @@
 """`tpvqa run`, `resume`, `config`, `show` and `report`."""
 
 import json
+import shlex
 import sys
 from collections.abc import Sequence
 from contextlib import nullcontext
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tpvqa.cli.notices import about_calibration
-from tpvqa.cli.options import trial_config, trial_options
+from tpvqa.cli.options import trial_config, trial_layers, trial_options
 from tpvqa.config.layers import Layer, as_yaml
 
 if TYPE_CHECKING:
@@ -102,8 +103,8 @@ def configuration(
 
     What is printed can be kept in a file, changed there, and given to `tpvqa run --config FILE`.
     """
-    layers = [*layers, *_optimal(optimal)]
-    config = trial_config(layers, task, problem_file)
+    layers = trial_layers([*layers, *_optimal(optimal)], task, problem_file)
+    config = trial_config(layers)
     if as_json:
         print(config.model_dump_json(indent=1, by_alias=True))
     else:
@@ -150,7 +151,7 @@ def show(
 
     from tpvqa.cli.terminal import EpisodeView
     from tpvqa.episodes import read_episode
-    from tpvqa.events import EVENT
+    from tpvqa.events import EVENT, Ended
 
     events = read_episode(episode)
     if as_json:
@@ -163,6 +164,8 @@ def show(
     view = EpisodeView(Console(), live=False)
     for event in events:
         view(event)
+    if not isinstance(events[-1], Ended):
+        print(f"unfinished; it can be gone on with: tpvqa resume {shlex.quote(str(episode))}")
 
 
 def report(
@@ -276,7 +279,8 @@ def _finish(ended: "Ended", folder: Path, *, as_json: bool) -> None:
             )
         )
     else:
-        print(f"episode: {folder}  (tpvqa show {folder} · tpvqa report {folder})")
+        named = shlex.quote(str(folder))
+        print(f"episode: {folder}  (tpvqa show {named} · tpvqa report {named})")
     if ended.because == "cancelled":
         raise typer.Exit(130)
     reached = ended.believed_goal if ended.completed is None else ended.completed

@@ -229,7 +229,7 @@ class EpisodeView:
             headline = f"[bold {style}]ended: {event.because}[/]"
         else:
             headline = f"[bold red]goal not reached[/] ({escape(event.ending)})"
-        message = f" [dim]{escape(event.message)}[/]" if event.message else ""
+        message = f"; [dim]{escape(event.message)}[/]" if event.message else ""
         self._line(f"{headline}: {counts}{message}")
 
     def _plan_panel(self) -> RenderableType:

@@ -10,7 +10,6 @@ from tpvqa.errors import TpvqaError
 from tpvqa.events import Event
 from tpvqa.observation import Observation
 from tpvqa.trial import Act
-from tpvqa.worlds.goal import goal_holds
 
 
 class AsynchronousTrial:
@@ -107,7 +106,6 @@ class AsynchronousTrial:
             async with self._seeing:  # a look that began while an action ran comes before its end
                 trial.send(performed)
         trial.take_over()
-        goal = goal_holds(performer.parts.world, performer.parts.task.goal)
-        trial.end(goal_holds=goal)
+        trial.end(goal_holds=performer.goal_holds())
         if stopped:
             raise asyncio.CancelledError

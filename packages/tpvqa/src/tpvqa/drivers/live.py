@@ -4,7 +4,6 @@ from tpvqa.drivers.performing import Performer
 from tpvqa.drivers.stepping import SteppingTrial
 from tpvqa.events import Ended
 from tpvqa.trial import Conclusion
-from tpvqa.worlds.goal import goal_holds
 
 INTERRUPTED = Conclusion("cancelled", "interrupted by the user")
 
@@ -47,8 +46,7 @@ def run(trial: SteppingTrial, performer: Performer) -> Ended:
             raise
         conclusion, interrupted = INTERRUPTED, True
     trial.take_over()
-    goal = goal_holds(performer.parts.world, performer.parts.task.goal)
-    ended = trial.end(conclusion, goal_holds=goal)
+    ended = trial.end(conclusion, goal_holds=performer.goal_holds())
     if interrupted:
         raise Interrupted(ended)
     return ended

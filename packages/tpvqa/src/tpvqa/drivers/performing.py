@@ -18,6 +18,7 @@ from tpvqa.trial import Act, Pending
 from tpvqa.vlm import VLM, Answer, Reply
 from tpvqa.worlds import Execution, Restorable, World
 from tpvqa.worlds.capabilities import Telling
+from tpvqa.worlds.goal import goal_holds
 from tpvqa.worlds.outcome import Outcome
 
 
@@ -90,6 +91,10 @@ class Performer:
                 return self._plan(pending.request, pending.seconds)
             case Act(action):
                 return self._act(action, pending.seconds)
+
+    def goal_holds(self) -> bool | None:
+        """Whether the goal holds in truth; None in a world that does not know."""
+        return goal_holds(self.parts.world, self.parts.task.goal)
 
     def look(self, view: str | None, number: int, *, during: bool = False) -> Performed:
         """Look at the world.

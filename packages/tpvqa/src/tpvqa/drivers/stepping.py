@@ -38,7 +38,7 @@ class SteppingTrial:
         ...     while trial.pending is not None:
         ...         trial.begun()
         ...         trial.send(performer.perform(trial.pending))
-        ...     return trial.end()
+        ...     return trial.end(goal_holds=performer.goal_holds())
     """
 
     def __init__(
