@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from hashlib import blake2b
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Action, Atom, State, Task
@@ -17,6 +17,19 @@ class Undoing(Protocol):
         self, atom: Atom, state: State, history: Sequence[Atom], task: Task
     ) -> list[tuple[str, State]]:
         """What undoing a true atom can lead to: how it is said, and the state."""
+
+
+@runtime_checkable
+class PatternedUndoing(Undoing, Protocol):
+    """One that says by patterns what it can lead back to, as a world file's rules do."""
+
+    @property
+    def fact(self) -> Any:
+        """The pattern of the fact that ends."""
+
+    @property
+    def outcomes(self) -> Sequence[Any]:
+        """What holds instead; `last` is the pattern of a fact that held earlier, or None."""
 
 
 class Rebinding(Protocol):
@@ -245,13 +258,12 @@ class _Keep:
         self._task = task
         self._patterns: list[tuple[Any, frozenset[str]]] | None = []
         for rule in undo:
-            outcomes = getattr(rule, "outcomes", None)
-            if outcomes is None:  # a rule of another kind: keep all
+            if not isinstance(rule, PatternedUndoing):  # keep all
                 self._patterns = None
                 break
             self._patterns += [
-                (outcome.last, rule.fact.variables)  # type: ignore[attr-defined]
-                for outcome in outcomes
+                (outcome.last, rule.fact.variables)
+                for outcome in rule.outcomes
                 if outcome.last is not None
             ]
 
