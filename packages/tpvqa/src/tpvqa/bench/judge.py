@@ -3,6 +3,7 @@
 from collections import Counter
 
 from tpvqa.bench.right_answers import subject_of, yes_is_right
+from tpvqa.drivers import SteppingTrial
 from tpvqa.events import Decision, Event, TrialState
 from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided
 from tpvqa.pddl import Action
@@ -25,7 +26,7 @@ class Judge:
 
     def __init__(self, simulation: Simulation, actions: dict[str, Action]):
         self._simulation, self._actions = simulation, actions
-        self._state = TrialState()
+        self._trial: SteppingTrial | None = None
         self._truths: list[bool] = []
         self.answers: Counter[str] = Counter()
         self.decisions: Counter[str] = Counter()
@@ -36,9 +37,17 @@ class Judge:
         """Actions of the first plan; 0 where there was none."""
         return self._state.first_plan or 0
 
+    def watch(self, trial: SteppingTrial) -> None:
+        """Name the trial whose events it is told of: where it stands is read there."""
+        self._trial = trial
+
+    @property
+    def _state(self) -> TrialState:
+        assert self._trial is not None
+        return self._trial.state
+
     def __call__(self, event: Event) -> None:
         """Take note of an event."""
-        self._state = self._state.after(event)
         match event:
             case Asked():
                 self._truths = [

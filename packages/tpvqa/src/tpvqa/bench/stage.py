@@ -19,6 +19,7 @@ from tpvqa.bench.judge import Judge
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.config import TrialConfig
+from tpvqa.drivers import run
 from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import BenchError, TpvqaError
 from tpvqa.events import Ended, Event
@@ -159,7 +160,10 @@ class Stage:
                 dropped.append(f"{event.listener}: {event.error}")
 
         writer = MemoryWriter(resumable=False, keep=False)
-        ended = trial.run(writer, listeners=[listener, watch])
+        steps = trial.stepping(writer, listeners=[listener, watch])
+        if isinstance(listener, Judge):
+            listener.watch(steps)
+        ended = run(steps, trial.performer(writer))
         if dropped:
             raise BenchError(f"what was to be counted was not: {dropped[0]}")
         return ended
