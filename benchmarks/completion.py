@@ -17,7 +17,6 @@ from tpvqa.pddl import load_task
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.plugins import Kind, make
 
-Z = 1.959964  # 97.5% quantile of the normal distribution
 
 
 def trials(

@@ -92,7 +92,7 @@ def run_paper_bench(
         folder: Where everything goes; a bench that was stopped goes on there.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
-        progress: Progress how many episodes are done and how many there are.
+        progress: Told how many episodes are done and how many there are.
 
     Raises:
         TpvqaError: Something is not there, or the folder cannot be used.

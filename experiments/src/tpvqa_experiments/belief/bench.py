@@ -82,7 +82,7 @@ class BeliefBench:
         Args:
             wanted: How many episodes of each cell.
             folder: Where calibrations are kept.
-            calibrating: Progress how many calibrations are there and how many there will be.
+            calibrating: Told how many calibrations are there and how many there will be.
         """
 
         def told(missing: Sequence[Cell]) -> dict[Cell, Calibration]:
@@ -126,8 +126,8 @@ def run_belief_bench(
         folder: Where everything goes; a bench that was stopped goes on there.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
-        calibrating: Progress how many calibrations are there and how many there will be.
-        progress: Progress how many episodes are done and how many there are.
+        calibrating: Told how many calibrations are there and how many there will be.
+        progress: Told how many episodes are done and how many there are.
         only_tables: Run nothing.
         published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
 

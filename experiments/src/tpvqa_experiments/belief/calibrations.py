@@ -69,7 +69,7 @@ def calibrations(
         sources: Which are needed.
         common: Seed of the bench, rates of faults, limits.
         episodes: Trials that each is learnt from.
-        done: Progress how many there are, and of how many.
+        done: Told how many there are, and of how many.
 
     Raises:
         TpvqaError: A trial cannot be run, a file is damaged or cannot be written.

@@ -32,7 +32,7 @@ def run_compared(
         calibration: What monitors that weigh answers are told; None for what is shipped.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
-        progress: Progress how many episodes are done and how many there are.
+        progress: Told how many episodes are done and how many there are.
 
     Raises:
         TpvqaError: Something is not there, or the folder cannot be used.

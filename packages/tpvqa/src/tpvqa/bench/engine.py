@@ -75,7 +75,7 @@ def run_bench(
         folder: Where rows go; a bench that was stopped goes on there.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
-        progress: Progress how many episodes are done and how many there are.
+        progress: Told how many episodes are done and how many there are.
         published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
 
     Returns:

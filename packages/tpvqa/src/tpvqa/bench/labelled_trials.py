@@ -34,7 +34,7 @@ def label_trials(
         world: Specification of the world; None for that of a trial in which none is named.
         monitor: Who asks.
         seed: Decides every random number.
-        progress: Progress how many trials are done and how many there are.
+        progress: Told how many trials are done and how many there are.
 
     Raises:
         TpvqaError: Something is not there, or a trial cannot be run.

@@ -77,7 +77,7 @@ def run_all(
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
         distributed: Whether to use Dask; by default with more than one worker, or a scheduler.
-        done: Progress how many episodes have come back, after each batch.
+        done: Told how many episodes have come back, after each batch.
         calibrations: What the VLM's answers are worth, of cells whose monitor is told.
         own: Tasks of the user's own, by the names that cells have for them.
 
