@@ -18,7 +18,6 @@ from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.plugins import Kind, make
 
 
-
 def trials(
     planner: FastDownward,
     *,

@@ -146,3 +146,16 @@ def test_a_file_that_cannot_be_written_is_told_before_the_work(tpvqa: Run, tmp_p
     assert "folder" in err
     assert "--out" in err
     assert "trials" not in err
+
+
+def test_trials_that_teach_are_run_under_the_conditions_given(tpvqa: Run) -> None:
+    words = ("calibrate", "--tasks", "build_tower", "--vlm", "oracle:0.8", "--trials", 3, "--json")
+    rows = []
+    for name, more in (("usual", ()), ("short", ("--failure", 0.6, "--max-actions", 2))):
+        code, out, err = tpvqa(*words, *more, "--out", f"{name}.json")
+        assert code == 0, err
+        rows.append(json.loads(out)["rows"])
+    assert 0 < rows[1] < rows[0]
+    code, _, err = tpvqa("calibrate", "--pictures", "shipped", "--failure", 0.6)
+    assert code == 2
+    assert "for --trials" in err

@@ -7,10 +7,7 @@ from tpvqa.bench.checking import check
 from tpvqa.bench.grid import Grid
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.own_task import OwnTask
-from tpvqa.config import Limits, TrialConfig
-
-ACTIONS = 60
-"""The limit of actions of such a trial."""
+from tpvqa.config import TrialConfig
 
 
 def label_trials(
@@ -21,7 +18,7 @@ def label_trials(
     own: Mapping[str, OwnTask],
     world: str | None = None,
     monitor: str = "tpvqa",
-    seed: int = 0,
+    common: TrialConfig,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> list[LabelledAnswer]:
     """Run trials of every task, and label all answers in them.
@@ -33,7 +30,7 @@ def label_trials(
         own: Tasks of the user's own, by name.
         world: Specification of the world; None for that of a trial in which none is named.
         monitor: Who asks.
-        seed: Decides every random number.
+        common: What all trials share: seed, rates of faults, limits, planner.
         progress: Told how many trials are done and how many there are.
 
     Raises:
@@ -47,7 +44,6 @@ def label_trials(
         worlds=() if world is None else (world,),
     )
     cells = grid.cells()
-    common = TrialConfig(seed=seed, limits=Limits(actions=ACTIONS))
     check(cells, common, own)
     rows: list[LabelledAnswer] = []
     done, total = 0, trials * len(cells)

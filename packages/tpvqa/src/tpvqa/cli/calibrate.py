@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tpvqa.cli.calibration_table import draw, plain, print_calibration
+from tpvqa.cli.options import trial_options
+from tpvqa.config.layers import Key, Layer, combined
 
 if TYPE_CHECKING:
     from tpvqa.belief import LabelledAnswer
@@ -22,17 +24,31 @@ _SOURCES = (
 )
 
 
+_ELSEWHERE: tuple[Key, ...] = (
+    *(("task", name) for name in ("name", "domain", "problem", "questions", "world_file")),
+    *(("world", name) for name in ("spec", "pictures")),
+    *(("monitor", name) for name in ("spec", "calibration", "experience")),
+    ("vlm", "spec"),
+    ("episode",),
+)
+"""Settings of a trial for which there are options of another meaning here, or none."""
+_SHORT = Layer({("limits", "actions"): 60}, {("limits", "actions"): "default"})
+"""Trials that teach need not be long."""
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command(epilog=_EXIT)(calibrate)
 
 
+@trial_options(*_ELSEWHERE, defaults=_SHORT)
 def calibrate(
     episodes: Annotated[
         list[Path] | None,
         typer.Argument(help="Folders of recorded episodes in a simulated world."),
     ] = None,
     *,
+    layers: Sequence[Layer],
     vlm: Annotated[
         str | None,
         typer.Option(
@@ -84,7 +100,6 @@ def calibrate(
     monitor: Annotated[
         str, typer.Option(help="With --trials: who asks; tpvqa:K looks K times.")
     ] = "tpvqa",
-    seed: Annotated[int, typer.Option(help="With --trials: decides every random number.")] = 0,
     experience: Annotated[
         Path | None,
         typer.Option(
@@ -111,6 +126,8 @@ def calibrate(
     from tpvqa.defaults import default_vlm
     from tpvqa.errors import TpvqaError
 
+    if trials is None and any(layer.values for layer in layers if layer is not _SHORT):
+        raise TpvqaError("How trials are run is for --trials N; leave it out otherwise.")
     given = [bool(episodes), pictures is not None, trials is not None]
     if sum(given) != 1:
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
@@ -141,7 +158,7 @@ def calibrate(
                 own=own_tasks(problems, domain=domain, questions=questions, world_file=world_file),
                 world=world,
                 monitor=monitor,
-                seed=seed,
+                common=combined(layers),
                 progress=bar,
             )
     calibration = fit(rows, name, chosen_looks=chosen_looks)
