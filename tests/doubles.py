@@ -17,6 +17,7 @@ _PARTS = {
     "failure": "simulation",
     "disturbance": "simulation",
     "spontaneous": "simulation",
+    "redo": "simulation",
     "domain": "task",
     "problem": "task",
     "questions": "task",

@@ -36,6 +36,7 @@ def make_set(folder: Path) -> Path:
         for fact, side in ((LEFT, 0), (RIGHT, 4)):
             if fact in state:
                 picture.paste((255, 255, 255 - number), (side, 0, side + 4, 8))
+        picture.paste((20, 20, 60), (0, 7, 8, 8))  # the floor
         data = BytesIO()
         picture.save(data, "JPEG" if file.endswith("jpg") else "PNG")
         (folder / file).write_bytes(data.getvalue())

@@ -1,7 +1,5 @@
 """The real-robot trial of the paper's appendix, told with a scripted world and a scripted VLM."""
 
-from pathlib import Path
-
 from tests.doubles import ScriptedVLM, configured, known_truth, truthful
 from tpvqa.assembly import Trial
 from tpvqa.episodes import MemoryWriter
@@ -10,20 +8,12 @@ from tpvqa.monitors import Decision
 from tpvqa.questions import Question
 from tpvqa.vlm import Reply
 
-TOYS = Path(__file__).parent / "fixtures" / "toys"
-
 
 def test_the_container_drops_the_plan_starts_again_and_a_failed_pick_is_repeated() -> None:
-    config = configured(
-        domain=str(TOYS / "domain.pddl"),
-        problem=str(TOYS / "collect.pddl"),
-        questions=str(TOYS / "questions.yaml"),
-        world=f"scripted:{TOYS / 'script.yaml'}",
-        vlm="oracle",
-        monitor="tpvqa",
-    )
+    config = configured(task="collect_toys", monitor="tpvqa")
     writer = MemoryWriter()
     with Trial(config) as trial:
+        assert (trial.world_spec, trial.vlm_spec) == ("scripted", "oracle")
 
         def sees(question: Question) -> Reply:
             return truthful(question, known_truth(trial.world).holds)

@@ -134,7 +134,7 @@ def test_the_core_alone_and_then_the_household(wheels: dict[str, Path], tmp_path
     assert (code, json.loads(out)["vlm"]) == (0, "embedded"), err
     assert "compose" in installed.tpvqa("dataset", "--help")[1]
     needs = installed.tpvqa("run", "eat_apple", "--world", "kitchen")[2]
-    assert "pip install 'tpvqa-household[sim]'" in needs
+    assert "pip install -e 'packages/tpvqa-household[sim]'" in needs
 
 
 def _the_core_alone(installed: Installed, files: tuple[Path, Path]) -> None:
@@ -156,7 +156,7 @@ def _the_core_alone(installed: Installed, files: tuple[Path, Path]) -> None:
 def _what_the_core_says_of_the_household(
     installed: Installed, files: tuple[Path, Path], pictures: Path
 ) -> None:
-    install = "pip install tpvqa-household"
+    install = "pip install -e packages/tpvqa-household"
     for words in (
         ("run", "clean_dishes"),
         ("run", "build_tower", "--world", "images"),
@@ -167,5 +167,5 @@ def _what_the_core_says_of_the_household(
     ):
         code, _, err = installed.tpvqa(*words)
         assert code == 2, words
-        assert install in err or "tpvqa[calibrate]" in err, err
+        assert install in err or "packages/tpvqa[calibrate]" in err, err
         assert "Traceback" not in err

@@ -57,8 +57,8 @@ def test_a_file_ending_is_only_that(media_type: str) -> None:
     assert re.fullmatch(r"\.[a-z0-9]+", Frame("a", "front", b"", f"image/{media_type}").suffix)
 
 
-@pytest.mark.parametrize("kind", ["png", "webp", "bmp"])
-def test_whatever_pillow_reads_has_pixels(kind: str) -> None:
+@pytest.mark.parametrize("kind", ["png", "webp"])
+def test_pictures_have_pixels(kind: str) -> None:
     red = np.zeros((2, 3, 3), np.uint8)
     red[..., 0] = 255
     file = BytesIO()

@@ -12,6 +12,8 @@ from tpvqa import Trial, TrialConfig
 from tpvqa.belief.shipped import shipped_calibration
 from tpvqa.defaults import default_vlm
 from tpvqa.errors import MissingExtraError, PluginError, UnknownNameError
+from tpvqa.monitors.making import make_monitor
+from tpvqa.planning.making import make_planner
 from tpvqa.plugins import Kind, load, make, names
 from tpvqa.tasks import find_task, shipped_tasks
 from tpvqa.vlm.making import make_vlm
@@ -34,7 +36,27 @@ class ColourVLM:
     def from_spec(cls, arguments, *, seed=0):
         return cls(arguments or "red", seed)
 
-class Curious:
+class Everything:
+    """Has what worlds, VLMs and monitors have."""
+
+    name = "everything"
+
+    def views(self):
+        return ("front",)
+
+    def observe(self, view=None): ...
+
+    def execute(self, action, *, deadline=None, cancel=None): ...
+
+    def close(self): ...
+
+    def ask(self, observation, questions): ...
+
+    def before(self, step): ...
+
+    def after(self, step): ...
+
+class Curious(Everything):
     """Names the truth, without being a noise model."""
 
     def __init__(self, truth=None, simulation=None, **rest):
@@ -124,7 +146,7 @@ def test_a_broken_plug_in_is_a_clear_error(
 @pytest.mark.parametrize(
     ("module", "extras", "says"),
     [
-        ("scipy", {}, r"pip install 'tpvqa\[bench\]'"),
+        ("scipy", {}, r"pip install -e 'packages/tpvqa\[bench\]'"),
         ("scipy", {"fast": "scipy>=1"}, r"pip install 'colours\[fast\]'"),
         ("lidar", {"laser": "lidar", "all": "radar"}, r"pip install 'colours\[laser\]'"),
     ],
@@ -226,13 +248,13 @@ def test_what_other_distributions_bring_is_named_where_it_is_missing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("tpvqa.plugins._points", lambda path: dict.fromkeys(Kind, ()))
-    household = r"comes with tpvqa-household\. Install it: pip install tpvqa-household"
+    household = r"comes with tpvqa-household\. Install it: .* -e packages/tpvqa-household"
     for kind, name in ((Kind.VLM, "embedded"), (Kind.WORLD, "images"), (Kind.WORLD, "kitchen")):
         with pytest.raises(UnknownNameError, match=household):
             load(kind, name)
     with pytest.raises(UnknownNameError, match=household):
         find_task("eat_apple")
-    with pytest.raises(UnknownNameError, match=r"pip install -e \./experiments"):
+    with pytest.raises(UnknownNameError, match=r"pip install -e experiments"):
         load(Kind.VLM, "paper-table")
     with pytest.raises(PluginError, match=r"--vlm openai:MODEL, or install .*tpvqa-household"):
         default_vlm()
@@ -245,3 +267,55 @@ def test_a_plug_in_for_another_protocol_is_refused(install: Install) -> None:
     with pytest.raises(PluginError, match=r"'old' of eyes is written for protocol 1 .*protocol 2"):
         load(Kind.VLM, "old")
     assert load(Kind.VLM, "new").__name__ == "New"
+
+
+def forms(old: str, new: str) -> str:
+    assert old in COLOURS
+    return COLOURS.replace(old, new)
+
+
+@pytest.mark.parametrize(
+    ("group", "source", "says"),
+    [
+        (
+            "worlds",
+            forms("def execute", "def exceute"),
+            r"world 'broken' \(colours.Curious\) has no execute\(action, \*, deadline=None, "
+            r"cancel=None\). Did you mean it by 'exceute'\?. A world has views, observe, execute",
+        ),
+        ("worlds", forms("observe(self, view=None)", "observe(self)"), "observe.*view=None"),
+        ("worlds", forms("observe(self, view=None)", "observe(self, view)"), "observe.*missing"),
+        ("worlds", forms(", cancel=None)", ")"), "execute.*'cancel'"),
+        (
+            "worlds",
+            forms("def views(self)", "views = 3\n    def other(self)"),
+            "'views' that is no",
+        ),
+        ("vlms", forms('name = "everything"', "name = 3"), "'name' that is 3; expected a text"),
+        ("vlms", forms('name = "everything"', 'nam = ""'), "no 'name', a text. Did you mean"),
+        (
+            "vlms",
+            forms('name = "everything"', "@property\n    def name(self): return 1 / 0"),
+            "'name' that broke: ZeroDivisionError",
+        ),
+        ("vlms", forms("def ask", "async def ask"), "'ask' that is a coroutine"),
+        ("monitors", forms("def after(self, step)", "def after(self)"), "after"),
+        ("planners", forms("def ask", "def plan"), "plan"),
+        ("worlds", forms("self.rest = truth", "self.rest = 1 / 0, truth"), "Curious.*ZeroDiv.*py:"),
+        ("worlds", forms("self.truth, self", "raise SystemExit(0)\n        self"), "SystemExit"),
+        ("worlds", "def Curious(): return None", "NoneType.* has no views"),
+    ],
+)
+def test_a_plug_in_that_lacks_something_is_found_out_when_it_is_made(
+    install: Install, group: str, source: str, says: str
+) -> None:
+    install("colours", source, "broken = colours:Curious", group=f"tpvqa.{group}")
+    makers: dict[str, Any] = {
+        "worlds": lambda: make_world("broken", {}),
+        "vlms": lambda: make_vlm("broken", {}),
+        "monitors": lambda: make_monitor("broken", {}),
+        "planners": lambda: make_planner("broken"),
+    }
+    with pytest.raises(PluginError, match=says) as caught:
+        makers[group]()
+    assert "\n" not in str(caught.value)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tpvqa.belief import AnswerRates, Apart, Calibration, Curve, Group
 from tpvqa.belief.calibration import BOUND
-from tpvqa.errors import CalibrationError
+from tpvqa.errors import CalibrationError, WriteError
 from tpvqa.pddl import Action, Atom, Conjunction
 from tpvqa.questions import ActionQuestion, ActionWay, FactQuestion, FactWay, Way
 from tpvqa.vlm import Answer, Reply
@@ -164,6 +164,6 @@ def test_a_missing_file_and_one_that_cannot_be_written(tmp_path: Path) -> None:
     with pytest.raises(CalibrationError, match=r"c\.json.*tpvqa calibrate --out"):
         Calibration.load(tmp_path / "c.json")
     (tmp_path / "folder").mkdir()
-    with pytest.raises(CalibrationError, match="--out"):
+    with pytest.raises(WriteError, match="--out"):
         Calibration.default("v").save(tmp_path / "folder")
     assert [each.name for each in tmp_path.iterdir()] == ["folder"]

@@ -17,7 +17,7 @@ from tpvqa.bench.schedule import run_all
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
-from tpvqa_experiments.paper import PaperBench
+from tpvqa_experiments.paper import PLAIN, STRICT, PaperBench
 
 TPVQA = [sys.executable, "-c", "from tpvqa.cli import main; main()"]
 CELLS = [Cell("clean_dishes", m, "oracle:0.8", "symbolic") for m in ("tpvqa", "tp", "palmevqa")]
@@ -124,6 +124,7 @@ def test_what_is_not_there_is_said_before_anything_runs(
 def test_the_command_killed_in_the_middle_goes_on(tmp_path: Path) -> None:
     settings = ["bench", "paper", "--tasks", "clean_dishes", "--vlm", "oracle:0.8", "--json"]
     settings += ["--episodes", "200", "--curve", "0", "--workers", "1"]
+    settings += ["--monitors", "tpvqa,effectvqa,tp,palmevqa,successvqa"]
     folder = tmp_path / "killed"
     process = subprocess.Popen(
         [*TPVQA, *settings, "--out", folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
@@ -202,13 +203,15 @@ def test_one_broken_episode_is_recorded_and_the_rest_go_on(
 
 def test_cells_that_a_recording_cannot_fill_stay_empty() -> None:
     bench = PaperBench(tasks=["clean_dishes"], vlms=["recorded:internvl3-8b", "paper-table"])
-    cells = [(cell.vlm, cell.monitor) for cell in bench.cells()]
+    cells = [(cell.vlm, cell.monitor) for cell in bench.cells() if not cell.condition]
     assert [monitor for vlm, monitor in cells if vlm.startswith("recorded")] == [
         "tpvqa",
         "effectvqa",
         "tp",
+        *STRICT,
+        *PLAIN,
     ]
-    assert len([vlm for vlm, _ in cells if vlm == "paper-table"]) == 5
+    assert len([vlm for vlm, _ in cells if vlm == "paper-table"]) == 9
 
 
 def test_an_interrupt_ends_the_bench_and_leaves_no_row(
@@ -231,3 +234,16 @@ def test_an_interrupt_ends_the_bench_and_leaves_no_row(
     rows = [values for _, values in sorted(rows_of(tmp_path).items())]
     assert [values["episode"] for values in rows] == list(range(100))
     assert not any(values["because"] == "cancelled" for values in rows)
+
+
+def test_a_cell_may_ask_in_the_papers_wording() -> None:
+    asked = {}
+    for condition in ("", "wording=paper"):
+        cell = Cell("clean_dishes", "successvqa", "oracle", "symbolic", condition)
+        with stage(cell.task).trial(cell.config(TrialConfig(), 0)) as trial:
+            wash = trial.task.action("wash", ("plate", "sink", "left"))
+            asked[condition] = trial.book.successful(wash).text
+    assert asked == {
+        "": "Was wash the plate successful?",
+        "wording=paper": "Was wash plate successful?",
+    }

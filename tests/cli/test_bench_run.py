@@ -172,11 +172,11 @@ def test_killed_in_the_middle_it_goes_on(tmp_path: Path) -> None:
 
 
 def test_plug_ins_and_options(install: Install, tpvqa: Run) -> None:
-    install("robot", PLUGGED, "blind = robot:Blind", group="tpvqa.monitors")
+    install("robot", PLUGGED, "sightless = robot:Blind", group="tpvqa.monitors")
     install("eager", PLUGGED, "yes = eager:Yes")
     install("arm", PLUGGED, "arm = arm:Robot", group="tpvqa.worlds")
     words = ["bench", "run", "build_tower", "--vlm", "yes", "--workers", 1, "--episodes", 2]
-    words += ["--monitors", "blind,tpvqa", "--world-file", "w.yaml", "--json"]
+    words += ["--monitors", "sightless,tpvqa", "--world-file", "w.yaml", "--json"]
     assert "none is named" in tpvqa(*words)[2]
     words = [word for word in words if word not in ("--world-file", "w.yaml")]
     code, out, err = tpvqa(*words, "--option", "eagerness=great", "--failure", 0)
@@ -218,6 +218,7 @@ def test_a_calibration_of_ones_own(tpvqa: Run) -> None:
         (["build_tower", "--conditions", "failures=1"], "is not understood"),
         (["build_tower", "--conditions", "failure=2"], "is not understood"),
         (["build_tower", "--conditions", "repeats=0.5"], "is not understood"),
+        (["build_tower", "--conditions", "wording=loud"], "is not understood"),
         (["build_tower", "--conditions", "planner=slow"], "no planner 'slow'"),
         (["build_tower", "--conditions", "believed=oracle:0.9"], "--calibration"),
         (["build_tower", "--domain", "d.pddl"], "none is named"),

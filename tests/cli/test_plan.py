@@ -156,14 +156,17 @@ def test_ctrl_c_leaves_nothing_behind(folder: Path) -> None:
     ("words", "message"),
     [
         (("eat_aple",), "Did you mean 'eat_apple'"),
-        (("gone.pddl", "gone.pddl"), "gone.pddl: there is no such domain file"),
-        (("gone.pddl",), "a domain alone is no task"),
+        (("gone.pddl", "gone.pddl"), "gone.pddl: cannot be read: there is no such domain file"),
+        (("gone.pddl",), "is a domain or a problem alone; name both"),
         (("eat_apple", "--timeout", "soon"), "timeout"),
         (("eat_apple", "--timeout", "nan"), "timeout"),
         (("eat_apple", "--timeout", "-1"), "timeout"),
         (("eat_apple", "--timeout", "-inf"), "timeout"),
         (("eat_apple", "--from-state", "ill.txt"), "ill.txt:1: (near left): left is a hand"),
-        (("eat_apple", "--from-state", "gone"), "gone: the state cannot be read"),
+        (
+            ("eat_apple", "--from-state", "gone"),
+            "gone: cannot be read: there is no such state file",
+        ),
     ],
 )
 def test_bad_input(folder: Path, words: tuple[str, ...], message: str) -> None:
@@ -184,9 +187,10 @@ def test_tasks(folder: Path) -> None:
     assert done.returncode == 0
     assert "serve_breakfast  (household)" in done.stdout
     assert "on(bread, plate), turned_on(tv)" in done.stdout
+    assert "(on(blue_container, goal_area), on(toy_eggplant, blue_container)) or (" in done.stdout
     listed = json.loads(tpvqa("tasks", "--json", cwd=folder).stdout)
     names = [entry["name"] for entry in listed]
-    assert names == ["build_tower", "clean_dishes", "eat_apple", "serve_breakfast"]
-    assert listed[2]["goal"] == ["halved(apple)"]
-    assert listed[2]["objects"]["apple"] == "fruit"
-    assert Path(listed[2]["problem"]).is_file()
+    assert names == ["build_tower", "clean_dishes", "collect_toys", "eat_apple", "serve_breakfast"]
+    assert listed[3]["goal"] == ["halved(apple)"]
+    assert listed[3]["objects"]["apple"] == "fruit"
+    assert Path(listed[3]["problem"]).is_file()

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from tests.test_pictures import png_that_says
 from tests.vlm.chat_server import Act, ChatServer
 from tpvqa.cli import main
 
@@ -53,10 +54,17 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
     return domain, problem
 
 
+def _red() -> Image.Image:
+    """Red, with a dark edge: a picture of one colour shows nothing."""
+    red = Image.new("RGB", (8, 8), "red")
+    red.paste("black", (0, 6, 8, 8))
+    return red
+
+
 @pytest.fixture
 def picture(tmp_path: Path) -> Path:
     path = tmp_path / "kitchen.png"
-    Image.new("RGB", (8, 8), "red").save(path)
+    _red().save(path)
     return path
 
 
@@ -184,8 +192,8 @@ def test_asking_prints_answer_and_probability(tpvqa: Run, picture: Path) -> None
 
 
 def test_asking_prints_json_and_turns_other_formats_into_png(tpvqa: Run, tmp_path: Path) -> None:
-    path = tmp_path / "kitchen.bmp"
-    Image.new("RGB", (8, 8), "red").save(path)
+    path = tmp_path / "kitchen.webp"
+    _red().save(path, lossless=True)
     with ChatServer(lambda *_: 0.75) as server:
         code, out, _ = tpvqa(
             "ask", path, "Is it red?", "--vlm", "openai:test", "--base-url", server.url, "--json"
@@ -221,3 +229,46 @@ def test_what_is_no_picture_and_a_server_that_refuses_are_clear_errors(
     assert "OPENAI_API_KEY" in err
     assert "noise model" in tpvqa("ask", picture, "Is it red?", "--vlm", "oracle")[2]
     assert "OPENAI_API_KEY" in tpvqa("ask", picture, "Is it red?", "--vlm", "openai:test")[2]
+
+
+def test_the_papers_wording_is_for_whole_actions_alone(tpvqa: Run) -> None:
+    _, usual, _ = tpvqa("questions", "clean_dishes")
+    code, paper, _ = tpvqa("questions", "clean_dishes", "--wording", "paper")
+    assert code == 0
+    assert "   successful: Was wash plate successful? yes" in paper.splitlines()
+    assert "   effect: Is the plate clean? yes" in paper.splitlines()
+    changed = set(paper.splitlines()) - set(usual.splitlines())
+    assert {line.split(":")[0].strip() for line in changed} == {"possible", "successful", "did"}
+    assert tpvqa("questions", "clean_dishes", "--wording", "loud")[0] == 2
+
+
+def test_a_picture_that_is_none_too_large_or_without_end_is_told_at_once(
+    tpvqa: Run, picture: Path, tmp_path: Path
+) -> None:
+    eps = tmp_path / "drawing.eps"
+    eps.write_text("%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\nshowpage\n")
+    pipe = tmp_path / "pipe.png"
+    os.mkfifo(pipe)
+    large = tmp_path / "large.png"
+    large.write_bytes(png_that_says(13_000, 13_000))
+    for path, said in (
+        (eps, "JPEG, PNG or WebP"),
+        (pipe, "no regular file"),
+        ("/dev/zero", "no regular file"),
+        (large, "more than 50 million pixels"),
+    ):
+        code, out, err = tpvqa("ask", path, "Is it red?", "--vlm", "openai:test")
+        assert (code, out) == (2, "")
+        assert str(path) in err
+        assert said in err
+
+
+def test_a_dead_camera_is_told_whoever_is_asked(tpvqa: Run, tmp_path: Path) -> None:
+    path = tmp_path / "dark.png"
+    Image.new("RGB", (64, 64)).save(path)
+    with ChatServer(lambda *_: 0.01) as server:
+        words = ("--vlm", "openai:test", "--base-url", server.url)
+        code, out, _ = tpvqa("ask", path, "Is it red?", *words)
+    assert code == 0
+    assert out == "Is it red? cannot see (no probability: the picture is black all over)\n"
+    assert not server.requests

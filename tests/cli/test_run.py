@@ -120,11 +120,15 @@ def test_experience_is_kept_for_one_vlm_and_by_whoever_goes_on(tpvqa: Run) -> No
     log = Path("one/episode.jsonl")
     log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:40]))
     Path("known.json").unlink()
-    assert tpvqa("resume", "one")[0] == 0
+    code, _, err = tpvqa("resume", "one")
+    assert code == 2
+    pasted = shlex.split(err.splitlines()[-1])
+    assert pasted == ["tpvqa", "resume", "one", "--experience", str(Path("known.json").resolve())]
+    assert tpvqa(*pasted[1:])[0] == 0
     assert Experience.load(Path("known.json")) == one
 
     log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:40]))
-    code, _, err = tpvqa("resume", "one")
+    code, _, err = tpvqa(*pasted[1:])
     assert code == 0
     assert "was written by other trials" in err
     assert Experience.load(Path("known.json")) == one
@@ -344,3 +348,17 @@ def test_a_monitor_that_asks_nothing_needs_no_vlm(
     code, out, _ = tpvqa("run", "eat_apple", "--monitor", "tp", "--vlm", "openai:some", "--json")
     assert code in (0, 1)
     assert json.loads(out)["questions"] == 0
+
+
+def test_the_papers_wording_goes_through_the_log_and_is_resumed(tpvqa: Run) -> None:
+    words = ("--monitor", "palmevqa", "--wording", "paper", "--out", "here")
+    code, _, _ = tpvqa("run", "clean_dishes", *SYMBOLIC, *words)
+    log = Path("here/episode.jsonl")
+    whole = log.read_text()
+    assert code in (0, 1)
+    assert '"text":"Was wash plate successful?"' in whole.replace(" :", ":").replace(": ", ":")
+    lines = whole.splitlines(keepends=True)
+    log.write_text("".join(lines[:12]))
+    assert tpvqa("resume", "here")[0] == code
+    texts = [re.findall(r'"text": ?"([^"]+)"', each) for each in (whole, log.read_text())]
+    assert texts[0] == texts[1]

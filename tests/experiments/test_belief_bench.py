@@ -15,6 +15,7 @@ from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.ledger import ROWS, Ledger
+from tpvqa.bench.published import write_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import batches
 from tpvqa.bench.stage import run_batch
@@ -95,7 +96,7 @@ def lines_of(folder: Path) -> list[dict[str, Any]]:
 
 
 def bench(episodes: int = 2, **kwargs: Any) -> BeliefBench:
-    extent = replace(SMALL, episodes=episodes)
+    extent = replace(SMALL, episodes=episodes, rivals=episodes)
     return BeliefBench(parts=[Part.GRID], extent=extent, calibration_episodes=3, **kwargs)
 
 
@@ -479,3 +480,14 @@ def test_what_is_not_there_is_said_before_anything_runs(
     assert message in result.stderr
     assert "Traceback" not in result.stderr
     assert not (tmp_path / "b").exists()
+
+
+def test_tables_are_made_of_rows_of_an_earlier_version_and_nothing_else_is(tmp_path: Path) -> None:
+    path = tmp_path / "rows.parquet"
+    write_published(first(2, 3), {**bench().settings(), "version": "0.1.0"}, path)
+    out = tmp_path / "out"
+    results, _ = run_belief_bench(bench(), out, only_tables=True, published=path)
+    assert results.settings["version"] == "0.1.0"
+    assert (out / "belief.md").read_text().count("version 0.1.0") == 1
+    with pytest.raises(BenchError, match=r"version '0\.1\.0' there"):
+        run_belief_bench(bench(), tmp_path / "other", published=path)

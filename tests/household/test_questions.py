@@ -102,6 +102,32 @@ def test_whole_actions_are_asked_about_in_the_papers_words() -> None:
     )
 
 
+def test_the_papers_wording_has_no_articles() -> None:
+    """Where it says <action>: \"Was wash plate successful?\" is the paper's own example."""
+    task, book = ready("clean_dishes")
+    paper, wash = book.worded("paper"), act(task, "wash plate sink left")
+    assert [paper.possible(wash).text, paper.successful(wash).text, paper.did(wash).text] == [
+        "Is it possible to wash plate here?",
+        "Was wash plate successful?",
+        "Did the robot successfully wash plate?",
+    ]
+    assert paper.say(wash) == book.say(wash) == "wash the plate"
+    assert paper.effects(wash, task.init) == book.effects(wash, task.init)
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "text"),
+    [
+        ("serve_breakfast", "place bread plate left", "Was place bread on plate successful?"),
+        ("serve_breakfast", "turn_on tv", "Was turn on TV successful?"),
+        ("eat_apple", "cut_in_half apple knife left right", "Was cut apple in half successful?"),
+    ],
+)
+def test_nor_have_the_places_in_it(name: str, words: str, text: str) -> None:
+    task, book = ready(name)
+    assert book.worded("paper").successful(act(task, words)).text == text
+
+
 def test_things_lie_in_some_places_and_on_others() -> None:
     task, book = ready("eat_apple")
     said = {

@@ -45,9 +45,11 @@ def test_ways_to_write_a_state(task: Task, tmp_path: Path, text: str) -> None:
         ("(near left)", ":1: .*left is a hand, but .x of near must be a thing"),
         ("()", ":1: .*not an atom"),
         ('["(near tv)",\n "(nearr tv)"]', ":2: .*Did you mean 'near'"),
-        ('["(near tv)",\n 3]', "entry 2 of the list is no atom: 3"),
+        ('["(near tv)",\n 3]', "entry 2 of the list is no atom: '3'"),
         ('["(near tv)"\n "(free left)"]', ":2: this is not JSON"),
         ('{"near": "tv"}', "expected a JSON list"),
+        ("[" * 100_000, "no JSON list"),
+        ("[" + "9" * 5000 + "]", "no JSON list"),
     ],
 )
 def test_errors_name_the_line(task: Task, tmp_path: Path, text: str, message: str) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.pddl.feature_domains import SAMPLES
+from tpvqa.errors import PlannerError
 from tpvqa.pddl import Action, Task, load_task, processes, task_from_text, validate
 from tpvqa.planning import Crashed, Plan, TimedOut, fast_downward
 from tpvqa.planning.fast_downward import FastDownward
@@ -172,6 +173,22 @@ def test_a_crashing_search_is_retried_once(hard: Task) -> None:
     (result,) = results
     assert isinstance(result, Crashed)
     assert "signal 11" in result.reason
+
+
+def test_grounding_out_of_memory_is_said_and_the_next_task_is_grounded() -> None:
+    names = " ".join(f"o{number}" for number in range(24))
+    facts = " ".join(f"(p {name})" for name in names.split())
+    domain = (
+        "(define (domain big) (:predicates (p ?a) (q ?a ?b ?c ?d)) (:action go :parameters (?a ?b "
+        "?c ?d) :precondition (and (p ?a) (p ?b) (p ?c) (p ?d)) :effect (q ?a ?b ?c ?d)))"
+    )
+    problem = (
+        f"(define (problem all) (:domain big) (:objects {names}) (:init {facts}) "
+        "(:goal (q o0 o1 o2 o3)))"
+    )
+    with pytest.raises(PlannerError, match=r"more memory than 0.195 GB; make the problem smaller"):
+        task_from_text(domain, problem, memory=200)
+    assert task_from_text(domain, problem.replace(names, "o0 o1 o2 o3").replace(facts, "(p o0)"))
 
 
 def test_running_out_of_memory_is_said(hard: Task, monkeypatch: pytest.MonkeyPatch) -> None:

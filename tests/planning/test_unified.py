@@ -68,4 +68,4 @@ def test_the_extra_is_named_where_it_is_missing() -> None:
         "task_from_problem(None)\n"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-    assert "pip install 'tpvqa[up]'" in done.stderr
+    assert "pip install -e 'packages/tpvqa[up]'" in done.stderr

@@ -5,6 +5,9 @@ paper's bench), runs exactly these trials, and compares every column but the sec
 are learnt as the bench learns them, and kept in a folder; an empty one proves the learning, too.
 `--record` writes `paper_rows.json`; it holds what trials came to before something was changed.
 
+The belief's rows are of version 0.2: since then TPVQA, its votes and PaLMEVQA decide otherwise, on
+purpose.
+
 Where facts that exclude each other are believed (without consistency, without a model), the plan
 depends on what was planned before in the same process: the planner's worker keeps what it has
 grounded for such states. Of many rows of the ablations one in a hundred can differ for that alone.

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from tpvqa.errors import QuestionsError
 from tpvqa.pddl import Action, Atom, Literal, Task, load_task
 from tpvqa.questions import QuestionBook, Way
 
@@ -80,12 +81,45 @@ def test_derived_facts_are_asked_and_nothing_twice(task: Task) -> None:
     assert {each.way for each in questions} == {Way.PRECONDITION}
 
 
-def test_of_a_disjunction_the_parts_that_hold_are_asked_and_all_where_none_does(task: Task) -> None:
-    book = QuestionBook.load(None, task)
+def test_of_a_disjunction_the_parts_that_hold_are_asked_and_all_where_none_does(
+    task: Task, tmp_path: Path
+) -> None:
+    book = book_of(task, tmp_path, "in_doubt: [(power)]")
     carry = task.action("carry", ["big_lamp", "hall", "kitchen_2"])
     assert [each.text for each in book.preconditions(carry, task.init)] == ["Is it true: power?"]
     dark = book.preconditions(carry, task.init - {Atom("power")})
     assert [each.text for each in dark] == ["Is it true: power?", "Is the big lamp lit?"]
+
+
+def test_what_no_action_changes_is_not_asked_unless_the_file_doubts_it(
+    task: Task, tmp_path: Path
+) -> None:
+    carry = task.action("carry", ["big_lamp", "hall", "kitchen_2"])
+    book = QuestionBook.load(None, task)
+    assert book.why_not(Literal(Atom("power"))) == "no action changes it"
+    # that there is power is enough for the disjunction, whatever is lit
+    assert book.preconditions(carry, task.init) == ()
+    doubting = book_of(task, tmp_path, "in_doubt: ['(connected hall ?r)']")
+    assert doubting.asked(Literal(Atom("connected", ("hall", "kitchen_2"))))
+    assert not doubting.asked(Literal(Atom("connected", ("kitchen_2", "hall"))))
+    with pytest.raises(QuestionsError, match=r"questions.yaml:1: .*no predicate 'powr'"):
+        book_of(task, tmp_path, "in_doubt: [(powr)]")
+
+
+def test_a_fact_of_objects_that_no_action_is_for_is_not_asked(tmp_path: Path) -> None:
+    (tmp_path / "d.pddl").write_text(
+        """(define (domain d) (:requirements :typing) (:types item place)
+          (:predicates (on ?x ?y))
+          (:action move :parameters (?i - item ?f ?t - place)
+            :precondition (on ?i ?f) :effect (and (on ?i ?t) (not (on ?i ?f)))))"""
+    )
+    (tmp_path / "p.pddl").write_text(
+        """(define (problem p) (:domain d) (:objects cup - item shelf floor - place)
+          (:init (on cup shelf) (on shelf floor)) (:goal (on cup floor)))"""
+    )
+    book = QuestionBook.load(None, load_task(tmp_path / "d.pddl", tmp_path / "p.pddl"))
+    assert book.asked(Literal(Atom("on", ("cup", "floor"))))
+    assert not book.asked(Literal(Atom("on", ("shelf", "floor"))))
 
 
 def test_what_is_deleted_and_added_at_once_holds_and_is_asked_so(task: Task) -> None:
@@ -163,7 +197,9 @@ def test_the_ways_of_asking_about_an_action_can_be_reworded(task: Task, tmp_path
 
 def test_every_fallback_is_reported_once(task: Task, tmp_path: Path) -> None:
     bare = QuestionBook.load(None, task)
-    mentioned = [*task.predicates, "switch", "carry", "startle", "regrip"]
+    constant = set(task.predicates) - task.fluents - task.derived  # nobody asks about them
+    assert constant == {"power", "connected"}
+    mentioned = [*set(task.predicates) - constant, "switch", "carry", "startle", "regrip"]
     for name in mentioned:
         assert sum(f" {name} " in notice or f" {name};" in notice for notice in bare.notices) == 1
     assert len(bare.notices) == len(mentioned)
@@ -193,6 +229,8 @@ def test_never_asked_knows_types_constants_repeated_variables_and_actions(
             in: carry
           - fact: (connected ?a ?a)
           - fact: (not (lit ?l))
+        in_doubt:
+          - (connected ?a ?b)
         """,
     )
     carry = task.action("carry", ["big_lamp", "hall", "kitchen_2"])

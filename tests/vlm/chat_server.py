@@ -43,6 +43,7 @@ class Act:
         headers: Further headers.
         wait: Seconds before anything is sent.
         reset: Cut the connection without a reply.
+        drip: Seconds between one byte of the body and the next.
     """
 
     status: int = 200
@@ -50,6 +51,7 @@ class Act:
     headers: Mapping[str, str] = field(default_factory=dict)
     wait: float = 0.0
     reset: bool = False
+    drip: float = 0.0
 
 
 Script = Callable[[Request, int], Act | None]
@@ -196,7 +198,11 @@ class _Handler(BaseHTTPRequestHandler):
                 self.send_header(name, value)
             self.send_header("Content-Length", str(len(data)))
             self.end_headers()
-            self.wfile.write(data)
+            if not act.drip:
+                self.wfile.write(data)
+            for at in range(len(data) if act.drip else 0):
+                self.wfile.write(data[at : at + 1])
+                time.sleep(act.drip)
         except OSError:
             self.close_connection = True  # the client has gone
 

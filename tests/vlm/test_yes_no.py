@@ -1,4 +1,4 @@
-"""Reading words and token probabilities."""
+"""Reading token probabilities."""
 
 import json
 import math
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tpvqa.vlm import Reply
 from tpvqa.vlm.chat_completions import Dialect, read_completion
-from tpvqa.vlm.yes_no import Token, answer_token, mass, read_words
+from tpvqa.vlm.yes_no import Token, answer_token, mass
 
 LOGARITHMS = st.floats(allow_nan=True, allow_infinity=True)
 WAYS_TO_WRITE = [
@@ -26,78 +26,6 @@ WAYS_TO_WRITE = [
     "**Yes",
     "\nYes",
 ]
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        "Yes",
-        "yes.",
-        " YES!",
-        "**Yes**",
-        '"Yes"',
-        "Answer: yes",
-        "Yes, it is.",
-        "<think>No? No.</think>\n\nYes",
-        "The answer is yes.",
-    ],
-)
-def test_a_clear_yes(words: str) -> None:
-    assert read_words(words) is Reply.YES
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        "No",
-        "no.",
-        " NO!",
-        "**No**",
-        "Final answer: No",
-        "No, there is no plate.",
-        "<think>yes yes</think>no",
-        "No, the robot cannot reach it.",
-    ],
-)
-def test_a_clear_no(words: str) -> None:
-    assert read_words(words) is Reply.NO
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        "",
-        "?",
-        "Yes?",
-        "Yes/No",
-        "No... yes",
-        "There is no plate",
-        "nothing",
-        "Not sure",
-        "Yes, maybe",
-        "No idea, it's hard to tell",
-        "No, I can't see it clearly",
-        "It is not clear",
-        "ja",
-        "1",
-        "yesno",
-        "Answer:",
-        "unknown",
-        "Answer: unknown",
-    ],
-)
-def test_anything_else_is_unknown(words: str) -> None:
-    assert read_words(words) is Reply.UNKNOWN
-
-
-@given(st.text())
-def test_whatever_is_said_both_or_neither_word_is_unknown(words: str) -> None:
-    said = {word.strip(".,!?*'\"").casefold() for word in words.split()}
-    reply = read_words(words)
-    if reply is not Reply.UNKNOWN:
-        assert reply.value in words.casefold()
-    if {"yes", "no"} <= said:
-        assert reply is Reply.UNKNOWN
 
 
 @pytest.mark.parametrize("token", WAYS_TO_WRITE)

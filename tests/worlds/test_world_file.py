@@ -1,5 +1,6 @@
 """World files: what is wrong in them is said, with its line."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,24 @@ def test_what_is_written_well_is_read(task: Task, tmp_path: Path) -> None:
     assert rules.rebind[0].argument == "?from"
 
 
+def test_the_file_of_the_documentation_is_read(task: Task, tmp_path: Path) -> None:
+    """And every key stands in it."""
+    page = (Path(__file__).parents[2] / "docs/world.md").read_text()
+    examples = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    path = tmp_path / "world.yaml"
+    path.write_text("".join(examples))
+    rules = load_world_file(path, task)
+    assert [str(rule.fact) for rule in rules.undo] == [
+        "(on ?x ?d - dish)",
+        "(in_hand ?x ?h)",
+        "(opened ?c)",
+    ]
+    assert [each.action for each in rules.rebind] == ["find"]
+    for key in ("fact", "outcomes", "say", "last", "when", "unless", "add", "delete"):
+        assert f"{key}:" in path.read_text()
+        assert f"| `{key}` |" in page
+
+
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [
@@ -49,6 +68,14 @@ def test_what_is_written_well_is_read(task: Task, tmp_path: Path) -> None:
         (REBIND.replace("argument: ?from", "argument: ?fro"), 3, "Did you mean '?from'?"),
         (REBIND.replace("(near ?from)", "(near ?x)"), 4, "does not speak of ?from"),
         ("undo: [", 1, "broken YAML"),
+        ("undo: &a\nrebind: *a", 2, "the alias *a is not read here"),
+        ("undo:\nundo:", 2, "'undo' is given twice, first in line 1"),
+        ("undo: " + "[" * 100_000, 1, "nested more than 50 deep"),
+        ("undo: 1" + ":59" * 100_000, 1, "has 300,001 letters"),
+        ("undo: !!python/object/apply:os.system [x]\nundos: 3", 2, "'undos' is not known"),
+        ("undo: []\n---\nundo: []", 2, "broken YAML"),
+        ("undo:\n\t- 3", 2, "broken YAML"),
+        (UNDO + "say: " + "x" * 5000 + "\n        ad: 3", 5, "'ad' is not known"),
         ("# k\xfcche\nundo: []".encode("latin-1"), 1, "the byte 0xfc is not UTF-8"),
     ],
 )  # fmt: skip

@@ -1,8 +1,8 @@
 """The paper's experiment: TPVQA against its four baselines on three tasks."""
 
 from collections import defaultdict
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,17 @@ TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
 PAPER = TrialConfig(limits=Limits(actions=60))
 """What all trials share, where nothing else is said."""
 MONITORS = ("tpvqa", "effectvqa", "tp", "palmevqa", "successvqa")
+STRICT = ("tpvqa:strict", "effectvqa:strict")
+"""The monitors with a majority, under its other reading."""
+PLAIN = ("tpvqa:no-alternatives", "tpvqa:strict:no-alternatives")
+"""Without the question where else a thing is, which the paper does not ask."""
+RIVALS = ("blind:5", "vote:5", "lead:4")
+READINGS = {
+    "": (*MONITORS, *STRICT, *PLAIN),
+    "limits=none": (*MONITORS, *STRICT, *PLAIN, *RIVALS),
+    "limits=none,redo=risky": (*MONITORS, *STRICT, *RIVALS),
+}
+"""What the paper leaves open: limits of ten or none; whether it is free to redo what is done."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,18 +46,18 @@ class PaperBench:
 
     Attributes:
         tasks: Shipped tasks.
-        monitors: Specifications of monitors.
+        monitors: Specifications of monitors, by the condition under which they run.
         vlms: Specifications of VLMs.
-        world: Specification of the world; None for images where a VLM looks, else symbolic.
+        worlds: Specifications of worlds where a VLM looks; all others are asked in the symbolic.
         episodes: Of every cell.
         curve: Episodes of every point of the accuracy curves; 0 for none.
         common: Seed, rates of faults, limits.
     """
 
     tasks: Sequence[str] = TASKS
-    monitors: Sequence[str] = MONITORS
+    monitors: Mapping[str, Sequence[str]] = field(default_factory=lambda: READINGS)
     vlms: Sequence[str] = ("embedded",)
-    world: str | None = None
+    worlds: Sequence[str] = ("images",)
     episodes: int = 100
     curve: int = 100
     common: TrialConfig = PAPER
@@ -54,16 +65,24 @@ class PaperBench:
     def cells(self) -> list[Cell]:
         """The cells of the tables."""
         return [
-            Cell(task, monitor, vlm, self.world or ("images" if looks(vlm) else "symbolic"))
+            Cell(task, monitor, vlm, world, condition)
             for vlm in self.vlms
+            for world in (self.worlds if looks(vlm) else ("symbolic",))
+            for condition, monitors in self.monitors.items()
             for task in self.tasks
-            for monitor in self.monitors
+            for monitor in monitors
             if can_answer(vlm, monitor)
         ]
 
     def curve_cells(self) -> list[Cell]:
         """The cells of the accuracy curves."""
-        return curve_cells(self.tasks, self.monitors) if self.curve else []
+        return curve_cells(self.tasks, self.unchanged) if self.curve else []
+
+    @property
+    def unchanged(self) -> Sequence[str]:
+        """The monitors of the curves: those of the paper's own conditions, without readings."""
+        first = next(iter(self.monitors.values()))
+        return [each for each in first if each not in (*STRICT, *PLAIN)]
 
     def declared(self) -> Bench:
         """What the engine is given."""
@@ -118,12 +137,15 @@ def _results(bench: PaperBench, ledger: Ledger) -> Results:
             **bench.settings(),
             "episodes a cell": bench.episodes,
             "tasks": ", ".join(bench.tasks),
-            "monitors": ", ".join(bench.monitors),
+            "monitors": "; ".join(
+                f"{condition or 'as in the paper'}: {', '.join(monitors)}"
+                for condition, monitors in bench.monitors.items()
+            ),
             "VLMs": ", ".join(bench.vlms),
         },
         rows=rows,
         balanced=lines,
-        curves=curves(curve, bench.tasks, bench.monitors) if bench.curve else {},
+        curves=curves(curve, bench.tasks, bench.unchanged) if bench.curve else {},
         published=PAPER_TABLE,
     )
 

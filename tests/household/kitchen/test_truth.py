@@ -50,6 +50,12 @@ def test_dirt_that_is_covered_is_not_seen() -> None:
     assert not _shown(_at("plate"), SEEN | {"dirt": 0}, "clean(plate)").visible
 
 
+def test_a_few_pixels_of_dirt_are_not_seen() -> None:
+    for peeping in (14, 50, 99):
+        assert not _shown(_at("plate"), SEEN | {"dirt": peeping}, "clean(plate)").visible
+    assert _shown(_at("plate"), SEEN | {"dirt": 100}, "clean(plate)").visible
+
+
 def test_the_fridge_hides_what_is_in_it_until_the_robot_looks_inside() -> None:
     household = Household(near="fridge", where=_at("fridge").where, opened=True)
     assert not _shown(household, {"fridge": 20_000}, "on(apple,fridge)").visible

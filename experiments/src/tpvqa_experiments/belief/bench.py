@@ -9,6 +9,7 @@ from typing import Any
 from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import Bench, Progress, run_bench
+from tpvqa.bench.published import version_of
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.tasks import find_task
@@ -76,6 +77,7 @@ class BeliefBench:
         wanted: Mapping[Cell, int],
         folder: Path = Path(),
         calibrating: Progress = lambda done, total: None,
+        version: str | None = None,
     ) -> Bench:
         """What the engine is given.
 
@@ -83,6 +85,7 @@ class BeliefBench:
             wanted: How many episodes of each cell.
             folder: Where calibrations are kept.
             calibrating: Told how many calibrations are there and how many there will be.
+            version: That of rows of which only tables are made.
         """
 
         def told(missing: Sequence[Cell]) -> dict[Cell, Calibration]:
@@ -104,6 +107,7 @@ class BeliefBench:
                 "trials of a calibration": self.calibration_episodes,
                 "how calibrations are learnt": METHOD,
                 "the embedded network is calibrated in": self.embedded_world,
+                **({} if version is None else {"version": version}),
             },
         )
 
@@ -128,7 +132,7 @@ def run_belief_bench(
         scheduler: Address of a Dask scheduler to use instead.
         calibrating: Told how many calibrations are there and how many there will be.
         progress: Told how many episodes are done and how many there are.
-        only_tables: Run nothing.
+        only_tables: Run nothing; published rows may be of an earlier version.
         published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
 
     Returns:
@@ -138,8 +142,10 @@ def run_belief_bench(
         TpvqaError: Something is not there, or the folder cannot be used.
     """
     bench.check()
+    version = version_of(published) if only_tables and published is not None else None
+    declared = bench.declared({} if only_tables else bench.wanted(), folder, calibrating, version)
     ledger = run_bench(
-        bench.declared({} if only_tables else bench.wanted(), folder, calibrating),
+        declared,
         folder,
         workers=workers,
         scheduler=scheduler,
@@ -148,7 +154,7 @@ def run_belief_bench(
     )
     found = ((cell, ledger.of(cell, n)) for cell, n in bench.wanted(Part).items())
     rows = {cell: own for cell, own in found if own}
-    results = BeliefResults(bench.settings(), rows, _speed(folder / SPEED_FILE))
+    results = BeliefResults(declared.settings, rows, _speed(folder / SPEED_FILE))
     return results, write_results(folder, results, bench.extent)
 
 

@@ -7,9 +7,11 @@ import numpy as np
 
 from tpvqa.belief.ablations import PARTS
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.figures import Figure, styled_pyplot
+from tpvqa.bench.figures import Figure
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.statistics import wilson
+from tpvqa.bench.statistics import Interval, wilson
+from tpvqa.bench.style import styled_pyplot
+from tpvqa.plugins import split
 from tpvqa_experiments.belief.comparison import curve_of
 from tpvqa_experiments.belief.learning import BLOCK, RIGHT_TRUST, blocks
 from tpvqa_experiments.belief.parts import (
@@ -23,26 +25,31 @@ from tpvqa_experiments.belief.parts import (
     noise,
     without,
 )
-from tpvqa_experiments.belief.resampling import difference
+from tpvqa_experiments.belief.resampling import difference, ratio
 from tpvqa_experiments.belief.results import BeliefResults
 
 MOST = 20_000
 """Questions at the right end of the axis."""
 INK = "#0b4f8a"
 """The belief monitor."""
-MARKS: Mapping[str, tuple[str, str, str]] = {
-    "tpvqa": ("o", "#d55e00", "#d55e00"),
-    "tpvqa:3": ("^", "#d55e00", "#d55e00"),
-    "tpvqa:5": ("s", "#d55e00", "#d55e00"),
-    "tpvqa:strict": ("o", "#d55e00", "white"),
-    "tpvqa:3:strict": ("^", "#d55e00", "white"),
-    "tpvqa:5:strict": ("s", "#d55e00", "white"),
-    "effectvqa": ("v", "#767676", "#767676"),
-    "palmevqa": ("P", "#767676", "#767676"),
-    "successvqa": ("X", "#767676", "#767676"),
-    "tp": ("_", "#222222", "#222222"),
+LEARNS, KNOWS = (f"told {vlm.partition(':')[2]}" for vlm in (BELIEVED, WRONG_VLM))
+KNOWING = "#d55e00"
+"""What stands beside it."""
+MARKS = {
+    "tpvqa": ("o", "#d55e00"),
+    "tpvqa:3": ("^", "#d55e00"),
+    "tpvqa:5": ("s", "#d55e00"),
+    "vote": ("p", "#009e73"),
+    "lead": ("h", "#cc79a7"),
+    "effectvqa": ("v", "#767676"),
+    "palmevqa": ("P", "#767676"),
+    "successvqa": ("X", "#767676"),
+    "tp": ("_", "#222222"),
+    "blind": ("_", "#e69f00"),
 }
-"""Marker, edge and face of each rival: told apart without colour (Okabe and Ito 2008)."""
+"""Marker and colour of each rival, told apart without colour (Okabe and Ito 2008). Those with a
+strict majority are open."""
+OTHER = ("*", "#56b4e9")
 Panel = tuple[Sequence[Sequence[EpisodeRow]], Mapping[str, Sequence[EpisodeRow]]]
 """The episodes at each point of the belief curve, and those of each rival."""
 
@@ -148,15 +155,16 @@ def _draw_panel(
     axes.grid(color="#e6e6e6", linewidth=0.6)
     axes.set_axisbelow(True)
     for rival, rows in rivals.items():
-        marker, edge, face = MARKS[rival]
-        questions, rate, _, _ = _point(rows)
+        marker, colour, face = _mark(rival)
+        questions, rate, low, high = _point(rows)
+        axes.vlines(questions, low, high, color=colour, linewidth=1, alpha=0.6)
         axes.plot(
             questions,
             rate,
             linestyle="none",
             marker=marker,
             markersize=9 if marker == "_" else 5,
-            markeredgecolor=edge,
+            markeredgecolor=colour,
             markerfacecolor=face,
             markeredgewidth=1.6 if marker == "_" else 1,
             label=rival,
@@ -175,6 +183,14 @@ def _draw_panel(
         axes.plot(between, np.interp(between, xs, ys), color=INK, linewidth=1.6)
         axes.plot(xs, ys, color=INK, linestyle="none", marker="D", markersize=3.5)
         axes.plot([], [], color=INK, linewidth=1.6, marker="D", markersize=3.5, label="belief")
+
+
+def _mark(rival: str) -> tuple[str, str, str]:
+    """Marker, edge and face."""
+    strict = rival.endswith(":strict")
+    plain = rival.removesuffix(":strict")
+    marker, colour = MARKS.get(plain) or MARKS.get(split(plain)[0]) or OTHER
+    return marker, colour, "white" if strict else colour
 
 
 def _point(rows: Sequence[EpisodeRow]) -> tuple[float, float, float, float]:
@@ -199,30 +215,34 @@ def _learning(results: BeliefResults, extent: Extent) -> Figure | None:
     )
     for (above, below), (task, found) in zip(grid.T, by_task.items(), strict=True):
         middles = [block.first + (BLOCK + 1) / 2 for block in found]
-        learning = [block.learning for block in found]
-        margins = [(block.difference.high - block.difference.low) / 2 for block in found]
-        above.errorbar(
-            middles,
-            learning,
-            yerr=margins,
-            color=INK,
-            marker="D",
-            markersize=3.5,
-            linewidth=1.6,
-            elinewidth=0.8,
-            label=f"told {BELIEVED.partition(':')[2]}, has to learn",
-        )
-        above.plot(
-            middles,
-            [block.knowing for block in found],
-            color="#d55e00",
-            marker="o",
-            markersize=4,
-            linestyle="--",
-            label=f"told {WRONG_VLM.partition(':')[2]}, as it is",
-        )
-        below.plot(middles, [block.trust for block in found], color=INK, marker="D", markersize=3.5)
-        below.axhline(RIGHT_TRUST, color="#d55e00", linestyle="--")
+        for which, (rates, name, colour, marker, line) in enumerate(
+            (
+                ([block.learning for block in found], f"{LEARNS}, has to learn", INK, "D", "-"),
+                ([block.knowing for block in found], f"{KNOWS}, as it is", KNOWING, "o", "--"),
+            )
+        ):
+            counts = [block.episodes[which] for block in found]
+            drawn = [wilson(round(r * n), n) for r, n in zip(rates, counts, strict=True)]
+            _draw_band(above, middles, drawn, colour)
+            above.plot(
+                middles,
+                rates,
+                color=colour,
+                marker=marker,
+                markersize=4,
+                linewidth=1.6,
+                linestyle=line,
+                label=name,
+            )
+        trust = [
+            Interval(
+                block.trust, block.trust - block.trust_margin, block.trust + block.trust_margin
+            )
+            for block in found
+        ]
+        _draw_band(below, middles, trust, INK)
+        below.plot(middles, [each.rate for each in trust], color=INK, marker="D", markersize=3.5)
+        below.axhline(RIGHT_TRUST, color=KNOWING, linestyle="--")
         below.axhline(1, color="#767676", linewidth=0.8, linestyle=":")
         for axes in (above, below):
             axes.grid(color="#e6e6e6", linewidth=0.6)
@@ -237,6 +257,11 @@ def _learning(results: BeliefResults, extent: Extent) -> Figure | None:
         *grid[0][0].get_legend_handles_labels(), frameon=False, loc="outside upper center", ncols=2
     )
     return figure
+
+
+def _draw_band(axes: Any, xs: Sequence[float], found: Sequence[Interval], colour: str) -> None:
+    lows, highs = [each.low for each in found], [each.high for each in found]
+    axes.fill_between(xs, lows, highs, color=colour, alpha=0.16, linewidth=0)
 
 
 def _ablations(results: BeliefResults, extent: Extent) -> Figure | None:
@@ -273,8 +298,9 @@ def _ablations(results: BeliefResults, extent: Extent) -> Figure | None:
                 change = difference(rows, whole)
                 left.barh(place, change.value, 0.7, color=INK)
                 left.plot([change.low, change.high], [place, place], color="#222222", linewidth=1)
-                share = _point(rows)[0] / max(_point(whole)[0], 1e-9)
-                right.barh(place, share, 0.7, color="#b7bcc4")
+                share = ratio(rows, whole, "questions")
+                right.barh(place, share.value, 0.7, color="#b7bcc4")
+                right.plot([share.low, share.high], [place, place], color="#222222", linewidth=1)
             left.axvline(0, color="#222222", linewidth=0.8)
             right.axvline(1, color="#222222", linewidth=0.8)
         line[0].set_yticks(places, [f"no {name}" for name in PARTS])

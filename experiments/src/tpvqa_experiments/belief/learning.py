@@ -1,14 +1,15 @@
 """How fast a robot learns that its VLM is worse than it was told."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import log
-from statistics import fmean
+from math import log, sqrt
+from statistics import fmean, stdev
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa_experiments.belief.parts import BELIEF, CHAIN, KNOWING, LEARNING, SYMBOLIC, WRONG_VLM
-from tpvqa_experiments.belief.resampling import Estimate, difference
+from tpvqa_experiments.belief.resampling import Estimate, Z, difference
 from tpvqa_experiments.belief.results import BeliefResults
 
 WITHIN = 20
@@ -31,6 +32,8 @@ class Block:
         knowing: Completion rate of robots that were told.
         trust: Mean trust at their end, of robots that have to learn.
         difference: Completion of those who learn less that of the others.
+        episodes: How many there are of those who learn, and of the others.
+        trust_margin: Half the 95% interval of the mean trust.
     """
 
     first: int
@@ -38,6 +41,8 @@ class Block:
     knowing: float
     trust: float
     difference: Estimate
+    episodes: tuple[int, int]
+    trust_margin: float
 
 
 def blocks(results: BeliefResults, task: str, size: int = BLOCK) -> list[Block]:
@@ -56,6 +61,8 @@ def blocks(results: BeliefResults, task: str, size: int = BLOCK) -> list[Block]:
                 fmean(row.completed for row in other),
                 fmean(last) if last else 1.0,
                 difference(own, other),
+                (len(own), len(other)),
+                _margin(own),
             )
         )
     return found
@@ -83,6 +90,16 @@ def both(results: BeliefResults, task: str) -> tuple[Sequence[EpisodeRow], Seque
         for condition in (LEARNING, KNOWING)
     )
     return learning, knowing
+
+
+def _margin(rows: Sequence[EpisodeRow]) -> float:
+    """Of the mean trust. A robot's episodes hang together, so that each robot counts once."""
+    by_robot: dict[int, list[float]] = defaultdict(list)
+    for row in rows:
+        if row.trust is not None:
+            by_robot[row.episode // CHAIN].append(row.trust)
+    means = [fmean(each) for each in by_robot.values()]
+    return Z * stdev(means) / sqrt(len(means)) if len(means) > 1 else 0.0
 
 
 def _within(rows: Sequence[EpisodeRow], first: int, end: int) -> list[EpisodeRow]:

@@ -13,6 +13,16 @@ VOTES = ("tpvqa", "tpvqa:3", "tpvqa:5", "tpvqa:strict", "tpvqa:3:strict", "tpvqa
 BASELINES = ("effectvqa", "palmevqa", "successvqa", "tp")
 RIVALS = (*VOTES, *BASELINES)
 RECORDED_RIVALS = ("tpvqa", "tpvqa:3", "tpvqa:5", "tp")
+BLIND = ("blind:1", "blind:2", "blind:3", "blind:5", "blind:8")
+FIELD = (
+    *("tpvqa", "tpvqa:strict", "tpvqa:5", "vote:5", "lead:2", "lead:3", "lead:4", "lead:6"),
+    *("effectvqa", "effectvqa:strict"),
+)
+"""Rivals that look, in their best readings; with `BLIND` those of the part `rivals`."""
+RECORDED_FIELD = ("tpvqa", "vote:5", "lead:2", "lead:4", "effectvqa")
+FIELD_VLMS = ("oracle:0.8", "oracle:0.95", "embedded")
+UNBOUND = ("limits=none", "limits=none,redo=risky")
+"""Limits that do not bind, where redoing what is done is free, and where it is risky."""
 ACCURACIES = (0.6, 0.7, 0.8, 0.9, 0.95)
 RHOS = (0.0, 0.5)
 PRICES = (10.0, 3.0, 2.0, 1.0, 0.3, 0.1, 0.03, 0.003)
@@ -42,6 +52,7 @@ class Part(StrEnum):
     """A part of the bench; each can be run by itself."""
 
     GRID = "grid"
+    RIVALS = "rivals"
     PAPER = "paper"
     EMBEDDED = "embedded"
     RECORDED = "recorded"
@@ -60,7 +71,9 @@ class Extent:
         rhos: Chances that a further look repeats the last answer.
         prices: Costs of a question along the curve.
         models: Recorded VLMs.
-        episodes: Of every cell.
+        episodes: Of every cell of the belief monitor.
+        rivals: Of every cell of another monitor; half of it where recorded VLMs answer in the
+            part of that name.
         curve: Episodes of every further point of the curve.
         chains: Robots that learn how good their VLM is, for `CHAIN` episodes each.
     """
@@ -71,6 +84,7 @@ class Extent:
     prices: Sequence[float] = PRICES
     models: Sequence[str] = ()
     episodes: int = 1000
+    rivals: int = 200
     curve: int = 100
     chains: int = 30
 
@@ -83,6 +97,8 @@ class Extent:
                     for price in self.prices:
                         for task in self.household:
                             yield Cell(task, priced(price), vlm, SYMBOLIC), self.curve
+            case Part.RIVALS:
+                yield from self._field()
             case Part.PAPER:
                 yield from self._against("paper-table", SYMBOLIC)
             case Part.EMBEDDED:
@@ -93,7 +109,7 @@ class Extent:
                         if task in self.tasks:
                             for monitor in (BELIEF, *RECORDED_RIVALS):
                                 cell = Cell(task, monitor, f"recorded:{model}:1", SYMBOLIC)
-                                yield cell, self.episodes
+                                yield cell, self._count(monitor)
             case Part.WRONG_MODEL:
                 for rate in TRUE_RATES:
                     for monitor in (BELIEF, knowing(rate)):
@@ -128,7 +144,32 @@ class Extent:
     def _against(self, vlm: str, world: str) -> Iterator[tuple[Cell, int]]:
         for monitor in (BELIEF, *RIVALS):
             for task in self.household:
-                yield Cell(task, monitor, vlm, world), self.episodes
+                yield Cell(task, monitor, vlm, world), self._count(monitor)
+
+    def _count(self, monitor: str) -> int:
+        return self.episodes if monitor == BELIEF else self.rivals
+
+    def _field(self) -> Iterator[tuple[Cell, int]]:
+        """All rivals under limits that do not bind; as many episodes of ours as of theirs."""
+        for condition in UNBOUND:
+            for task in self.tasks:
+                for monitor in BLIND:
+                    cell = Cell(task, monitor, FIELD_VLMS[0], SYMBOLIC, condition)
+                    yield cell, self.rivals
+                for vlm in FIELD_VLMS:
+                    if vlm == "embedded" and task not in self.household:
+                        continue
+                    world = "images" if vlm == "embedded" else SYMBOLIC
+                    for monitor in (BELIEF, *FIELD):
+                        yield Cell(task, monitor, vlm, world, condition), self.rivals
+            for model, environment in self._recorded():
+                for task in DOMAIN_TASKS[environment]:
+                    if task in self.tasks:
+                        for monitor in (BELIEF, *RECORDED_FIELD):
+                            yield (
+                                Cell(task, monitor, f"recorded:{model}:1", SYMBOLIC, condition),
+                                self.rivals // 2,
+                            )
 
     def _recorded(self) -> Iterator[tuple[str, str]]:
         from tpvqa.vlm.recorded.answers import models

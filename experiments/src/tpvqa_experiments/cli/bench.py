@@ -1,5 +1,6 @@
 """`tpvqa bench paper` and `tpvqa bench belief`, beside the core's `tpvqa bench run`."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -31,8 +32,19 @@ def paper(
         str, typer.Option(help="Shipped tasks, with commas.")
     ] = "clean_dishes,serve_breakfast,eat_apple",
     monitors: Annotated[
-        str, typer.Option(help="Monitors, with commas; tpvqa:K votes over K looks.")
-    ] = "tpvqa,effectvqa,tp,palmevqa,successvqa",
+        str | None,
+        typer.Option(
+            help="Monitors, with commas. Default: those of the paper under every reading of what "
+            "it leaves open, and rivals."
+        ),
+    ] = None,
+    conditions: Annotated[
+        str | None,
+        typer.Option(
+            help="As of `tpvqa bench run`, with semicolons between them; '' for the paper's own "
+            "alone. Default: every reading, or with --monitors the paper's own."
+        ),
+    ] = None,
     vlm: Annotated[
         str,
         typer.Option(
@@ -40,10 +52,13 @@ def paper(
             "recorded:MODEL."
         ),
     ] = "embedded",
-    world: Annotated[
-        str | None,
-        typer.Option(help="Default: images for VLMs that look, symbolic for noise models."),
-    ] = None,
+    worlds: Annotated[
+        str,
+        typer.Option(
+            help="Of VLMs that look, with commas: images, images:paper (the paper's simulator to "
+            "the letter), kitchen. Noise models are asked in the symbolic world."
+        ),
+    ] = "images",
     episodes: Annotated[int, typer.Option(help="Of every task and monitor.", min=1)] = 100,
     curve: Annotated[
         int | None,
@@ -80,9 +95,9 @@ def paper(
 
     bench = PaperBench(
         tasks=listed(tasks),
-        monitors=listed(monitors),
+        monitors=_readings(monitors, conditions),
         vlms=listed(vlm),
-        world=world,
+        worlds=listed(worlds),
         episodes=episodes,
         curve=episodes if curve is None else curve,
         common=TrialConfig(
@@ -100,3 +115,17 @@ def paper(
             progress=progress,
         )
     finish(results, out, as_json=as_json)
+
+
+def _readings(monitors: str | None, conditions: str | None) -> Mapping[str, Sequence[str]]:
+    """The monitors of every condition."""
+    from tpvqa.bench.condition import normalised
+    from tpvqa_experiments.paper import READINGS
+
+    if monitors is None and conditions is None:
+        return READINGS
+    named = [normalised(part) for part in (conditions or "").split(";")]
+    return {
+        each: listed(monitors) if monitors is not None else READINGS.get(each, READINGS[""])
+        for each in named
+    }

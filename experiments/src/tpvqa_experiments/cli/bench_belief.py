@@ -20,10 +20,10 @@ def belief(
     parts: Annotated[
         str,
         typer.Option(
-            help="Parts, with commas: grid, paper, embedded, recorded, wrong-model, wrong-vlm, "
-            "ablations."
+            help="Parts, with commas: grid, rivals, paper, embedded, recorded, wrong-model, "
+            "wrong-vlm, ablations."
         ),
-    ] = "grid,paper,embedded,recorded,wrong-model,wrong-vlm,ablations",
+    ] = "grid,rivals,paper,embedded,recorded,wrong-model,wrong-vlm,ablations",
     tasks: Annotated[
         str, typer.Option(help="Shipped tasks, with commas.")
     ] = "clean_dishes,serve_breakfast,eat_apple,build_tower",
@@ -38,7 +38,10 @@ def belief(
         str, typer.Option(help="Costs of a question along the grid's curves, with commas.")
     ] = "10,3,2,1,0.3,0.1,0.03,0.003",
     models: Annotated[str, typer.Option(help="Recorded VLMs, with commas. Default: all.")] = "",
-    episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 1000,
+    episodes: Annotated[
+        int, typer.Option(help="Of every cell of the belief monitor.", min=1)
+    ] = 1000,
+    rivals: Annotated[int, typer.Option(help="Of every cell of another monitor.", min=1)] = 200,
     curve_episodes: Annotated[
         int, typer.Option(help="Of every further point of a curve.", min=1)
     ] = 100,
@@ -90,6 +93,7 @@ def belief(
             prices=_numbers(prices, "--prices"),
             models=listed(models),
             episodes=episodes,
+            rivals=rivals,
             curve=curve_episodes,
             chains=chains,
         ),

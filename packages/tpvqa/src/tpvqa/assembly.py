@@ -1,10 +1,10 @@
 """From names to a trial: puts together what it needs, and hands it to whatever drives it."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from threading import Event as Flag
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from pydantic import BaseModel
 
@@ -15,25 +15,21 @@ from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.shipped import shipped_calibration
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.defaults import default_vlm, default_world
-from tpvqa.drivers import (
-    Journal,
-    Listener,
-    Parts,
-    Performer,
-    SteppingTrial,
-)
+from tpvqa.drivers import Journal, Listener, Parts, Performer, SteppingTrial
 from tpvqa.drivers import run as run_live
 from tpvqa.drivers.journal import Writer
-from tpvqa.drivers.plugged import called
+from tpvqa.drivers.plugged import called, put_back
 from tpvqa.drivers.replaying import Recording
-from tpvqa.errors import TpvqaError, UnknownNameError
+from tpvqa.errors import PluginError, TpvqaError
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.records import atoms
 from tpvqa.monitors import Monitor
 from tpvqa.monitors.capabilities import experience_of, never_asks
+from tpvqa.monitors.making import make_monitor
 from tpvqa.pddl import Task, literals, load_task
 from tpvqa.planning import Planner
-from tpvqa.plugins import Checked, Closing, Kind, load_spec, make, make_from
+from tpvqa.planning.making import make_planner
+from tpvqa.plugins import Checked, Closing, Kind, load_spec, see_free, see_taken
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
 from tpvqa.trial import trial
@@ -48,6 +44,8 @@ from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 if TYPE_CHECKING:
     from tpvqa.drivers.asynchronous import AsynchronousTrial
+
+_VIEWS = cast("type[Sequence[str]]", Sequence)
 
 
 class Trial:
@@ -66,6 +64,7 @@ class Trial:
         experience: What was learned in earlier trials; goes before the file that `config` names.
         reading: Whether to read the files of these two that `config` names.
         person: Answers where the monitor asks a person.
+        begun_as: The first event, where the trial was begun before.
         every_option: Whether each of the config's options has to be one that a plug-in takes.
 
     Example:
@@ -89,14 +88,18 @@ class Trial:
         experience: Experience | None = None,
         reading: bool = True,
         person: VLM | None = None,
+        begun_as: Started | None = None,
         every_option: bool = True,
     ):
         self.config, self._run, self._every_option = config, False, every_option
+        self._begun_as = begun_as
         self._closing: list[Callable[[], None]] = []
         try:
             self._find_files()
             self.task = task or load_task(self.domain, self.problem)
-            self.book = book or QuestionBook.load(self.questions, self.task)
+            self.book = (book or QuestionBook.load(self.questions, self.task)).worded(
+                config.wording
+            )
             self.rules = rules or load_world_file(self.world_file, self.task)
             if reading:
                 calibration, experience = self._read(calibration, experience)
@@ -128,7 +131,7 @@ class Trial:
         config = self.config
         options = config.plugin_options()
         if planner is None:
-            planner = make(Kind.PLANNER, config.planner.spec)
+            planner = make_planner(config.planner.spec)
             self._closing.append(planner.close)
         files = None if config.task.name is None else find_task(config.task.name)
         self.world_spec = config.world.spec or default_world(files)
@@ -139,16 +142,17 @@ class Trial:
             "book": self.book,
             "planner": planner,
             "rules": self.rules,
+            "script_file": None if files is None else files.script,
             "simulation": self.simulation,
             "model": model,
             "limits": config.limits,
             "seed": config.seed,
             "episode": config.episode,
         }
-        _not_taken_already(config.options, context)
+        see_free(config.options, context)
         world, by_world = make_world(self.world_spec, context)
         self._closing.append(world.close)
-        context |= {"truth": truth_of(world), "views": tuple(world.views())}
+        context |= {"truth": truth_of(world), "views": tuple(called(world, "views", _VIEWS))}
         named = config.vlm.spec or (None if vlm is None else vlm.name)
         self.vlm_spec = named or default_vlm(pictures=has_pictures(world))
         self.known = experience
@@ -161,7 +165,7 @@ class Trial:
             "noise_model": is_noise_model(vlm or load_spec(Kind.VLM, self.vlm_spec)),
         }
         self.monitor: Monitor
-        self.monitor, by_monitor = make_from(Kind.MONITOR, config.monitor.named, context)
+        self.monitor, by_monitor = make_monitor(config.monitor.named, context)
         self.weighs_answers = "calibration" in by_monitor
         if not self.weighs_answers:
             self.calibration = None
@@ -172,7 +176,7 @@ class Trial:
                 "has none. Choose a noise model, e.g. 'oracle:0.9', or a world with pictures."
             )
         if self._every_option:
-            _all_taken(options, by_world | by_monitor | by_vlm, context)
+            see_taken(options, by_world | by_monitor | by_vlm, context)
         if vlm is None and isinstance(made, Closing):
             self._closing.append(made.close)
         self.parts = Parts(self.task, self.book, planner, world, made, person)
@@ -213,6 +217,8 @@ class Trial:
 
     def started(self) -> Started:
         """The first event of the trial's episode."""
+        if self._begun_as is not None:
+            return self._begun_as.model_copy(update={"number": -1, "time": 0.0})
         simulated = self.simulation is not None
         faults = self.config.simulation or SimulationConfig()
         goal = (self.book.fact(literal).text for literal in literals(self.task.goal))
@@ -343,7 +349,7 @@ class Trial:
         """Put world and VLM where the log left them; whether the world can be put back."""
         for name, part in (("world", self.world), ("vlm", self.vlm)):
             if isinstance(part, Restorable) and name in snapshots:
-                part.restore(snapshots[name])
+                put_back(part, name, snapshots[name])
         return isinstance(self.world, Restorable)
 
     @property
@@ -356,9 +362,22 @@ class Trial:
         return learned.model_copy(update={"vlm": self.vlm_spec, "calibration": known})
 
     def close(self) -> None:
-        """End planner and world. Can be called twice."""
+        """End planner and world. Can be called twice.
+
+        Raises:
+            PluginError: One of them broke; the others are ended all the same.
+        """
+        broken: Exception | None = None
         while self._closing:
-            self._closing.pop()()
+            try:
+                self._closing.pop()()
+            except Exception as error:  # noqa: BLE001 — whatever a plug-in raises
+                broken = broken or error
+        if isinstance(broken, TpvqaError):
+            raise broken
+        if broken is not None:
+            kind = type(broken).__name__
+            raise PluginError(f"closing broke: {kind}: {broken}. The episode is whole") from broken
 
     def __enter__(self) -> Self:
         return self
@@ -370,23 +389,6 @@ class Trial:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def _not_taken_already(options: Mapping[str, Any], context: Mapping[str, Any]) -> None:
-    """What plug-ins are given anyway is not for options to say."""
-    for name, value in options.items():
-        later = ("truth", "views", "calibration", "experience", "noise_model", "arguments")
-        if name in later or context.get(name) is not value:
-            raise TpvqaError(f"--option {name}: plug-ins are given {name!r} already; leave it out")
-
-
-def _all_taken(
-    options: Mapping[str, Any], taken: Collection[str], context: Collection[str]
-) -> None:
-    for option in options:
-        if option not in taken:
-            known = set(taken) - (set(context) - set(options)) - {"arguments", "truth"}
-            raise UnknownNameError("option for this world, monitor and VLM", option, known)
 
 
 def _plain(model: BaseModel | None) -> dict[str, Any] | None:

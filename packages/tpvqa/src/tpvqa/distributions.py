@@ -8,14 +8,15 @@ from collections.abc import Mapping
 HOUSEHOLD = "tpvqa-household"
 EXPERIMENTS = "tpvqa-experiments"
 
-_INSTALL: Mapping[str, str] = {
-    HOUSEHOLD: (
-        "pip install tpvqa-household (from a clone: pip install ./packages/tpvqa-household)"
-    ),
-    EXPERIMENTS: "in a clone of the repository, pip install -e ./experiments",
+_FOLDERS: Mapping[str, str] = {
+    "tpvqa": "packages/tpvqa",
+    HOUSEHOLD: "packages/tpvqa-household",
+    EXPERIMENTS: "experiments",
 }
 _BROUGHT: Mapping[str, Mapping[str, str]] = {
-    "task": dict.fromkeys(("clean_dishes", "eat_apple", "serve_breakfast"), HOUSEHOLD),
+    "task": dict.fromkeys(
+        ("clean_dishes", "collect_toys", "eat_apple", "serve_breakfast"), HOUSEHOLD
+    ),
     "VLM": {"embedded": HOUSEHOLD, "paper-table": EXPERIMENTS},
     "world": dict.fromkeys(("images", "kitchen"), HOUSEHOLD),
     "command": {
@@ -26,9 +27,16 @@ _BROUGHT: Mapping[str, Mapping[str, str]] = {
 }
 
 
-def how_to_install(distribution: str) -> str:
-    """The command that installs a distribution of this repository."""
-    return _INSTALL[distribution]
+def how_to_install(distribution: str, extra: str = "") -> str:
+    """The command that installs a distribution, or it with an extra.
+
+    Those of this repository lie in no package index: they are installed from a clone.
+    """
+    folder = _FOLDERS.get(distribution)
+    if folder is None:
+        return f"pip install '{distribution}[{extra}]'" if extra else f"pip install {distribution}"
+    target = f"'{folder}[{extra}]'" if extra else folder
+    return f"in a clone of the repository, pip install -e {target}"
 
 
 def remedy(kind: str, name: str) -> str:

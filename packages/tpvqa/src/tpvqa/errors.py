@@ -11,10 +11,13 @@ TpvqaError
 │   └── GroundingTimedOut  reading and grounding took longer than allowed
 ├── AnswerError            a VLM could not be asked at all
 ├── WorldError             a world cannot do what it is asked to
+├── PictureError           a picture cannot be read, is of another format, or is too large
 ├── PictureSetError        the set of pictures is incomplete or damaged
 ├── GeneratorError         pictures cannot be varied or generated (no key, say)
 │   └── PictureRefused     this one picture was refused, others may be made
 ├── EpisodeError           an episode cannot be read or resumed
+│   └── NotNamedError      its log names what only the user may name
+├── WriteError             something cannot be written: a full disk, no permission
 ├── BeliefError            no consistent state was found near what is believed
 │   └── ContradictionError there is none: facts that are wished for cannot hold together
 ├── BenchError             a bench cannot be run, read or written
@@ -24,22 +27,53 @@ TpvqaError
 └── MissingExtraError      an optional package is needed
 """
 
-from collections.abc import Iterable
+import shlex
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
+
+from tpvqa.distributions import how_to_install
+
+_LONGEST = 80
+"""Letters of what a user wrote that a message repeats."""
+
+
+def cut(text: object) -> str:
+    """What a user wrote, cut to what fits into a message."""
+    said = str(text)
+    return said if len(said) <= _LONGEST else said[: _LONGEST - 1] + "…"
+
+
+def shown(text: object) -> str:
+    """The same in quotes."""
+    return repr(cut(text))
+
+
+def a(noun: str) -> str:
+    """A noun with its article: a lamp, an item."""
+    return f"{'an' if noun[:1] in 'aeiou' else 'a'} {noun}"
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """The end of a sentence about an unknown name, and the nearest known one, where one is near."""
-    near = get_close_matches(word, list(known), n=1)
-    return f". Did you mean {near[0]!r}?" if near else "."
+    near = get_close_matches(word, list(known), n=1) if len(word) <= _LONGEST else []
+    return f". Did you mean {shown(near[0])}?" if near else "."
 
 
 def suggestion_or_list(word: str, known: Iterable[str]) -> str:
     """As `suggestion`, and all known names where none is near."""
     known = sorted(known)
     said = suggestion(word, known)
-    return said if said != "." else f". Known: {', '.join(known[:20]) or 'none'}."
+    if said != ".":
+        return said
+    listed = ", ".join(map(cut, known[:20]))
+    more = f" and {len(known) - 20} more" if len(known) > 20 else ""
+    return f". Known: {listed or 'none'}{more}."
+
+
+def _bounded(message: str) -> str:
+    """A message that repeats what a file says, and files may say anything."""
+    return message if len(message) <= 1000 else f"{message[:700]} … {message[-200:]}"
 
 
 class TpvqaError(Exception):
@@ -61,6 +95,7 @@ class PlacedError(TpvqaError):
     """
 
     def __init__(self, message: str, *, file: str | Path | None = None, line: int | None = None):
+        message = _bounded(message)
         self.message, self.file, self.line = message, file, line
         place = "" if file is None else f"{file}:" + ("" if line is None else f"{line}:") + " "
         super().__init__(place + message)
@@ -98,6 +133,10 @@ class WorldError(TpvqaError):
     """A world cannot do what it is asked to."""
 
 
+class PictureError(TpvqaError):
+    """A picture cannot be read, is of a format that is not decoded, or is too large."""
+
+
 class PictureSetError(TpvqaError):
     """The set of pictures is incomplete or damaged."""
 
@@ -116,6 +155,51 @@ class PictureRefused(GeneratorError):  # noqa: N818
 
 class EpisodeError(TpvqaError):
     """An episode cannot be read or resumed."""
+
+
+class NotNamedError(EpisodeError):
+    """A log names an address, a file or the like, which a stranger's log might: it has to come from
+    whoever goes on with the episode.
+
+    Args:
+        place: The episode.
+        options: What has to be named, as the command line calls it, with what the log says.
+
+    Attributes:
+        options: The same.
+    """
+
+    def __init__(self, place: str, options: Sequence[tuple[str, str]]):
+        self.options = tuple(options)
+        words = " ".join(
+            f"{option}={shlex.quote(value)}"
+            if value.startswith("-")
+            else f"{option} {shlex.quote(value)}"
+            for option, value in options
+        )
+        super().__init__(
+            f"{place}: the log names what only you may name, as an episode may be a stranger's. "
+            f"Where you agree with all of it, go on with:\n"
+            f"tpvqa resume {shlex.quote(place)} {words}"
+        )
+
+
+class WriteError(TpvqaError):
+    """Something cannot be written: the disk is full, a limit was reached, permission is lacking.
+
+    What was written before is whole. The command line ends with exit code 6.
+    """
+
+    @classmethod
+    def of(cls, path: str | Path, error: OSError, remedy: str) -> "WriteError":
+        """The error of a file that cannot be written.
+
+        Args:
+            path: The file.
+            error: What the system says.
+            remedy: What to do about it; a sentence without its full stop.
+        """
+        return cls(f"{path}: cannot be written ({error.strerror or error}). {remedy}")
 
 
 class BeliefError(TpvqaError):
@@ -148,7 +232,7 @@ class UnknownNameError(TpvqaError):
         known = sorted(known)
         near = "." if remedy else suggestion(name, known)
         super().__init__(
-            f"There is no {kind} {name!r}{near} Known: {', '.join(known) or 'none'}."
+            f"There is no {kind} {shown(name)}{near} Known: {', '.join(known) or 'none'}."
             + (f" {remedy}" if remedy else "")
         )
 
@@ -170,5 +254,5 @@ class MissingExtraError(TpvqaError):
     def __init__(self, package: str, extra: str, purpose: str, *, distribution: str = "tpvqa"):
         super().__init__(
             f"{purpose} needs the package {package!r}. "
-            f"Install it: pip install '{distribution}[{extra}]'"
+            f"Install it: {how_to_install(distribution, extra)}"
         )

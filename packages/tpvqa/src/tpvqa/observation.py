@@ -8,6 +8,8 @@ from functools import cached_property
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
+from tpvqa.pictures import decoded
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -86,18 +88,18 @@ class Depth:
         Raises:
             ValueError: The bytes are no such image.
             OSError: The same.
+            PictureError: The same.
         """
         import numpy as np
-        from PIL import Image
 
         metres: NDArray[np.float32]
         if self.media_type == NPY:
             metres = np.load(BytesIO(self.data), allow_pickle=False).astype(np.float32)
         else:
-            with Image.open(BytesIO(self.data)) as picture:
-                if not picture.mode.startswith("I"):
-                    raise ValueError(f"a depth image has 16 bits a pixel; mode {picture.mode}")
-                millimetres = np.asarray(picture, np.float32)
+            picture = decoded(self.data)
+            if not picture.mode.startswith("I"):
+                raise ValueError(f"a depth image has 16 bits a pixel; mode {picture.mode}")
+            millimetres = np.asarray(picture, np.float32)
             metres = np.where(millimetres == 0, np.float32("nan"), millimetres / 1000)
         if metres.ndim != 2:
             raise ValueError(f"a depth image is height × width; this one is {metres.shape}")
@@ -112,7 +114,7 @@ class Frame:
         id: Names the frame; a file name without its ending. In an episode the loop names it.
         view: The view it was taken from ("front" unless a world has several).
         data: The encoded picture.
-        media_type: What it is encoded as, e.g. "image/jpeg"; anything that Pillow reads.
+        media_type: What it is encoded as, e.g. "image/jpeg". JPEG, PNG and WebP can be looked at.
         source: Where it comes from (a file of the picture set, a camera), for the log.
         stamp: When it was taken, in seconds by the clock of `Observation.time`; None where that
             is not known apart from it.
@@ -136,12 +138,14 @@ class Frame:
 
     @cached_property
     def pixels(self) -> "NDArray[np.uint8]":
-        """The picture as an array, height × width × 3 (red, green, blue), 0 to 255."""
-        import numpy as np
-        from PIL import Image
+        """The picture as an array, height × width × 3 (red, green, blue), 0 to 255.
 
-        with Image.open(BytesIO(self.data)) as picture:
-            return np.asarray(picture.convert("RGB"))
+        Raises:
+            PictureError: It is no JPEG, PNG or WebP, is damaged, or has too many pixels.
+        """
+        import numpy as np
+
+        return np.asarray(decoded(self.data).convert("RGB"))
 
 
 @dataclass(frozen=True)

@@ -20,9 +20,11 @@ The truth of a simulated world (`truth`, `simulation`) is withheld, whatever a s
 from all that are not entitled to it: see `vlm.making` and `worlds.making`.
 """
 
+import contextlib
 import inspect
 import re
 import sys
+import traceback
 from collections.abc import Callable, Collection, Mapping
 from enum import StrEnum
 from functools import lru_cache
@@ -30,7 +32,8 @@ from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, r
 from typing import Any, Protocol, runtime_checkable
 
 from tpvqa.distributions import remedy
-from tpvqa.errors import MissingExtraError, PluginError, TpvqaError, UnknownNameError
+from tpvqa.errors import MissingExtraError, PluginError, TpvqaError, UnknownNameError, shown
+from tpvqa.protocols import lacking
 
 _TRUTH = frozenset({"truth", "simulation"})
 
@@ -57,6 +60,29 @@ class Closing(Protocol):
 
     def close(self) -> None:
         """Let go of everything. Can be called twice."""
+
+
+class PlainArguments:
+    """Declares that what follows a plug-in's name in a specification is words and numbers: no path,
+    no address, no code. So it may come from the log of an episode that somebody else made."""
+
+
+def is_plain(kind: "Kind", spec: str) -> bool:
+    """Whether a specification may come from a stranger: its arguments are numbers (`tpvqa:5`,
+    `belief:question=0.05`), or its plug-in declares that they are harmless.
+
+    Raises:
+        TpvqaError: There is no such plug-in.
+    """
+    name, arguments = split(spec)
+    target = load(kind, name)
+    if not arguments or issubclass(class_of(target), PlainArguments):
+        return True
+    return all(map(_NUMBER.fullmatch, re.split("[:,]", arguments)))
+
+
+_NUMBER = re.compile(r"(?:[a-z_]{1,40}=)?(?:[0-9]{0,6}|0?\.[0-9]{1,20}|1\.0{1,20})")
+"""A count or a share, perhaps named; 16843009 and 10.1 are addresses, too."""
 
 
 def class_of(thing: object) -> type:
@@ -139,7 +165,7 @@ def load(kind: Kind, name: str) -> Callable[..., Any]:
 
 
 def make(kind: Kind, spec: str, **context: Any) -> Any:
-    """Make the plug-in that a specification names.
+    """Make the plug-in that a specification names, whatever it turns out to be.
 
     Args:
         kind: What is wanted.
@@ -155,7 +181,12 @@ def make(kind: Kind, spec: str, **context: Any) -> Any:
 
 
 def make_from(
-    kind: Kind, spec: str, context: Mapping[str, Any], *, entitled: Collection[str] = ()
+    kind: Kind,
+    spec: str,
+    context: Mapping[str, Any],
+    *,
+    entitled: Collection[str] = (),
+    protocol: type | None = None,
 ) -> tuple[Any, set[str]]:
     """As `make`, and the names of what the plug-in takes of a context.
 
@@ -164,10 +195,41 @@ def make_from(
         spec: NAME or NAME:ARGUMENTS.
         context: What it may ask for by naming it in its signature.
         entitled: Of what tells the truth, what it may be given.
+        protocol: What it must be able to do.
+
+    Raises:
+        UnknownNameError: Nothing of that name.
+        MissingExtraError: An optional package is needed.
+        PluginError: It cannot be imported or made, or is not what its kind has to be.
     """
     name, arguments = split(spec)
     context = {k: v for k, v in context.items() if k not in _TRUTH or k in entitled}
-    return _construct(kind, name, load(kind, name), arguments, context)
+    made, taken = _construct(kind, name, load(kind, name), arguments, context)
+    if protocol is not None:
+        try:
+            check(kind, name, made, protocol)
+        except PluginError:
+            if isinstance(made, Closing):
+                with contextlib.suppress(Exception):
+                    made.close()
+            raise
+    return made, taken
+
+
+def check(kind: Kind, name: str, made: object, protocol: type) -> None:
+    """See that what was made has what its protocol wants, before anything rests on it.
+
+    Raises:
+        PluginError: Something is missing or cannot be called as it has to be.
+    """
+    wrong = lacking(made, protocol)
+    if wrong is not None:
+        members = (each for each in vars(protocol) if not each.startswith("_"))
+        raise PluginError(
+            f"The {kind.value} {shown(name)} ({_class_name(made)}) {wrong}. "
+            f"A {kind.value} has {', '.join(members)}: see {protocol.__module__}."
+            f"{protocol.__qualname__}."
+        )
 
 
 def split(spec: str) -> tuple[str, str]:
@@ -205,7 +267,12 @@ def _construct(
             f"Write {name!r} alone."
         )
     function, given = (target, ()) if from_spec is None else (from_spec, (arguments,))
-    signature = inspect.signature(function)
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError) as error:
+        raise PluginError(
+            f"The {kind.value} {name!r} cannot be made: what it takes is not to be seen ({error})."
+        ) from error
     parameters = signature.parameters.values()
     takes_all = any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters)
     wanted = {
@@ -218,7 +285,23 @@ def _construct(
             f"The {kind.value} {name!r} cannot be made here: {error}. "
             f"It can have: {', '.join(sorted(context)) or 'nothing'}."
         ) from None
-    return function(*given, **wanted), set(wanted) | set(signature.parameters)
+    try:
+        made = function(*given, **wanted)
+    except TpvqaError:
+        raise
+    except (Exception, SystemExit) as error:
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        said = " ".join(str(error).split())[:300]
+        raise PluginError(
+            f"The {kind.value} {name!r} cannot be made: {_class_name(target)} broke with "
+            f"{type(error).__name__}{said and f': {said}'} ({where.filename}:{where.lineno})."
+        ) from error
+    return made, set(wanted) | set(signature.parameters)
+
+
+def _class_name(thing: object) -> str:
+    kind = thing if inspect.isroutine(thing) else class_of(thing)
+    return f"{kind.__module__}.{kind.__qualname__}"
 
 
 def _root(point: EntryPoint) -> str:
@@ -265,3 +348,27 @@ def extra_that_installs(module: str, distribution: str = "tpvqa") -> str | None:
 
 def _same(package: str, module: str) -> bool:
     return re.sub(r"[-_.]+", "-", package).lower() == re.sub(r"[-_.]+", "-", module).lower()
+
+
+def see_free(options: Mapping[str, Any], context: Mapping[str, Any]) -> None:
+    """See that options say nothing that plug-ins are given anyway.
+
+    Raises:
+        TpvqaError: One does.
+    """
+    for name, value in options.items():
+        later = ("truth", "views", "calibration", "experience", "noise_model", "arguments")
+        if name in later or context.get(name) is not value:
+            raise TpvqaError(f"--option {name}: plug-ins are given {name!r} already; leave it out")
+
+
+def see_taken(options: Mapping[str, Any], taken: Collection[str], context: Collection[str]) -> None:
+    """See that every option is one that a plug-in took.
+
+    Raises:
+        UnknownNameError: One is not.
+    """
+    for option in options:
+        if option not in taken:
+            known = set(taken) - (set(context) - set(options)) - {"arguments", "truth"}
+            raise UnknownNameError("option for this world, monitor and VLM", option, known)

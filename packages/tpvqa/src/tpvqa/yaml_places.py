@@ -3,10 +3,76 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import yaml
 
-from tpvqa.errors import PlacedError, suggestion
+from tpvqa.errors import PlacedError, cut, shown, suggestion
+from tpvqa.text_files import read_text
+
+LARGEST = 2 << 20
+"""Bytes of a file: PyYAML reads half a megabyte a second."""
+_DEEPEST = 50
+_LONGEST_NUMBER = 100
+_STRING = "tag:yaml.org,2002:str"
+
+
+class _Loader(yaml.SafeLoader):
+    """Composes plain trees: no aliases, which make small files huge, and no key given twice."""
+
+    _depth = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        mark = self._next().start_mark
+        if self.check_event(yaml.AliasEvent):
+            raise _Refused(
+                f"the alias *{cut(self._next().anchor)} is not read here; write out what it "
+                "stands for",
+                mark,
+            )
+        if self._depth >= _DEEPEST:
+            raise _Refused(f"values are nested more than {_DEEPEST} deep", mark)
+        self._depth += 1
+        try:
+            node = super().compose_node(parent, index)
+        finally:
+            self._depth -= 1
+        if isinstance(node, yaml.MappingNode):
+            _check_keys(node)
+        elif isinstance(node, yaml.ScalarNode):
+            _check_length(node)
+        return node
+
+    def _next(self) -> Any:
+        return self.peek_event()  # type: ignore[no-untyped-call]
+
+
+def _check_length(node: yaml.ScalarNode) -> None:
+    """Numbers and dates of any length take any time to read."""
+    if node.tag != _STRING and len(node.value) > _LONGEST_NUMBER:
+        raise _Refused(
+            f"{shown(node.value)} has {len(node.value):,} letters; write text in quotes",
+            node.start_mark,
+        )
+
+
+def _check_keys(node: yaml.MappingNode) -> None:
+    first: dict[str, int] = {}
+    for key, _ in node.value:
+        if not isinstance(key, yaml.ScalarNode):
+            continue
+        if key.value in first:
+            line = first[key.value] + 1
+            raise _Refused(
+                f"{shown(key.value)} is given twice, first in line {line}", key.start_mark
+            )
+        first[key.value] = key.start_mark.line
+
+
+class _Refused(yaml.MarkedYAMLError):
+    def __init__(self, problem: str, mark: yaml.Mark):
+        super().__init__(problem=problem, problem_mark=mark)
+        self.said, self.line = problem, mark.line + 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,15 +106,16 @@ class Place:
         if not isinstance(self.node, yaml.ScalarNode):
             raise self.wrong(f"expected text, found {_kind(self.node)}")
         said = " ".join(str(self.node.value).split())
-        if self.node.tag != "tag:yaml.org,2002:str" or not said:
-            found = repr(said) if said else "nothing"
+        if self.node.tag != _STRING or not said:
+            found = shown(said) if said else "nothing"
             raise self.wrong(f"expected text, found {found}; write it in quotes")
         return said
 
     def truth(self) -> bool:
         """The value as true or false."""
         said = str(self.node.value).lower()
-        if self.node.tag != "tag:yaml.org,2002:bool":
+        known = said in ("true", "yes", "on", "false", "no", "off")
+        if self.node.tag != "tag:yaml.org,2002:bool" or not known:
             raise self.wrong(f"expected true or false, found {_kind(self.node)}")
         return said in ("true", "yes", "on")
 
@@ -82,7 +149,7 @@ class Place:
             name = str(key.value).strip().lower()
             if name in found:
                 first = found[name][1].line
-                raise place.wrong(f"{name!r} is given twice, first in line {first}")
+                raise place.wrong(f"{shown(name)} is given twice, first in line {first}")
             path = f"{self.path}.{name}" if self.path else name
             found[name] = (name, place, Place(self.file, value, self.error, path))
         return list(found.values())
@@ -93,7 +160,7 @@ class Place:
         for name, place, value in self.entries():
             if name not in known:
                 raise place.wrong(
-                    f"{name!r} is not known here{suggestion(name, known)} "
+                    f"{shown(name)} is not known here{suggestion(name, known)} "
                     f"Known: {', '.join(known)}."
                 )
             sections[name] = value
@@ -119,9 +186,11 @@ def read_yaml(path: Path, error: type[PlacedError]) -> Place | None:
     Raises:
         PlacedError: It cannot be read or is not YAML.
     """
-    text = _decoded(path, error)
+    text = read_text(path, error, largest=LARGEST)
     try:
-        node = yaml.compose(text, Loader=yaml.SafeLoader)
+        node = yaml.compose(text, Loader=_Loader)
+    except _Refused as refused:
+        raise error(refused.said, file=path, line=refused.line) from None
     except yaml.MarkedYAMLError as broken:
         mark = broken.problem_mark or broken.context_mark
         line = None if mark is None else mark.line + 1
@@ -133,21 +202,6 @@ def read_yaml(path: Path, error: type[PlacedError]) -> Place | None:
     except (yaml.YAMLError, RecursionError, ValueError) as broken:
         raise error(f"broken YAML: {broken}", file=path) from broken
     return None if node is None or _is_empty(node) else Place(str(path), node, error)
-
-
-def _decoded(path: Path, error: type[PlacedError]) -> str:
-    try:
-        data = path.read_bytes()
-    except OSError as failed:
-        raise error(f"cannot be read ({failed.strerror})", file=path) from failed
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as strange:
-        raise error(
-            f"the byte 0x{data[strange.start]:02x} is not UTF-8 text; save the file as UTF-8",
-            file=path,
-            line=data.count(b"\n", 0, strange.start) + 1,
-        ) from strange
 
 
 def _is_empty(node: yaml.Node) -> bool:

@@ -72,7 +72,7 @@ def test_a_table_says_what_photos_show(dish_labels: list[Label], add_photo: Add)
         ("one.png,,find_snik,success,", "Did you mean 'find_sink'"),
         ("one.png,,find_sink,sucess,", "'sucess' is no outcome"),
         ("one.png,cleaning,find_sink,success,", "no task 'cleaning'"),
-        ("gone.png,,find_sink,success,", "gone.png cannot be read"),
+        ("gone.png,,find_sink,success,", "gone.png: cannot be read"),
         ("one.png,,find_sink,success,(on plate moon)", "(on plate moon) is no fact"),
         ("one.png,,find_sink,success,(near plate) (on plate floor)", "not seen after success"),
         ("one.png,,find_sink,success,(near plate) (near sink)", "no state of the kitchen"),
@@ -108,7 +108,7 @@ def test_every_fault_is_listed(dish_labels: list[Label], add_photo: Add) -> None
     add_photo("find_sink/maybe/b.png", 3)
     with pytest.raises(PhotosError) as raised:
         read_photos(broken.parents[2], dish_labels)
-    for said in ("broken.jpg", "phone.heic", "save it as JPEG", "'find_snik'", "'maybe'"):
+    for said in ("broken.jpg", "phone.heic", "Save it as one", "'find_snik'", "'maybe'"):
         assert said in str(raised.value)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.errors import AnswerError
+from tpvqa.errors import AnswerError, PictureError
 from tpvqa.observation import Frame, Observation
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
@@ -171,8 +171,8 @@ class EmbeddedVLM(NeedsPictures):
             return known
         try:
             pixels = frame.pixels
-        except (OSError, SyntaxError, ValueError) as error:
-            raise AnswerError(f"The picture {frame.id!r} cannot be read: {error}") from error
+        except PictureError as error:
+            raise AnswerError(f"The picture {frame.id!r} cannot be read: it {error}") from error
         maps = sessions.encode(pixels)
         with self._lock:
             self._maps[frame.data] = maps

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from tpvqa.chance import chance
-from tpvqa.errors import PictureSetError
+from tpvqa.errors import PictureError, PictureSetError
+from tpvqa.pictures import read_file
 from tpvqa.worlds.pictures import MANIFEST, digest
 from tpvqa_household.images.contrast import overlooked
 from tpvqa_household.images.manifest import Manifest, Origin, Picture, Renderer
@@ -134,15 +135,14 @@ def _build(
 
 def _existing(folder: Path) -> dict[tuple[str, int], Picture]:
     try:
-        manifest = Manifest.model_validate_json((folder / MANIFEST).read_bytes())
-    except (OSError, ValueError):
+        manifest = Manifest.model_validate_json(read_file(MANIFEST, inside=folder))
+    except (PictureError, ValueError):
         return {}
     return {(picture.visible, picture.number): picture for picture in manifest.pictures}
 
 
 def _current(picture: Picture, job: Job, settings: Settings, folder: Path) -> bool:
     """Whether a picture on disk is what the job would make."""
-    path = folder / picture.file
     return (
         picture.renderer == settings.renderer
         and picture.meshes == job.meshes
@@ -150,9 +150,15 @@ def _current(picture: Picture, job: Job, settings: Settings, folder: Path) -> bo
         and job.seed <= picture.seed < job.seed + TRIES
         and set(picture.shows) == set(job.shows)
         and picture.true_state in job.states
-        and path.is_file()
-        and digest(path.read_bytes()) == picture.sha256
+        and _whole(picture, folder)
     )
+
+
+def _whole(picture: Picture, folder: Path) -> bool:
+    try:
+        return digest(read_file(picture.file, inside=folder)) == picture.sha256
+    except PictureError:
+        return False
 
 
 def _made(missing: Sequence[Job], settings: Settings, workers: int) -> Iterator[Made]:

@@ -32,6 +32,7 @@ class PaperSimulation(Simulation):
             failure=simulation.failure,
             disturbance=simulation.disturbance,
             spontaneous=simulation.spontaneous,
+            redo=simulation.redo,
             seed=simulation.seed,
             episode=simulation.episode,
         )

@@ -124,12 +124,14 @@ def table(pictures: PictureSet, chosen: Sequence[Picture], *, columns: int = 8) 
 
     from PIL import Image
 
+    from tpvqa.pictures import decoded
+
     rows = -(-len(chosen) // columns)
     side = max(picture.width for picture in chosen)
     sheet = Image.new("RGB", (columns * side, rows * side), "white")
     for number, picture in enumerate(chosen):
-        with Image.open(BytesIO(pictures.read(picture))) as image:
-            sheet.paste(image, (number % columns * side, number // columns * side))
+        image = decoded(pictures.read(picture))
+        sheet.paste(image, (number % columns * side, number // columns * side))
     buffer = BytesIO()
     sheet.save(buffer, "PNG")
     return buffer.getvalue()

@@ -3,12 +3,10 @@
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from io import BytesIO
 
-from PIL import Image, UnidentifiedImageError
-
-from tpvqa.errors import PictureSetError
+from tpvqa.errors import PictureError
 from tpvqa.pddl import Atom, State
+from tpvqa.pictures import decoded, read_file
 from tpvqa.worlds.pictures import MANIFEST, digest
 from tpvqa_household.images.manifest import (
     OUTCOMES,
@@ -106,19 +104,18 @@ def verify(pictures: PictureSet, tasks: Sequence[Reachable]) -> Report:
 
 def _check_file(pictures: PictureSet, picture: Picture, gaps: list[str]) -> int:
     try:
-        data = pictures.read(picture)
-    except PictureSetError:
-        gaps.append(f"{picture.file}: missing")
+        data = read_file(picture.file, inside=pictures.folder)
+    except PictureError as error:
+        missing = not (pictures.folder / picture.file).exists()
+        gaps.append(f"{picture.file}: missing" if missing else str(error))
         return 0
     if digest(data) != picture.sha256:
         gaps.append(f"{picture.file}: damaged, its SHA-256 is not the manifest's")
         return len(data)
     try:
-        with Image.open(BytesIO(data)) as image:
-            image.load()
-            size = image.size
-    except (UnidentifiedImageError, OSError) as error:
-        gaps.append(f"{picture.file}: not a picture ({error})")
+        size = decoded(data).size
+    except PictureError as error:
+        gaps.append(f"{picture.file}: {error}")
         return len(data)
     if size != (picture.width, picture.height):
         gaps.append(f"{picture.file}: is {size}, the manifest says otherwise")

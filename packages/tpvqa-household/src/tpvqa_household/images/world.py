@@ -6,6 +6,7 @@ from typing import Any
 
 from tpvqa.errors import PluginError
 from tpvqa.pddl import Atom, State
+from tpvqa.plugins import PlainArguments
 from tpvqa.worlds.pictures.world import VIEW, DrawnWorld
 from tpvqa.worlds.simulation import Simulation
 from tpvqa_household.images.manifest import Meshes, Picture, PictureSet, load_pictures
@@ -16,7 +17,7 @@ from tpvqa_household.kitchen.household import Household
 __all__ = ["VIEW", "ImageWorld"]
 
 
-class ImageWorld(DrawnWorld[Picture]):
+class ImageWorld(DrawnWorld[Picture], PlainArguments):
     """The paper's simulator: faults on a true state, pictures of what it looks like.
 
     Args:

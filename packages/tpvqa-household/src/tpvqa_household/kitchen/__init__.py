@@ -1,1 +1,1 @@
-"""A kitchen, rendered and physical: MuJoCo draws it and moves what falls."""
+"""A kitchen, rendered; falls are physical: MuJoCo draws it and moves what falls, nothing else."""

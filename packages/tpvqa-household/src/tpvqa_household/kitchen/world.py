@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tpvqa.errors import PluginError, UnknownNameError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Atom
+from tpvqa.plugins import PlainArguments
 from tpvqa.worlds.capabilities import Simulated
 from tpvqa.worlds.outcome import Outcome
 from tpvqa.worlds.protocol import Execution, Report
@@ -30,7 +31,7 @@ MOVING = 1.0
 """Seconds that a skill takes by the world's clock."""
 
 
-class KitchenWorld(Simulated):
+class KitchenWorld(Simulated, PlainArguments):
     """A random kitchen that is drawn as the robot sees it and in which dropped things fall.
 
     The kitchen is a function of the simulation's seed and episode. Things stay where they are
@@ -123,7 +124,7 @@ class KitchenWorld(Simulated):
             if after.where.get(item) != "floor":
                 del self._fallen[item]
         self._time += MOVING
-        return Execution(Report.DONE, MOVING)
+        return self.last_outcome.execution(MOVING)
 
     def snapshot(self) -> Mapping[str, Any]:
         """The true state, the number of looks, where the robot stands, and how what fell lies."""

@@ -12,6 +12,7 @@ from tpvqa.questions.question import ActionQuestion, FactQuestion, Question, Way
 from tpvqa.vlm import VLM
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.metrics import Metrics, Scored, measure
+from tpvqa.vlm.sight import ask_seeing
 from tpvqa_household.training.asking import Asking
 from tpvqa_household.training.facts import Facts, FactTable
 from tpvqa_household.training.labels import Label, Labels
@@ -68,7 +69,7 @@ def score(
             for number, wording in enumerate(texts[subject])
         ]
         questions = [_question(wording.text, subject) for subject, _, wording, _ in asked]
-        answers = vlm.ask(case.observation, questions)
+        answers = ask_seeing(vlm, case.observation, questions)
         for (subject, number, wording, label), answer in zip(asked, answers, strict=True):
             truth = (label == Label.YES) != wording.inverted
             shown, hard = label != Label.CANNOT_SEE, label == Label.HARD_NO

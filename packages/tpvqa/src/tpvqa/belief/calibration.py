@@ -12,8 +12,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from tpvqa.belief.writing import write_json
-from tpvqa.errors import CalibrationError
+from tpvqa.errors import CalibrationError, PlacedError
 from tpvqa.questions.question import Question, Way
+from tpvqa.text_files import read_bytes
 from tpvqa.vlm.answer import Answer, Reply
 
 BOUND = 6.0
@@ -23,6 +24,7 @@ EDGE = 1e-4
 """P(yes) is cut to [EDGE, 1 - EDGE]: what is beyond says how a number was rounded."""
 
 Probability = Annotated[float, Field(ge=0, le=1)]
+Coefficient = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
 
 
 class Apart(StrEnum):
@@ -50,7 +52,7 @@ class AnswerRates:
 
 
 class _Model(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class Curve(_Model):
@@ -60,9 +62,9 @@ class Curve(_Model):
     of 1 takes P(yes) at its word; a negative one says that it is higher where no is right.
     """
 
-    slope: float
-    intercept: float = 0.0
-    sign: float = 0.0
+    slope: Coefficient
+    intercept: Coefficient = 0.0
+    sign: Coefficient = 0.0
 
 
 class Group(_Model):
@@ -226,11 +228,10 @@ class Calibration(_Model):
             CalibrationError: It cannot be read, is of another version, or is broken.
         """
         try:
-            text = path.read_bytes()
-        except OSError as error:
+            text = read_bytes(path, PlacedError, what="calibration")
+        except PlacedError as error:
             raise CalibrationError(
-                f"{path}: cannot be read ({error.strerror}). Name the file that `tpvqa calibrate "
-                "--out FILE` wrote"
+                f"{error}. Name the file that `tpvqa calibrate --out FILE` wrote"
             ) from error
         try:
             return cls.model_validate_json(text)
@@ -250,7 +251,7 @@ class Calibration(_Model):
         """Write it, all or nothing.
 
         Raises:
-            CalibrationError: The file cannot be written.
+            WriteError: The file cannot be written.
         """
         write_json(path, self, remedy="Name another file with --out")
 

@@ -14,6 +14,7 @@ from tpvqa.belief.faults import Rates
 from tpvqa.belief.trust import GRID, Trust
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError
+from tpvqa.files import read_plain
 
 Cases = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
 
@@ -99,7 +100,7 @@ class Experience(BaseModel):
             CalibrationError: It cannot be read, or is broken.
         """
         try:
-            return cls.model_validate_json(path.read_bytes())
+            return cls.model_validate_json(read_plain(path))
         except FileNotFoundError:
             return None
         except OSError as error:
@@ -116,7 +117,7 @@ class Experience(BaseModel):
         """Write it, all or nothing.
 
         Raises:
-            CalibrationError: It cannot be written.
+            WriteError: It cannot be written.
         """
         write_json(path, self, remedy="Name another file with --experience")
 

@@ -1,11 +1,24 @@
 """What is learned is written whole or not at all."""
 
+import errno
 import os
 from pathlib import Path
 
 from pydantic import BaseModel
 
-from tpvqa.errors import CalibrationError
+from tpvqa.errors import WriteError
+from tpvqa.files import write_whole
+
+
+def writable(path: Path, *, remedy: str) -> None:
+    """See that a file can be written, as far as that can be known before it is.
+
+    Raises:
+        WriteError: It cannot.
+    """
+    above = next(each for each in (path, *path.parents) if each.exists())
+    if not os.access(above, os.W_OK):
+        raise WriteError.of(path, PermissionError(errno.EACCES, os.strerror(errno.EACCES)), remedy)
 
 
 def write_json(path: Path, model: BaseModel, *, remedy: str) -> None:
@@ -17,13 +30,10 @@ def write_json(path: Path, model: BaseModel, *, remedy: str) -> None:
         remedy: What the user can do where it cannot be written.
 
     Raises:
-        CalibrationError: It cannot be written.
+        WriteError: It cannot be written.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        temporary.write_text(model.model_dump_json(indent=1) + "\n")
-        temporary.replace(path)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise CalibrationError(f"{path}: cannot be written ({error.strerror}). {remedy}") from error
+        raise WriteError.of(path, error, remedy) from error
+    write_whole(path, f"{model.model_dump_json(indent=1)}\n".encode(), remedy=remedy)

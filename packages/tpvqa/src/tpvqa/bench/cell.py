@@ -19,8 +19,10 @@ class Cell:
         world: Specification of the world.
         condition: What differs from other cells, with commas; empty for nothing. `failure=0.4`,
             `disturbance=0.5` or `spontaneous=0.05`: true rates of faults. `repeats=3`,
-            `replans=3`, `actions=30` or `seconds=60`: limits. `planner=fast-downward:optimal`: who
-            plans. `believed=oracle:0.9`: the monitor is given that VLM's calibration.
+            `replans=3`, `actions=30` or `seconds=60`: limits; `limits=none`: none that bind.
+            `redo=risky`: what comes of doing again what is done. `planner=fast-downward:optimal`:
+            who plans. `wording=paper`: how whole actions are asked about. `believed=oracle:0.9`:
+            the monitor is given that VLM's calibration.
             `carried=30`: what is learned is passed on through so many episodes.
     """
 

@@ -1,13 +1,14 @@
 """What differs between cells besides task, monitor, VLM and world, as users write it."""
 
-from collections.abc import Mapping
 from typing import Any
 
-from tpvqa.errors import BenchError
+from tpvqa.errors import BenchError, shown, suggestion
 
 RATES = ("failure", "disturbance", "spontaneous")
-LIMITS: Mapping[str, type] = {"repeats": int, "replans": int, "actions": int, "seconds": float}
-OTHERS = ("planner", "believed", "carried")
+LIMITS = ("repeats", "replans", "actions", "seconds")
+UNBOUND = {"repeats": "none", "replans": "none", "actions": "50x"}
+"""What `limits=none` stands for: who does not come to an end with these has failed."""
+OTHERS = ("redo", "limits", "planner", "wording", "believed", "carried")
 
 
 def settings_of(condition: str) -> dict[str, str]:
@@ -19,8 +20,9 @@ def settings_of(condition: str) -> dict[str, str]:
     found: dict[str, str] = {}
     for part in condition.split(",") if condition else []:
         name, _, value = part.partition("=")
-        if name not in (*RATES, *LIMITS, *OTHERS) or not value or name in found:
-            raise not_understood(condition)
+        known = (*RATES, *LIMITS, *OTHERS)
+        if name not in known or not value or name in found:
+            raise not_understood(condition, "" if name in known else suggestion(name, known))
         found[name] = value
     return found
 
@@ -33,11 +35,20 @@ def changes_of(condition: str) -> dict[str, Any]:
     """
     settings = settings_of(condition)
     try:
-        simulation = {name: float(settings[name]) for name in RATES if name in settings}
-        limits = {name: kind(settings[name]) for name, kind in LIMITS.items() if name in settings}
+        simulation: dict[str, Any] = {
+            name: float(settings[name]) for name in RATES if name in settings
+        }
     except ValueError:
         raise not_understood(condition) from None
+    if settings.get("limits", "none") != "none":
+        raise not_understood(condition)
+    limits = {**(UNBOUND if "limits" in settings else {})}
+    limits |= {name: settings[name] for name in LIMITS if name in settings}
+    if "redo" in settings:
+        simulation["redo"] = settings["redo"]
     changes: dict[str, Any] = {"simulation": simulation, "limits": limits}
+    if "wording" in settings:
+        changes["wording"] = settings["wording"]
     if "planner" in settings:
         changes["planner"] = {"spec": settings["planner"]}
     return changes
@@ -48,10 +59,16 @@ def normalised(condition: str) -> str:
     return ",".join(part.strip().replace(" ", "") for part in condition.split(",") if part.strip())
 
 
-def not_understood(condition: str) -> BenchError:
-    """What to say of a condition that cannot be read, or holds a value out of its range."""
+def not_understood(condition: str, meant: str = "") -> BenchError:
+    """What to say of a condition that cannot be read, or holds a value out of its range.
+
+    Args:
+        condition: As it was written.
+        meant: The end of a sentence that says what may have been meant.
+    """
     return BenchError(
-        f"The condition {condition!r} is not understood. Write settings with commas: rates of "
-        f"faults ({', '.join(RATES)}), limits ({', '.join(LIMITS)}), planner=PLANNER, "
-        "believed=VLM, carried=EPISODES; for example failure=0.4,actions=30"
+        f"The condition {shown(condition)} is not understood{meant or '.'} Write settings with "
+        f"commas: rates of faults ({', '.join(RATES)}), redo=free, risky or refused, limits "
+        f"({', '.join(LIMITS)}; limits=none), planner=PLANNER, wording=paper, believed=VLM, "
+        "carried=EPISODES; for example failure=0.4,actions=30"
     )

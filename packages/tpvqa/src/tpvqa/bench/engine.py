@@ -9,12 +9,13 @@ from typing import Any
 from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.checking import check
-from tpvqa.bench.ledger import Ledger
+from tpvqa.bench.ledger import REMEDY, Ledger
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.settings import common_settings
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
+from tpvqa.files import write_whole
 
 Progress = Callable[[int, int], None]
 """Told how many are done, and how many there are."""
@@ -133,6 +134,4 @@ def _keep_tasks(folder: Path, bench: Bench, ran: set[str]) -> None:
                 "Name another folder with --out"
             )
     if here.keys() - there.keys():
-        temporary = path.with_suffix(".part")
-        temporary.write_text(json.dumps(there | here, indent=1) + "\n", encoding="utf-8")
-        temporary.replace(path)
+        write_whole(path, f"{json.dumps(there | here, indent=1)}\n".encode(), remedy=REMEDY)

@@ -6,55 +6,26 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from tpvqa.bench.curve import Curve, crossing
+from tpvqa.bench.curve import LEVELS, Curve, crossings, is_level
 from tpvqa.bench.limits import sensitivity
 from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.statistics import Interval, wilson
+from tpvqa.bench.style import Style, styled_pyplot, styles
 from tpvqa.bench.summary import Summary
-from tpvqa.errors import MissingExtraError
 
-COLOURS = ("#1b6ca8", "#e07b39", "#8a8f98", "#3a9679", "#b8405e", "#7a5ea8", "#c2a83e", "#4a4e69")
 ENDINGS = {
-    "goal": "#3a9679",
-    "believed done and was not": "#b8405e",
-    "limit of replans": "#e07b39",
-    "limit of repeats": "#e8b04b",
-    "limit of actions": "#f0d58c",
+    "goal": "#009e73",
+    "believed done and was not": "#d55e00",
+    "limit of replans": "#e69f00",
+    "limit of repeats": "#f3c969",
+    "limit of actions": "#f7e7b0",
     "gave up": "#8a8f98",
     "no plan": "#5c6370",
     "error": "#111111",
 }
+GRID = "#e6e6e6"
+INK = "#222222"
 Figure = Any
-
-
-def styled_pyplot() -> Any:
-    """pyplot in the style of all figures of a bench.
-
-    Raises:
-        MissingExtraError: matplotlib is not installed.
-    """
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise MissingExtraError("matplotlib", "bench", "The figures of a bench") from error
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    pyplot.rcParams.update(
-        {
-            "font.size": 10,
-            "axes.spines.top": False,
-            "axes.spines.right": False,
-            "svg.hashsalt": "tpvqa",
-            "figure.constrained_layout.use": True,
-            "axes.titlesize": 11,
-        }
-    )
-    return pyplot
-
-
-def colours(monitors: Sequence[str]) -> dict[str, str]:
-    """The colour of each monitor, the same in all figures."""
-    return {monitor: COLOURS[k % len(COLOURS)] for k, monitor in enumerate(monitors)}
 
 
 def short(task: str) -> str:
@@ -68,12 +39,15 @@ def completion(found: Sequence[Summary]) -> Figure:
     pyplot = styled_pyplot()
     tasks = list(dict.fromkeys(each.task for each in found))
     monitors = list(dict.fromkeys(each.monitor for each in found))
-    shade = colours(monitors)
-    figure, axes = pyplot.subplots(figsize=(2.2 + 2.2 * len(tasks), 3.4))
-    width = 0.8 / len(monitors)
+    drawn = styles(monitors)
+    # A bar is wide enough for its figure.
+    figure, axes = pyplot.subplots(figsize=(2.4 + 0.42 * len(tasks) * (len(monitors) + 1), 3.8))
+    width = 0.84 / len(monitors)
     for k, monitor in enumerate(monitors):
+        style = drawn[monitor]
         own = {each.task: each for each in found if each.monitor == monitor}
         places = [t + (k - (len(monitors) - 1) / 2) * width for t, _ in enumerate(tasks)]
+        label: str | None = monitor
         for place, task in zip(places, tasks, strict=True):
             if task not in own:
                 continue
@@ -82,19 +56,22 @@ def completion(found: Sequence[Summary]) -> Figure:
                 place,
                 each.completion_rate,
                 width * 0.92,
-                color=shade[monitor],
-                label=monitor if task == tasks[0] else None,
+                facecolor=style.colour if style.filled else "white",
+                edgecolor="white" if style.filled else style.colour,
+                hatch=style.hatch,
+                label=label,
             )
+            label = None
             axes.errorbar(
                 place,
                 each.completion_rate,
                 yerr=[
-                    [each.completion_rate - each.ci_low],
-                    [each.ci_high - each.completion_rate],
+                    [max(0.0, each.completion_rate - each.ci_low)],
+                    [max(0.0, each.ci_high - each.completion_rate)],
                 ],
-                color="#222222",
-                linewidth=1,
-                capsize=2,
+                color=INK,
+                linewidth=1.2,
+                capsize=2.5,
             )
             axes.annotate(
                 f"{each.completion_rate:.2f}".lstrip("0"),
@@ -102,11 +79,13 @@ def completion(found: Sequence[Summary]) -> Figure:
                 xytext=(0, 2),
                 textcoords="offset points",
                 ha="center",
-                fontsize=7,
+                fontsize=8,
             )
     axes.set_xticks(range(len(tasks)), [short(task) for task in tasks])
     axes.set_ylim(0, 1.08)
     axes.set_ylabel("completion rate")
+    axes.yaxis.grid(color=GRID, linewidth=0.6)
+    axes.set_axisbelow(True)
     axes.legend(frameon=False, ncols=1, loc="center left", bbox_to_anchor=(1, 0.5))
     return figure
 
@@ -115,7 +94,7 @@ def endings(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
     """How trials ended: a stacked bar for every task and monitor."""
     pyplot = styled_pyplot()
     bars = [(task, monitor) for task, own in rows.items() for monitor in own]
-    figure, axes = pyplot.subplots(figsize=(8.5, 0.6 + 0.27 * len(bars)))
+    figure, axes = pyplot.subplots(figsize=(9, 0.6 + 0.3 * len(bars)))
     left = [0.0] * len(bars)
     counts = [Counter(row.ending for row in rows[task][monitor]) for task, monitor in bars]
     names = [name for name in ENDINGS if any(name in count for count in counts)]
@@ -123,10 +102,18 @@ def endings(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
     for name in names:
         shares = [count[name] / sum(count.values()) for count in counts]
         axes.barh(
-            range(len(bars)), shares, left=left, label=name, color=ENDINGS.get(name), height=0.78
+            range(len(bars)),
+            shares,
+            left=left,
+            label=name,
+            color=ENDINGS.get(name),
+            edgecolor="white",
+            linewidth=0.6,
+            height=0.78,
         )
         left = [a + b for a, b in zip(left, shares, strict=True)]
     axes.set_yticks(range(len(bars)), [f"{short(task)} · {monitor}" for task, monitor in bars])
+    axes.margins(y=0.01)
     axes.invert_yaxis()
     axes.set_xlim(0, 1)
     axes.set_xlabel("share of episodes")
@@ -135,81 +122,119 @@ def endings(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
 
 
 def limits(rows: Mapping[str, Mapping[str, Sequence[EpisodeRow]]]) -> Figure:
-    """Completion under tighter limits: a row of panels for every task."""
+    """Completion under tighter limits, with 95% intervals: a row of panels for every task."""
     pyplot = styled_pyplot()
     names = ("actions", "repeats", "replans")
     figure, panels = pyplot.subplots(
-        len(rows), 3, figsize=(9, 0.4 + 2.2 * len(rows)), sharey=True, squeeze=False
+        len(rows), 3, figsize=(10, 0.6 + 2.6 * len(rows)), sharey=True, squeeze=False
     )
-    monitors = list(dict.fromkeys(monitor for own in rows.values() for monitor in own))
-    shade = colours(monitors)
+    drawn = styles(list(dict.fromkeys(monitor for own in rows.values() for monitor in own)))
     for line, (task, own) in zip(panels, rows.items(), strict=True):
+        for monitor, episodes in own.items():
+            count = len(episodes)
+            under = sensitivity(episodes)
+            for axes, name in zip(line, names, strict=True):
+                points: Mapping[float, Interval] = {
+                    limit: wilson(round(rate * count), count) for limit, rate in under[name].items()
+                }
+                _draw_curve(axes, points, drawn[monitor], monitor)
         for axes, name in zip(line, names, strict=True):
-            for monitor, episodes in own.items():
-                points = sensitivity(episodes)[name]
-                axes.plot(
-                    list(points),
-                    list(points.values()),
-                    marker="o",
-                    markersize=3,
-                    color=shade[monitor],
-                    label=monitor,
-                )
             axes.set_ylim(0, 1.03)
             axes.set_xlabel(f"limit of {name}")
         line[0].set_ylabel(f"{short(task)}\ncompletion rate")
-    figure.legend(
-        *panels[0][0].get_legend_handles_labels(),
-        frameon=False,
-        loc="outside upper center",
-        ncols=len(monitors),
-    )
+    _legend(figure, panels, list(drawn))
     return figure
 
 
 def accuracy_curves(found: Mapping[str, Mapping[str, Curve]]) -> Figure:
-    """Completion against the accuracy of answers, and where each curve crosses TP's."""
+    """Completion against the accuracy of answers with 95% intervals, and where TP's is crossed."""
     pyplot = styled_pyplot()
     figure, panels = pyplot.subplots(
-        1, len(found), figsize=(0.8 + 3.2 * len(found), 3.3), sharey=True, squeeze=False
+        1, len(found), figsize=(1.0 + 3.9 * len(found), 4.6), sharey=True, squeeze=False
     )
-    monitors = list(dict.fromkeys(monitor for own in found.values() for monitor in own))
-    shade = colours(monitors)
+    drawn = styles(list(dict.fromkeys(monitor for own in found.values() for monitor in own)))
     for axes, (task, own) in zip(panels[0], found.items(), strict=True):
-        level = own.get("tp", own.get("none"))
-        for monitor, curve in own.items():
-            blind = monitor in ("tp", "none")
-            axes.plot(
-                list(curve),
-                list(curve.values()),
-                color=shade[monitor],
-                linestyle="--" if blind else "-",
-                marker=None if blind else "o",
-                markersize=3,
-                label=monitor,
-            )
-            if level is not None and not blind:
-                at = crossing(curve, next(iter(level.values())))
-                if at is not None and at > min(curve):
-                    axes.plot(
-                        [at],
-                        [next(iter(level.values()))],
-                        marker="x",
-                        markersize=7,
-                        markeredgewidth=2,
-                        color=shade[monitor],
-                    )
-        axes.set_title(task)
+        for monitor in sorted(own, key=lambda each: not is_level(each)):
+            _draw_curve(axes, own[monitor], drawn[monitor], monitor)
+        _mark_crossings(axes, own)
+        axes.set_title(short(task))
         axes.set_xlabel("accuracy of answers")
+        axes.set_xlim(min(min(curve) for curve in own.values()) - 0.01, 1.01)
         axes.set_ylim(0, 1.03)
     panels[0][0].set_ylabel("completion rate")
+    _legend(figure, panels, list(drawn))
+    return figure
+
+
+def _draw_curve(axes: Any, points: Mapping[float, Interval], style: Style, label: str) -> None:
+    """A curve in a band that is its 95% interval."""
+    xs = list(points)
+    axes.fill_between(
+        xs,
+        [each.low for each in points.values()],
+        [each.high for each in points.values()],
+        color=style.colour,
+        alpha=0.16,
+        linewidth=0,
+    )
+    axes.plot(
+        xs,
+        [each.rate for each in points.values()],
+        **style.plotted,
+        linewidth=1.8,
+        markersize=4.5,
+        label=label,
+    )
+    axes.grid(color=GRID, linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def _mark_crossings(axes: Any, own: Mapping[str, Curve]) -> None:
+    """A circle where a curve crosses TP's, with the accuracy beside it."""
+    found = crossings(own)
+    crossed = sorted(
+        at for monitor, at in found.items() if at is not None and at > min(own[monitor])
+    )
+    for k, at in enumerate(crossed):
+        level = next(own[monitor] for monitor in LEVELS if monitor in own)
+        height = next(iter(level.values())).rate
+        axes.plot(
+            [at],
+            [height],
+            linestyle="none",
+            marker="o",
+            markersize=11,
+            markeredgewidth=1.6,
+            markerfacecolor="none",
+            markeredgecolor=INK,
+        )
+        left = k % 2 == 0 and len(crossed) > 1  # neighbours do not write over each other
+        axes.annotate(
+            f"{at:.2f}".lstrip("0"),
+            (at, height),
+            xytext=(-7 if left else 7, -13 - 11 * (k // 2)),
+            textcoords="offset points",
+            ha="right" if left else "left",
+            fontsize=10,
+            color=INK,
+        )
+
+
+def _legend(figure: Figure, panels: Any, order: Sequence[str]) -> None:
+    """One legend for all panels, with every line that any of them has."""
+    handles: dict[str, Any] = dict.fromkeys(order)
+    for axes in panels.flat:
+        drawn, labels = axes.get_legend_handles_labels()
+        handles |= dict(zip(labels, drawn, strict=True))
+    across = max(3, int(figure.get_figwidth() / 1.7))
     figure.legend(
-        *panels[0][0].get_legend_handles_labels(),
+        handles.values(),
+        handles,
         frameon=False,
         loc="outside upper center",
-        ncols=len(monitors),
+        ncols=min(len(handles), across),
+        handlelength=2.8,
     )
-    return figure
 
 
 def saved(figure: Figure, kind: str) -> bytes:

@@ -9,6 +9,7 @@ from tpvqa.pddl import Atom, Literal, load_task
 from tpvqa.questions import FactQuestion, QuestionBook, Way
 from tpvqa.tasks import shipped_tasks
 from tpvqa.vlm import VLM
+from tpvqa.vlm.sight import ask_seeing
 from tpvqa.worlds.pictures import VIEW, PictureSet, media_type
 from tpvqa.worlds.pictures.manifest import P
 
@@ -97,7 +98,7 @@ def _ask(
     )
     true = picture.true_state
     for question, answer in zip(
-        questions, vlm.ask(Observation(look, 0.0, {VIEW: frame}), questions), strict=True
+        questions, ask_seeing(vlm, Observation(look, 0.0, {VIEW: frame}), questions), strict=True
     ):
         for way in (Way.PRECONDITION, Way.EFFECT):
             yield LabelledAnswer(

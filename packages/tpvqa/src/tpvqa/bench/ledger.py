@@ -4,6 +4,7 @@ import fcntl
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -13,10 +14,12 @@ from pydantic import ValidationError
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.published import differences, read_published
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.errors import BenchError
+from tpvqa.errors import BenchError, WriteError
+from tpvqa.files import open_plain, write_all, write_whole
 
 ROWS = "episodes.jsonl"
 SETTINGS = "bench.json"
+REMEDY = "Make room, and give the same command again: it goes on with what is finished"
 
 
 class Ledger:
@@ -37,7 +40,8 @@ class Ledger:
         self.folder = Path(folder)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            self._file = (self.folder / ROWS).open("a+b")
+            flags = os.O_RDWR | os.O_APPEND | os.O_CREAT
+            self._file = os.fdopen(open_plain(self.folder / ROWS, flags), "a+b", buffering=0)
         except OSError as error:
             raise BenchError(
                 f"{folder}: cannot be written to ({error.strerror}). Name another folder with --out"
@@ -64,9 +68,7 @@ class Ledger:
                     "Name another folder with --out"
                 )
             return
-        temporary = path.with_suffix(".part")
-        temporary.write_text(json.dumps(settings, indent=1) + "\n", encoding="utf-8")
-        temporary.replace(path)
+        write_whole(path, f"{json.dumps(settings, indent=1)}\n".encode(), remedy=REMEDY)
 
     def _read(self) -> Iterator[EpisodeRow]:
         self._file.seek(0)
@@ -92,12 +94,23 @@ class Ledger:
         ]
 
     def add(self, rows: Iterable[EpisodeRow]) -> None:
-        """Write rows; they are on disk before this returns."""
+        """Write rows; they are on disk before this returns.
+
+        Raises:
+            WriteError: They cannot be written. What was written before is whole.
+        """
+        rows = list(rows)
+        size = os.fstat(self._file.fileno()).st_size
+        try:
+            lines = (row.model_dump_json().encode() + b"\n" for row in rows)
+            write_all(self._file.fileno(), b"".join(lines))
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            with suppress(OSError):
+                self._file.truncate(size)
+            raise WriteError.of(self.folder / ROWS, error, REMEDY) from error
         for row in rows:
-            self._file.write(row.model_dump_json().encode() + b"\n")
             self.rows[row.cell, row.episode] = row
-        self._file.flush()
-        os.fsync(self._file.fileno())
 
     def of(self, cell: Cell, episodes: int) -> list[EpisodeRow]:
         """The first so many episodes of a cell, in order."""

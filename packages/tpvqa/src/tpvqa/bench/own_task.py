@@ -9,8 +9,9 @@ from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tpvqa.errors import BenchError
-from tpvqa.tasks import TaskFiles, shipped_tasks
+from tpvqa.errors import BenchError, PlacedError
+from tpvqa.tasks import QUESTIONS, WORLD, TaskFiles, beside, shipped_tasks
+from tpvqa.text_files import read_text
 
 DOMAIN = "domain.pddl"
 _COMMENT = re.compile(r";[^\n]*")
@@ -94,8 +95,8 @@ def own_tasks(
     Args:
         problems: Problem files, and folders of them.
         domain: Their domain; by default the `domain.pddl` beside each problem.
-        questions: Their questions; by default, without a domain, the `questions.yaml` beside it.
-        world_file: How facts come undone; by default, without a domain, the `world.yaml` beside it.
+        questions: Their questions; by default the `questions.yaml` beside problem or domain.
+        world_file: How facts come undone; by default the `world.yaml` beside one of them.
 
     Raises:
         BenchError: A file is missing or cannot be read, or a folder holds no problem.
@@ -131,12 +132,11 @@ def _files(
     text = _COMMENT.sub("", _text(problem))
     named = _NAME.search(text)
     if domain is None:
-        folder = problem.parent
-        domain = folder / DOMAIN
+        domain = problem.parent / DOMAIN
         if not domain.exists():
             raise BenchError(f"{problem}: there is no {DOMAIN} beside it. Name it with --domain")
-        questions = questions or _if_there(folder / "questions.yaml")
-        world_file = world_file or _if_there(folder / "world.yaml")
+    questions = questions or beside(QUESTIONS, problem, domain)
+    world_file = world_file or beside(WORLD, problem, domain)
     return TaskFiles(
         name=named[1].lower() if named else problem.stem,
         domain=domain.resolve(),
@@ -146,17 +146,11 @@ def _files(
     )
 
 
-def _if_there(path: Path) -> Path | None:
-    return path if path.exists() else None
-
-
 def _text(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise BenchError(f"{path}: cannot be read ({error.strerror})") from error
-    except UnicodeDecodeError as error:
-        raise BenchError(f"{path}: no text in UTF-8 ({error.reason})") from error
+        return read_text(path, PlacedError)
+    except PlacedError as error:
+        raise BenchError(str(error)) from error
 
 
 def _written(path: Path, text: str) -> Path:

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError, MissingExtraError
+from tpvqa.files import write_whole
 
 LEFT_OUT = ("seconds", "answers", "decisions")
 """Fields that are not kept."""
@@ -33,7 +34,7 @@ def write_published(rows: Iterable[EpisodeRow], settings: Mapping[str, Any], pat
 
     Raises:
         MissingExtraError: PyArrow is not installed.
-        BenchError: It cannot be written.
+        WriteError: It cannot be written.
     """
     pa, parquet = _pyarrow()
     names = [name for name in EpisodeRow.model_fields if name not in LEFT_OUT]
@@ -52,14 +53,10 @@ def write_published(rows: Iterable[EpisodeRow], settings: Mapping[str, Any], pat
         else:
             columns[name] = pa.array(values)
     table = pa.table(columns).replace_schema_metadata({_SETTINGS: json.dumps(dict(settings))})
-    temporary = path.with_name(path.name + ".part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        parquet.write_table(table, temporary, compression="zstd", compression_level=19)
-        temporary.replace(path)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise BenchError(f"{path}: cannot be written ({error})") from error
+    data = pa.BufferOutputStream()
+    parquet.write_table(table, data, compression="zstd", compression_level=19)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, data.getvalue().to_pybytes(), remedy="Name another file")
     return len(ordered)
 
 
@@ -99,6 +96,27 @@ def read_published(path: Path, settings: Mapping[str, Any]) -> Iterator[EpisodeR
             raise BenchError(
                 f"{file}: not rows of this version ({error.errors()[0]['msg']})"
             ) from None
+
+
+def version_of(path: Path) -> str:
+    """The version that ran published rows.
+
+    Args:
+        path: A file that `write_published` wrote, or a folder of them.
+
+    Raises:
+        MissingExtraError: PyArrow is not installed.
+        BenchError: There are none, or they do not say.
+    """
+    pa, parquet = _pyarrow()
+    file = next(iter(sorted(path.glob("*.parquet"))), None) if path.is_dir() else path
+    try:
+        told = (parquet.read_schema(file).metadata or {}).get(_SETTINGS) if file else None
+    except (OSError, pa.ArrowException) as error:
+        raise BenchError(f"{file}: cannot be read ({str(error).splitlines()[0]})") from error
+    if told is None:
+        raise BenchError(f"{path}: holds no published rows. Name a file or a folder of them")
+    return str(json.loads(told).get("version"))
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> str:

@@ -10,13 +10,15 @@ from tpvqa.belief import LabelledAnswer
 from tpvqa.belief.fitting import telling
 from tpvqa.belief.held_out import HeldOut
 from tpvqa.belief.runs import runs
-from tpvqa.bench.figures import COLOURS, Figure, styled_pyplot
+from tpvqa.bench.figures import Figure
 from tpvqa.bench.statistics import wilson
+from tpvqa.bench.style import styled_pyplot
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 from tpvqa.vlm.metrics import calibration_error
 
 BINS = 10
+BEFORE, AFTER = "#d55e00", "#0072b2"
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +113,9 @@ def reliability_figure(judged: Sequence[HeldOut], vlm: str) -> Figure:
     once = list({(each.row.trial, each.row.look, each.row.text): each for each in judged}.values())
     before, after = probabilities(once)
     truth = np.array([each.row.truth for each in once], bool)
-    panels = [("before: as the VLM says", before, COLOURS[1])]
+    panels = [("before: as the VLM says", before, BEFORE)]
     if after is not None:
-        panels.append(("after: calibrated, on held-out trials", after, COLOURS[0]))
+        panels.append(("after: calibrated, on held-out trials", after, AFTER))
     pyplot = styled_pyplot()
     figure, axes = pyplot.subplots(
         2,

@@ -1,20 +1,17 @@
 """Runs the missing episodes of a bench: in this process, or on Dask's workers."""
 
-import signal
-import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from types import MappingProxyType
 
 from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.cell import Cell
+from tpvqa.bench.dask_workers import as_they_finish, dask_client
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.stage import run_batch
 from tpvqa.config import TrialConfig
-from tpvqa.errors import BenchError, MissingExtraError
 
 BATCH: Mapping[str, int] = {"symbolic": 100, "images": 50}
 """Episodes that a worker is sent at once, by world: about a second's work."""
@@ -83,7 +80,7 @@ def run_all(
 
     Raises:
         MissingExtraError: Dask is needed and not installed.
-        BenchError: The scheduler cannot be reached.
+        BenchError: The workers do not start, or the scheduler cannot be reached.
     """
     todo = batches(ledger, wanted)
     if distributed is None:
@@ -115,32 +112,12 @@ def _on_dask(
 ) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
     if not todo:
         return
-    try:
-        from distributed import Client, LocalCluster, as_completed
-    except ImportError as error:
-        raise MissingExtraError("distributed", "bench", "Running on several workers") from error
-    cluster = None
-    try:
-        if scheduler is None:
-            with _deaf_to_interrupts():
-                cluster = LocalCluster(
-                    n_workers=min(workers, len(todo)),
-                    threads_per_worker=1,
-                    dashboard_address=None,
-                    silence_logs="ERROR",
-                )
-        client = Client(cluster or scheduler, timeout="20s")
-    except OSError as error:
-        raise BenchError(
-            f"The Dask scheduler at {scheduler!r} cannot be reached ({error}). Start it, or leave "
-            "--scheduler out for workers on this machine"
-        ) from error
-    try:
+    with dask_client(min(workers, len(todo)), scheduler) as client:
         futures = {
             client.submit(run_batch, *given(batch), pure=False, retries=RETRIES): batch
             for batch in todo
         }
-        for future in as_completed(list(futures)):
+        for future in as_they_finish(client, futures):
             batch = futures.pop(future)
             failed = future.exception()
             yield (
@@ -149,23 +126,6 @@ def _on_dask(
                 if failed is None
                 else _failed(batch, given(batch)[1], repr(failed)),
             )
-    finally:
-        client.close()
-        if cluster is not None:
-            cluster.close()
-
-
-@contextmanager
-def _deaf_to_interrupts() -> Iterator[None]:
-    """Let processes that start meanwhile ignore Ctrl-C: who started them ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _rows(values: Sequence[dict[str, object]]) -> list[EpisodeRow]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tpvqa import DECIDES_AS
-from tpvqa.config import TrialConfig
+from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.config.layers import settings
 
 OF_CELLS = (("world", "spec"), ("vlm", "spec"), ("monitor", "spec"))
@@ -24,7 +24,7 @@ def common_settings(common: TrialConfig) -> dict[str, Any]:
     return {
         "version": DECIDES_AS,
         "seed": common.seed,
-        **({} if common.simulation is None else common.simulation.model_dump()),
+        **({} if common.simulation is None else _faults(common.simulation)),
         **{
             f"limit of {name}": value
             for name, value in common.limits.model_dump().items()
@@ -32,6 +32,14 @@ def common_settings(common: TrialConfig) -> dict[str, Any]:
         },
         **dict(_others(common)),
     }
+
+
+def _faults(simulation: SimulationConfig) -> dict[str, Any]:
+    """The rates; what redoing leads to where it is not as it always was."""
+    told = simulation.model_dump()
+    if simulation.redo == SimulationConfig().redo:
+        del told["redo"]
+    return told
 
 
 def _others(common: TrialConfig) -> Iterator[tuple[str, Any]]:

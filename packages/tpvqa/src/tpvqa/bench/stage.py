@@ -26,8 +26,9 @@ from tpvqa.events import Ended, Event
 from tpvqa.events.events import ListenerDropped
 from tpvqa.pddl import Action, Task, load_task
 from tpvqa.planning import Planner
+from tpvqa.planning.making import make_planner
 from tpvqa.planning.remembering import Remembering
-from tpvqa.plugins import Kind, load_spec, make, takes
+from tpvqa.plugins import Kind, load_spec, takes
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import TaskFiles, find_task
 from tpvqa.vlm import VLM
@@ -225,7 +226,7 @@ def _files(task: str, own: OwnTask | None) -> Iterator[TaskFiles]:
 
 @lru_cache
 def _planner(spec: str) -> Planner:
-    return Remembering(make(Kind.PLANNER, spec))
+    return Remembering(make_planner(spec))
 
 
 @lru_cache

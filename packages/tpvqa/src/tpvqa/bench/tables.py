@@ -6,9 +6,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from tpvqa.bench.ledger import REMEDY
 from tpvqa.bench.limits import sensitivity
 from tpvqa.bench.report import Group, Results
-from tpvqa.errors import BenchError, MissingExtraError
+from tpvqa.errors import MissingExtraError
+from tpvqa.files import write_whole
 
 
 def write_tables(folder: Path, results: Results) -> list[Path]:
@@ -19,7 +21,7 @@ def write_tables(folder: Path, results: Results) -> list[Path]:
 
     Raises:
         MissingExtraError: PyArrow is not installed.
-        BenchError: The folder cannot be written to.
+        WriteError: The folder cannot be written to.
     """
     tables = {
         "summary": [each.flat() for each in results.summaries],
@@ -32,10 +34,17 @@ def write_tables(folder: Path, results: Results) -> list[Path]:
         ],
         "limits": list(_limits(results)),
         "curve": [
-            {"task": task, "monitor": monitor, "accuracy": accuracy, "completion_rate": rate}
+            {
+                "task": task,
+                "monitor": monitor,
+                "accuracy": accuracy,
+                "completion_rate": each.rate,
+                "ci_low": each.low,
+                "ci_high": each.high,
+            }
             for task, by_monitor in results.curves.items()
             for monitor, curve in by_monitor.items()
-            for accuracy, rate in curve.items()
+            for accuracy, each in curve.items()
         ],
     }
     return [
@@ -82,7 +91,7 @@ def write_table(folder: Path, name: str, values: Sequence[Mapping[str, Any]]) ->
 
     Raises:
         MissingExtraError: PyArrow is not installed.
-        BenchError: The folder cannot be written to.
+        WriteError: The folder cannot be written to.
     """
     try:
         import pyarrow as pa
@@ -92,10 +101,7 @@ def write_table(folder: Path, name: str, values: Sequence[Mapping[str, Any]]) ->
     table = pa.Table.from_pylist(list(values))
     paths = [folder / f"{name}.csv", folder / f"{name}.parquet"]
     for path, write in zip(paths, (csv.write_csv, parquet.write_table), strict=True):
-        temporary = path.with_name(path.name + ".part")
-        try:
-            write(table, temporary)
-            temporary.replace(path)
-        except OSError as error:
-            raise BenchError(f"{path}: cannot be written ({error})") from error
+        data = pa.BufferOutputStream()
+        write(table, data)
+        write_whole(path, data.getvalue().to_pybytes(), remedy=REMEDY)
     return paths

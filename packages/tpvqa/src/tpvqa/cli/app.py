@@ -1,13 +1,25 @@
 """`tpvqa`: the commands and how their errors reach the user."""
 
+import errno
+import os
 import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from io import TextIOWrapper
 from typing import Annotated, Any
 
 import typer
 
 from tpvqa.cli import bench, calibrate, plan, questions, run
 from tpvqa.cli.plugged import PluggedGroup
-from tpvqa.errors import TpvqaError
+from tpvqa.cli.saying import tell
+from tpvqa.errors import TpvqaError, WriteError, cut
+
+NOT_WRITTEN = 6
+"""Exit code: the disk is full, say. What was written before is whole."""
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 
 
 class _Interrupted(Exception):  # noqa: N818 — Ctrl-C, not an error
@@ -57,17 +69,60 @@ calibrate.register(app)
 bench.register(app)
 
 
+def _print_anything() -> None:
+    """Let letters that a terminal or a pipe has no code for be escaped, instead of an error."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _check_names(arguments: Sequence[str]) -> None:
+    """See that all that was typed, and where, is text: what is not could not be kept in a log.
+
+    Raises:
+        TpvqaError: It is not.
+    """
+    try:
+        here = os.getcwd()
+    except OSError:
+        raise TpvqaError("The folder that you are in is gone. Go to another.") from None
+    for what, name in (("folder that you are in", here), *(("argument", a) for a in arguments)):
+        try:
+            name.encode()
+        except UnicodeEncodeError:
+            said = name.encode(errors="surrogateescape").decode(errors="backslashreplace")
+            raise TpvqaError(
+                f"The {what}, '{cut(said)}', is not UTF-8 text. Rename the file or the folder."
+            ) from None
+
+
 def main() -> None:
     """Run the command line.
 
-    A `TpvqaError` becomes one clear message and exit code 2; Ctrl-C becomes "interrupted" and
+    A `TpvqaError` becomes one clear message and exit code 2, or 6 where something could
+    not be written; Ctrl-C becomes "interrupted" and
     exit code 130.
     """
+    _print_anything()
     try:
-        app()
+        try:
+            _check_names(sys.argv[1:])
+            app()
+        finally:
+            with suppress(BrokenPipeError):
+                sys.stdout.flush()
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            tell(f"error: the path '{cut(error.filename)}' is too long", error=True)
+            sys.exit(2)
+        if error.errno not in _FULL:
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what was not printed is not tried again
+        tell(f"error: standard output or a file cannot be written ({error.strerror})", error=True)
+        sys.exit(NOT_WRITTEN)
     except TpvqaError as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(2)
+        tell(f"error: {error}", error=True)
+        sys.exit(NOT_WRITTEN if isinstance(error, WriteError) else 2)
     except (_Interrupted, KeyboardInterrupt):
         print("interrupted", file=sys.stderr)
         sys.exit(130)

@@ -2,8 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
-from rich.markup import escape
-
+from tpvqa.cli.saying import marked, plain
 from tpvqa.episodes.notable_facts import FactNow, notable, probability
 
 _CELLS = 8
@@ -43,11 +42,11 @@ class BeliefBars:
             return []
         if not self._bars:
             facts = ", ".join(f"{say(each.fact)} {_numbers(each)}" for each in new)
-            return [f"  [dim]belief:[/] {escape(facts)}"]
-        names = [say(each.fact) for each in new]
+            return [f"  [dim]belief:[/] {marked(facts)}"]
+        names = [plain(say(each.fact)) for each in new]
         width = min(_WIDEST, max(map(len, names)))
         return [
-            f"    {escape(_fitted(name, width))} {_bar(each.p)} {_coloured(each)}"
+            f"    {marked(_fitted(name, width))} {_bar(each.p)} {_coloured(each)}"
             for name, each in zip(names, new, strict=True)
         ]
 

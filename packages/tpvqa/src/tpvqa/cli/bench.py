@@ -1,6 +1,5 @@
 """`tpvqa bench run`: many episodes of anybody's tasks, monitors and VLMs."""
 
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -8,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tpvqa.cli.bench_running import EXIT, bench_bar, finish, listed
+from tpvqa.cli.notices import about_own_files
 from tpvqa.cli.options import trial_options
 from tpvqa.cli.plugged import PartGroup
+from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer
 
 if TYPE_CHECKING:
@@ -50,8 +51,8 @@ def run(
         typer.Argument(
             metavar="[TASK]...",
             help="Shipped tasks (see `tpvqa tasks`), your own problem files, or folders of them. "
-            "Without --domain, the domain.pddl, questions.yaml and world.yaml beside a problem "
-            "are taken.",
+            "Without --domain, the domain.pddl beside a problem is taken; so are a questions.yaml "
+            "and a world.yaml beside problem or domain, unless others are named.",
         ),
     ] = None,
     *,
@@ -85,8 +86,8 @@ def run(
         typer.Option(
             help="What differs between cells: settings with commas, conditions with semicolons (or "
             "the option several times), e.g. ';failure=0.4,actions=30', where nothing before the "
-            "semicolon stands for no change. Settings: failure, disturbance, spontaneous, repeats, "
-            "replans, actions, seconds, planner, believed, carried."
+            "semicolon stands for no change. Settings: failure, disturbance, spontaneous, redo, "
+            "repeats, replans, actions, seconds, limits=none, planner, believed, carried."
         ),
     ] = None,
     episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 100,
@@ -127,8 +128,13 @@ def run(
     )
     calibration = _calibration(config)
     common = config.but(task={name: None for _, name in _TASK}, monitor={"calibration": None})
-    for notice in _notices(grid, calibration):
-        print(f"note: {notice}", file=sys.stderr)
+    beside = about_own_files(
+        (each.origin for each in own.values()),
+        questions=questions or config.task.questions,
+        world_file=world_file or config.task.world_file,
+    )
+    for notice in (*beside, *_notices(grid, calibration)):
+        tell(f"note: {notice}", error=True)
     with bench_bar(out) as progress:
         results = run_compared(
             grid,

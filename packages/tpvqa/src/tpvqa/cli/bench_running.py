@@ -9,11 +9,16 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from tpvqa.cli.saying import tell
+
 if TYPE_CHECKING:
     from tpvqa.bench.report import Results
     from tpvqa.cli.progress import CountBar
 
-EXIT = "Exit codes: 0 all episodes ran, 1 some failed with an error, 2 bad input, 130 interrupted."
+EXIT = (
+    "Exit codes: 0 all episodes ran, 1 some failed with an error, 2 bad input, 6 something could "
+    "not be written, 130 interrupted."
+)
 
 
 @contextmanager
@@ -46,13 +51,13 @@ def finish(results: "Results", out: Path, *, as_json: bool) -> None:
         print(json.dumps(plain_rows(results.summaries, results.reference), indent=1))
     else:
         print_results(results)
-        print(f"tables, figures and report: {out}/report.html")
+        tell(f"tables, figures and report: {out}/report.html")
     if results.errors:
         first = next(row for rows in results.rows.values() for row in rows if row.error)
-        print(
+        tell(
             f"note: {results.errors} episodes failed with an error, the first (episode "
             f"{first.episode} of {first.cell}): {first.error.strip()}",
-            file=sys.stderr,
+            error=True,
         )
         raise typer.Exit(1)
 

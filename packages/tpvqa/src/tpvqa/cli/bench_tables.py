@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from tpvqa.cli.saying import cell
+
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
@@ -28,8 +30,8 @@ def print_results(results: "Results") -> None:
                 table.add_section()
             paired = each.against
             table.add_row(
-                each.task if each.task != last else "",
-                each.monitor,
+                cell(each.task if each.task != last else ""),
+                cell(each.monitor),
                 f"{each.completion_rate:.3f}",
                 f"{each.ci_low:.2f}–{each.ci_high:.2f}",
                 "" if paired is None else f"{paired.difference:+.3f}",
@@ -50,7 +52,7 @@ def print_results(results: "Results") -> None:
         table = _table("better than TP from an accuracy of")
         _columns(table, ("task", "monitor"), ("accuracy",))
         for task, monitor, at in crossings:
-            table.add_row(task, monitor, "nowhere" if at is None else f"{at:.2f}")
+            table.add_row(cell(task), cell(monitor), "nowhere" if at is None else f"{at:.2f}")
         console.print(table)
         console.print()
 
@@ -71,14 +73,20 @@ def _print_accuracy(console: "Console", results: "Results", group: "Group") -> N
             found.abstained,
         )
         answers.add_row(
-            line.task, line.way, line.source, str(found.visible), *map(_figure, figures)
+            cell(line.task),
+            cell(line.way),
+            cell(line.source),
+            str(found.visible),
+            *map(_figure, figures),
         )
     decisions = _table("decisions")
     _columns(decisions, ("task", "monitor", "when"), ("decisions", "accuracy", "wrong goes"))
     decisions.add_column("wrong stops", justify="right")
     for task, monitor, each in results.decision_lines(group):
         rates = (each.accuracy, each.false_go, each.false_stop)
-        decisions.add_row(task, monitor, each.when, str(each.count), *map(_figure, rates))
+        decisions.add_row(
+            cell(task), cell(monitor), each.when, str(each.count), *map(_figure, rates)
+        )
     for table in (answers, decisions):
         if table.row_count:
             console.print(table)
@@ -88,14 +96,16 @@ def _print_accuracy(console: "Console", results: "Results", group: "Group") -> N
 def _table(title: str) -> "Table":
     from rich.table import Table
 
-    return Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
+    return Table(
+        title=cell(title), title_justify="left", title_style="bold", box=None, pad_edge=False
+    )
 
 
 def _columns(table: "Table", words: Sequence[str], figures: Sequence[str]) -> None:
     for name in words:
-        table.add_column(name, no_wrap=True)
+        table.add_column(cell(name), no_wrap=True)
     for name in figures:
-        table.add_column(name, justify="right", no_wrap=True)
+        table.add_column(cell(name), justify="right", no_wrap=True)
 
 
 def _figure(value: float | None) -> str:

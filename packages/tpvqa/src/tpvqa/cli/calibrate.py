@@ -1,6 +1,7 @@
 """`tpvqa calibrate`: learn what a VLM's answers are worth."""
 
 import json
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,7 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tpvqa.cli.calibration_table import draw, plain, print_calibration
+from tpvqa.cli.notices import about_own_files
 from tpvqa.cli.options import trial_options
+from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer, combined
 
 if TYPE_CHECKING:
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
     from tpvqa.cli.progress import CountBar
     from tpvqa.questions import QuestionBook
 
-_EXIT = "Exit codes: 0 written, 2 bad input, 130 interrupted."
+_EXIT = "Exit codes: 0 written, 2 bad input, 6 could not be written, 130 interrupted."
 _SOURCES = (
     "Give one source of labelled answers: folders of recorded episodes, --pictures shipped (or a "
     "folder of such a set), or --trials N"
@@ -77,7 +80,8 @@ def calibrate(
         ),
     ] = None,
     questions: Annotated[
-        Path | None, typer.Option(help="With --domain: your questions; fallbacks without it.")
+        Path | None,
+        typer.Option(help="With --domain: your questions. Default: the questions.yaml beside it."),
     ] = None,
     world_file: Annotated[
         Path | None,
@@ -150,12 +154,18 @@ def calibrate(
     else:
         assert trials is not None
         name = vlm or default_vlm(pictures=not problems)
+        tasks_of_own = own_tasks(
+            problems, domain=domain, questions=questions, world_file=world_file
+        )
+        files = [each.origin for each in tasks_of_own.values()]
+        for notice in about_own_files(files, questions=questions, world_file=world_file):
+            print(f"note: {notice}", file=sys.stderr)
         with _progress("trials") as bar:
             rows = label_trials(
                 name,
                 trials,
                 tasks=_named(tasks, own=bool(problems)),
-                own=own_tasks(problems, domain=domain, questions=questions, world_file=world_file),
+                own=tasks_of_own,
                 world=world,
                 monitor=monitor,
                 common=combined(layers),
@@ -170,13 +180,13 @@ def calibrate(
         typer.echo(json.dumps(plain(calibration, table, out, image), indent=1))
     else:
         print_calibration(calibration, table)
-        typer.echo(f"wrote {out} and {image}")
+        tell(f"wrote {out} and {image}")
 
 
 def _check(out: Path, image: Path) -> None:
     """What would end the work at its end is told before it."""
     from tpvqa.belief.platt import regression
-    from tpvqa.bench.figures import styled_pyplot
+    from tpvqa.bench.style import styled_pyplot
     from tpvqa.errors import CalibrationError
 
     regression()
@@ -231,9 +241,11 @@ def _own_book(
 ) -> "list[QuestionBook] | None":
     from tpvqa.pddl import load_task
     from tpvqa.questions import QuestionBook
+    from tpvqa.tasks import QUESTIONS, beside
 
     if domain is None or problem is None:
         return None
+    questions = questions or beside(QUESTIONS, problem, domain)
     return [QuestionBook.load(questions, load_task(domain, problem))]
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from tpvqa.cli.saying import cell, tell
+
 if TYPE_CHECKING:
     from tpvqa.belief import Calibration
     from tpvqa.belief.held_out import HeldOut
@@ -17,20 +19,20 @@ def draw(path: Path, judged: "Sequence[HeldOut]", vlm: str) -> None:
     """Draw reliability before and after.
 
     Raises:
-        CalibrationError: It cannot be written.
+        WriteError: It cannot be written.
     """
     from tpvqa.bench.figures import close, saved
     from tpvqa.bench.reliability import reliability_figure
-    from tpvqa.errors import CalibrationError
+    from tpvqa.errors import WriteError
+    from tpvqa.files import write_whole
 
+    remedy = "Name another file with --curves"
     figure = reliability_figure(judged, vlm)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(saved(figure, "svg" if path.suffix == ".svg" else "png"))
+        write_whole(path, saved(figure, "svg" if path.suffix == ".svg" else "png"), remedy=remedy)
     except OSError as error:
-        raise CalibrationError(
-            f"{path}: cannot be written ({error.strerror}). Name another file with --curves"
-        ) from error
+        raise WriteError.of(path, error, remedy) from error
     finally:
         close(figure)
 
@@ -56,7 +58,7 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
     from rich.console import Console
     from rich.table import Table
 
-    printed = Table(title=calibration.vlm, title_justify="left", title_style="bold", box=None)
+    printed = Table(title=cell(calibration.vlm), title_justify="left", title_style="bold", box=None)
     for name in ("asked as", "about"):
         printed.add_column(name, no_wrap=True)
     for name in ("answers", "abstained", "accuracy", "yes if true", "yes if false"):
@@ -65,8 +67,8 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
     for line in table:
         figures = (line.abstained, line.accuracy, line.yes_if_true, line.yes_if_false)
         printed.add_row(
-            line.way or "all",
-            line.predicate or "",
+            cell(line.way or "all"),
+            cell(line.predicate or ""),
             str(line.answers),
             *map(_figure, figures),
             f"{_figure(line.error_before)} → {_figure(line.error_after)}",
@@ -79,7 +81,7 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
         f"the same view, {calibration.repeat_other_view:.2f} from another."
     )
     for notice in calibration.notices:
-        typer.echo(f"note: {notice}")
+        tell(f"note: {notice}")
 
 
 def _figure(value: float | None) -> str:

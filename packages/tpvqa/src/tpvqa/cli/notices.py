@@ -1,9 +1,55 @@
 """What users are told before anything runs."""
 
+from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tpvqa.belief.calibration import Calibration
+    from tpvqa.config import TrialConfig
+    from tpvqa.questions import QuestionBook
+    from tpvqa.tasks import TaskFiles
+
+
+def about_own_files(
+    tasks: "Iterable[TaskFiles]", *, questions: object, world_file: object
+) -> list[str]:
+    """What to know of the files of one's own tasks that are used without having been named.
+
+    Args:
+        tasks: The tasks' files.
+        questions: What was named; None for nothing.
+        world_file: The same.
+    """
+    found: dict[Path, str] = {}
+    for files in tasks:
+        if questions is None and files.questions is not None:
+            found[files.questions] = "--questions"
+        if world_file is None and files.world is not None:
+            found[files.world] = "--world-file"
+    return [f"{path} is used; name another with {option}" for path, option in found.items()]
+
+
+def about_vlm(config: "TrialConfig", vlm: str) -> list[str]:
+    """What to know of a VLM that nobody has named, on a task of one's own."""
+    if vlm != "embedded" or config.vlm.spec is not None or config.task.name is not None:
+        return []
+    return [
+        "the embedded network answers, which knows the household's ten things and no words for "
+        "others; name a VLM with --vlm, e.g. openai:MODEL"
+    ]
+
+
+def about_words(book: "QuestionBook") -> list[str]:
+    """What to know of a task's questions; the fallbacks are counted, not listed."""
+    if len(book.fallbacks) < 2:
+        return book.notices
+    others = [notice for notice in book.notices if notice not in book.fallbacks]
+    return [
+        f"{len(book.fallbacks)} predicates and actions are put into words by their names in the "
+        "PDDL; `tpvqa questions` lists them, and a questions file gives better ones",
+        *others,
+    ]
 
 
 def about_calibration(vlm: str, calibration: "Calibration | None") -> list[str]:

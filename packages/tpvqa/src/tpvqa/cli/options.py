@@ -1,29 +1,33 @@
 """The options of `tpvqa run` and its like, made from the configuration: none is written twice."""
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, get_origin
 
 import typer
 
 from tpvqa.config.layers import Key, Layer, Setting, combined, file_layer, settings
-from tpvqa.config.model import TrialConfig
+from tpvqa.config.model import TaskConfig, TrialConfig
 from tpvqa.errors import TpvqaError
+from tpvqa.plugins import Kind, names
 
 _TYPES = {"int | None": int, "float | None": float, "str | None": str}
 CONFIG = "config_file"
+_INSTALLED: Mapping[Key, Kind] = {("monitor", "spec"): Kind.MONITOR}
+"""Settings whose help names everything that is installed."""
 
 
 def trial_options(
-    *without: Key, defaults: Layer | None = None
+    *without: Key, defaults: Layer | None = None, file: bool = True
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a command the options that make a trial; it is called with `layers` instead of them.
 
     Args:
         *without: Settings that it has no options for.
         defaults: Other values than the configuration's, for this command.
+        file: Whether it has --config, too.
     """
     offered = [each for each in settings() if each.key not in without and each.option[0] == "-"]
 
@@ -42,16 +46,16 @@ def trial_options(
 
         @wraps(command)
         def call(**given: Any) -> None:
-            file = given.pop(CONFIG)
+            path = given.pop(CONFIG, None)
             typed = [(each, given.pop(_name(each))) for each in offered]
             layers = [] if defaults is None else [defaults]
-            if file is not None:
-                layers.append(file_layer(file))
+            if path is not None:
+                layers.append(file_layer(path))
             layers.append(_layer(typed))
             command(layers=layers, **given)
 
         order = [p for p in own if p.kind is p.POSITIONAL_OR_KEYWORD]
-        order += [*made, config, *(p for p in own if p.kind is p.KEYWORD_ONLY)]
+        order += [*made, *([config] if file else []), *(p for p in own if p.kind is p.KEYWORD_ONLY)]
         call.__signature__ = inspect.Signature(order)  # type: ignore[attr-defined]
         call.__annotations__ = {p.name: p.annotation for p in order}
         return call
@@ -69,6 +73,9 @@ def trial_layers(
         task: A shipped task, or one's own domain where a problem follows.
         problem: One's own problem.
 
+    Returns:
+        The layers, and before them one of the files that lie beside one's own domain or problem.
+
     Raises:
         TpvqaError: A task is given in two ways.
     """
@@ -85,7 +92,68 @@ def trial_layers(
         if task.lower().endswith(".pddl"):
             raise TpvqaError(f"{task} is a domain or a problem alone; name both, the domain first.")
         own = {("task", "name"): task}
-    return [*layers, Layer(own, dict.fromkeys(own, "argument"))]
+    given_layers = [*layers, Layer(own, dict.fromkeys(own, "argument"))]
+    return [_beside(given_layers), *given_layers]
+
+
+BESIDE = "beside the domain"
+"""Where a setting was given that nobody gave: its file lies there."""
+
+
+def _beside(layers: Sequence[Layer]) -> Layer:
+    """The questions and the world file that lie beside one's own domain or problem.
+
+    What was named goes before them; so does `questions: null` in a file.
+    """
+    from tpvqa.tasks import QUESTIONS, WORLD, beside
+
+    known = {key: value for layer in layers for key, value in layer.values.items()}
+    domain, problem = known.get(("task", "domain")), known.get(("task", "problem"))
+    found: dict[Key, Any] = {}
+    if isinstance(domain, str) and isinstance(problem, str):
+        for name, file in (("questions", QUESTIONS), ("world_file", WORLD)):
+            path = beside(file, Path(problem), Path(domain))
+            if ("task", name) not in known and path is not None:
+                found["task", name] = str(path)
+    return Layer(found, dict.fromkeys(found, BESIDE))
+
+
+def about_files(layers: Sequence[Layer]) -> list[str]:
+    """What to know of the files that are used without having been named."""
+    options = {each.key: each.option for each in settings()}
+    return [
+        f"{layer.values[key]} is used; name another with {options[key]}"
+        for layer in layers
+        for key, place in layer.places.items()
+        if place == BESIDE
+    ]
+
+
+def task_config(
+    task: str | None,
+    problem_after: Path | None,
+    domain: Path | None,
+    problem: Path | None,
+    questions: Path | None = None,
+) -> tuple[TaskConfig, list[str]]:
+    """The task that a command names, by arguments and options as `tpvqa run` takes them.
+
+    Returns:
+        The task, and what to know of files that were not named.
+
+    Raises:
+        TpvqaError: None is named, or one in two ways.
+    """
+    named = {"domain": domain, "problem": problem, "questions": questions}
+    values: dict[Key, Any] = {
+        ("task", name): _resolved(path) for name, path in named.items() if path is not None
+    }
+    places = {key: f"--{key[1]}" for key in values}
+    layers = trial_layers([Layer(values, places)], task, problem_after)
+    found = combined(layers).task
+    if found.name is None and (found.domain is None or found.problem is None):
+        raise TpvqaError("Name a shipped task, or give both --domain and --problem.")
+    return found, about_files(layers)
 
 
 def trial_config(
@@ -136,6 +204,8 @@ def _parameter(setting: Setting, defaults: Layer | None) -> inspect.Parameter:
     )
     shown = "" if known in (None, {}) else f" Default: {known}."
     says = setting.says if setting.says.endswith(".") else f"{setting.says}."
+    if setting.key in _INSTALLED:
+        says = f"{says} Installed: {', '.join(names(_INSTALLED[setting.key]))}."
     option = typer.Option(setting.option, help=f"{says}{shown}", show_default=False)
     return inspect.Parameter(
         _name(setting),
@@ -150,5 +220,7 @@ def _type(setting: Setting) -> Any:
         return list[str] | None
     if setting.file:
         return Path | None
+    if setting.text or get_origin(setting.kind) is Literal:
+        return str | None
     kind = setting.kind
     return _TYPES.get(str(kind), kind) | None

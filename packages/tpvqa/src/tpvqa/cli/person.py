@@ -8,8 +8,8 @@ from contextlib import AbstractContextManager, suppress
 from typing import TextIO
 
 from rich.console import Console
-from rich.markup import escape
 
+from tpvqa.cli.saying import marked, rendered
 from tpvqa.observation import Observation
 from tpvqa.questions import Question
 from tpvqa.vlm import Answer, Reply
@@ -52,10 +52,9 @@ class TerminalPerson:
     def _ask(self, question: Question, picture: str) -> Answer:
         with suppress(termios.error):  # what was typed before is no answer to this
             termios.tcflush(self._source, termios.TCIFLUSH)
-        self._console.print(
-            f"\a  [bold]{escape(question.text)}[/] "
-            + (f"[dim](picture {escape(picture)})[/]" if picture else "")
-        )
+        shown = f"[dim](picture {marked(picture)})[/]" if picture else ""
+        self._console.bell()
+        self._console.print(rendered(f"  [bold]{marked(question.text)}[/] {shown}"))
         typed = self._typed()
         if typed.strip() and typed.strip().lower() not in _REPLIES:
             typed = self._typed()  # once more

@@ -1,13 +1,15 @@
 """`tpvqa plan` and `tpvqa tasks`."""
 
 import json
-import sys
 import time
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from tpvqa.cli.options import task_config
+from tpvqa.cli.saying import tell
 
 if TYPE_CHECKING:
     from tpvqa.planning import PlanningResult
@@ -27,14 +29,23 @@ def register(app: typer.Typer) -> None:
     app.command()(tasks)
 
 
+Task = Annotated[
+    str | None,
+    typer.Argument(help="A shipped task (see `tpvqa tasks`), or your own domain file."),
+]
+Problem = Annotated[
+    Path | None, typer.Argument(metavar="[PROBLEM]", help="Your problem, after a domain file.")
+]
+Domain = Annotated[Path | None, typer.Option(help="Your own domain.")]
+OwnProblem = Annotated[Path | None, typer.Option("--problem", help="Your own problem.")]
+
+
 def plan(
-    task: Annotated[
-        str, typer.Argument(help="A shipped task (see `tpvqa tasks`), or a PDDL domain file.")
-    ],
-    problem: Annotated[
-        Path | None, typer.Argument(help="The PDDL problem file, after a domain file.")
-    ] = None,
+    task: Task = None,
+    problem_file: Problem = None,
     *,
+    domain: Domain = None,
+    problem: OwnProblem = None,
     from_state: Annotated[
         Path | None,
         typer.Option(
@@ -68,14 +79,15 @@ def plan(
     from tpvqa.errors import GroundingTimedOut, PlannerError
     from tpvqa.pddl import load_task
     from tpvqa.pddl.state_file import read_state
-    from tpvqa.planning import Crashed, Planner, TimedOut
-    from tpvqa.plugins import Kind, make
+    from tpvqa.planning import Crashed, TimedOut
+    from tpvqa.planning.making import make_planner
 
     start = time.perf_counter()
-    chosen: Planner = make(Kind.PLANNER, _spec(planner, optimal=optimal))
+    wanted, _ = task_config(task, problem_file, domain, problem)
+    chosen = make_planner(_spec(planner, optimal=optimal))
     result: PlanningResult
     try:
-        loaded = load_task(task, problem, timeout=timeout)
+        loaded = load_task(wanted.name or wanted.domain or "", wanted.problem, timeout=timeout)
         state = None if from_state is None else read_state(from_state, loaded)
         left = max(0.0, timeout - (time.perf_counter() - start))
         result = chosen.plan(loaded, state, timeout=left)
@@ -90,7 +102,8 @@ def plan(
     if as_json:
         print(json.dumps(_as_json(result), indent=2))
     else:
-        print(_as_text(result), file=sys.stderr if code else sys.stdout)
+        for line in _as_text(result).split("\n"):
+            tell(line, error=bool(code))
     raise typer.Exit(code)
 
 
@@ -158,7 +171,7 @@ def tasks(
 ) -> None:
     """List the shipped tasks with their goals and objects."""
     from tpvqa.pddl import load_task
-    from tpvqa.pddl.conditions import literals
+    from tpvqa.pddl.conditions import literals, said
     from tpvqa.planning.fast_downward import FastDownward
     from tpvqa.tasks import shipped_tasks
 
@@ -178,6 +191,6 @@ def tasks(
         print(json.dumps(entries, indent=2))
         return
     for files, task in loaded:
-        print(f"{files.name}  ({task.domain_name})")
-        print(f"  goal     {', '.join(map(str, literals(task.goal)))}")
-        print(f"  objects  {', '.join(task.objects)}")
+        tell(f"{files.name}  ({task.domain_name})")
+        tell(f"  goal     {said(task.goal)}")
+        tell(f"  objects  {', '.join(task.objects)}")

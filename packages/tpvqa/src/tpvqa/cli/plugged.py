@@ -6,13 +6,13 @@ or one is asked for that is not among tpvqa's own; so its module imports late wh
 is broken in one package leaves the commands of the others as they are.
 """
 
-import sys
 from collections.abc import MutableMapping
 from typing import Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from tpvqa.cli.saying import tell
 from tpvqa.distributions import remedy
 from tpvqa.errors import PluginError, TpvqaError, UnknownNameError
 from tpvqa.plugins import Kind, load, names
@@ -53,7 +53,7 @@ class PluggedGroup(TyperGroup):
 
     def _say_what_is_broken(self) -> None:
         for error in self._broken.values():
-            print(f"note: some commands are missing. {error}", file=sys.stderr)
+            tell(f"note: some commands are missing. {error}", error=True)
 
     def _plug(self) -> None:
         if self._plugged:

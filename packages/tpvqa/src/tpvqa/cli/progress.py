@@ -32,13 +32,13 @@ class CountBar:
             TimeRemainingColumn(),
             console=Console(stderr=True),
         )
-        self._bar.start()
         self._task = self._bar.add_task(self.what, total=None, rate="")
         self._first: int | None = None
         return self
 
     def __call__(self, done: int, total: int) -> None:
         """Show how far it is."""
+        self._bar.start()  # not before: what is wrong with the input is told without a bar
         if self._first is None:
             self._first = done
         elapsed = self._bar.tasks[0].elapsed or 0.0

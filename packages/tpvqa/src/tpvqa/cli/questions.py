@@ -4,14 +4,19 @@ import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn
 
 import typer
 
-from tpvqa.cli.plan import CRASHED, TIMED_OUT, UNSOLVABLE
+from tpvqa.cli.options import task_config
+from tpvqa.cli.plan import CRASHED, TIMED_OUT, UNSOLVABLE, Domain, OwnProblem, Problem, Task
+from tpvqa.cli.saying import cell, plain, tell
 
 if TYPE_CHECKING:
-    from tpvqa.pddl import Action, Literal, Task
+    from tpvqa.config import TaskConfig
+    from tpvqa.pddl import Action
+    from tpvqa.pddl import Literal as FactLiteral
+    from tpvqa.pddl import Task as LoadedTask
     from tpvqa.questions import Question, QuestionBook
     from tpvqa.vlm import Answer
 
@@ -28,13 +33,18 @@ def register(app: typer.Typer) -> None:
 
 
 def questions(
-    task: Annotated[str | None, typer.Argument(help="A shipped task, see `tpvqa tasks`.")] = None,
+    task: Task = None,
+    problem_file: Problem = None,
     *,
-    domain: Annotated[Path | None, typer.Option(help="Your own domain.")] = None,
-    problem: Annotated[Path | None, typer.Option(help="Your own problem.")] = None,
+    domain: Domain = None,
+    problem: OwnProblem = None,
     questions_file: Annotated[
         Path | None,
-        typer.Option("--questions", help="Questions for the domain; fallbacks without it."),
+        typer.Option(
+            "--questions",
+            help="Questions for your domain. Default: the questions.yaml beside it, if there is "
+            "one, else fallbacks.",
+        ),
     ] = None,
     timeout: Annotated[
         float,
@@ -43,18 +53,24 @@ def questions(
             min=0.001,
         ),
     ] = 60.0,
+    wording: Annotated[
+        Literal["usual", "paper"],
+        typer.Option(help="How whole actions are asked about: paper is without articles."),
+    ] = "usual",
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Print every question of a task's plan, action by action, for each way of asking."""
     from tpvqa.errors import GroundingTimedOut
     from tpvqa.planning import Crashed, Plan, TimedOut, Unsolvable
-    from tpvqa.plugins import Kind, make
+    from tpvqa.planning.making import make_planner
 
     try:
-        loaded, book = _load(task, domain, problem, questions_file, timeout)
+        wanted, notes = task_config(task, problem_file, domain, problem, questions_file)
+        loaded, book = _load(wanted, timeout)
     except GroundingTimedOut as error:
         _no_questions(str(error), TIMED_OUT)
-    planner = make(Kind.PLANNER, "fast-downward")
+    book = book.worded(wording)
+    planner = make_planner("fast-downward")
     try:
         result = planner.plan(loaded, timeout=timeout)
     finally:
@@ -71,8 +87,8 @@ def questions(
         case Crashed(reason):
             _no_questions(f"the planner crashed: {reason}", CRASHED)
     steps = list(_steps(loaded, book, actions))
-    for notice in () if as_json else book.notices:
-        print(f"note: {notice}", file=sys.stderr)
+    for notice in () if as_json else (*notes, *book.notices):
+        tell(f"note: {notice}", error=True)
     if as_json:
         _print_json(loaded, book, steps)
     elif sys.stdout.isatty():
@@ -100,13 +116,14 @@ def ask(
     from tpvqa.questions import FactQuestion, Way
     from tpvqa.vlm.making import make_vlm
     from tpvqa.vlm.pictures import observe_file
+    from tpvqa.vlm.sight import ask_seeing
 
     observation = observe_file(image)
     model, _ = make_vlm(vlm or default_vlm(), {"base_url": base_url})
     # A VLM that looks at pictures goes by the words alone.
     asked = [FactQuestion(text, Way.PRECONDITION, Atom("asked")) for text in question]
     try:
-        answers = model.ask(observation, asked)
+        answers = ask_seeing(model, observation, asked)
     finally:
         if isinstance(model, Closing):
             model.close()
@@ -115,38 +132,30 @@ def ask(
         print(json.dumps({"image": str(image), "vlm": model.name, "answers": rows}, indent=1))
     else:
         for answer in answers:
-            print(_answer_line(answer))
+            tell(_answer_line(answer))
 
 
-def _load(
-    task: str | None,
-    domain: Path | None,
-    problem: Path | None,
-    questions_file: Path | None,
-    timeout: float,
-) -> "tuple[Task, QuestionBook]":
-    from tpvqa.errors import TpvqaError
+def _load(wanted: "TaskConfig", timeout: float) -> "tuple[LoadedTask, QuestionBook]":
     from tpvqa.pddl import load_task
     from tpvqa.questions import QuestionBook
     from tpvqa.tasks import find_task
 
-    if task is None and domain is not None and problem is not None:
-        loaded = load_task(domain, problem, timeout=timeout)
-    elif task is not None and domain is None and problem is None:
-        loaded = load_task(task, timeout=timeout)
-        questions_file = questions_file or find_task(task).questions
+    questions: str | Path | None = wanted.questions
+    if wanted.name is not None:
+        loaded = load_task(wanted.name, timeout=timeout)
+        questions = questions or find_task(wanted.name).questions
     else:
-        raise TpvqaError("Give either a shipped task, or both --domain and --problem.")
-    return loaded, QuestionBook.load(questions_file, loaded)
+        loaded = load_task(wanted.domain or "", wanted.problem, timeout=timeout)
+    return loaded, QuestionBook.load(questions, loaded)
 
 
 def _no_questions(why: str, code: int) -> NoReturn:
-    print(f"error: {why}", file=sys.stderr)
+    tell(f"error: {why}", error=True)
     raise typer.Exit(code)
 
 
 def _steps(
-    task: "Task", book: "QuestionBook", plan: "tuple[Action, ...]"
+    task: "LoadedTask", book: "QuestionBook", plan: "tuple[Action, ...]"
 ) -> "Iterator[tuple[Action, list[Question]]]":
     """Each action of a plan with its questions, before those after it."""
     state = task.init
@@ -158,7 +167,7 @@ def _steps(
 
 
 def _print_json(
-    task: "Task", book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]"
+    task: "LoadedTask", book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]"
 ) -> None:
     from tpvqa.questions import FactQuestion
 
@@ -189,17 +198,17 @@ def _print_json(
     print(json.dumps({"task": task.name, "actions": actions, "notices": book.notices}, indent=1))
 
 
-def _pddl(literal: "Literal") -> str:
+def _pddl(literal: "FactLiteral") -> str:
     fact = literal.atom.pddl()
     return fact if literal.positive else f"(not {fact})"
 
 
 def _print_lines(book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]") -> None:
     for number, (action, asked) in enumerate(steps, start=1):
-        print(f"{number}. {book.say(action)}")
+        tell(f"{number}. {book.say(action)}")
         for question in asked:
             answer = "yes" if question.expected else "no"
-            print(f"   {question.way.value}: {question.text} {answer}")
+            tell(f"   {question.way.value}: {question.text} {answer}")
 
 
 def _print_table(book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]") -> None:
@@ -214,9 +223,9 @@ def _print_table(book: "QuestionBook", steps: "list[tuple[Action, list[Question]
     for number, (action, asked) in enumerate(steps, start=1):
         for at, question in enumerate(asked):
             answer = Text("yes", "green") if question.expected else Text("no", "red")
-            said = Text(f"{number}. {book.say(action)}" if at == 0 else "", "bold")
+            said = Text(f"{number}. {plain(book.say(action))}" if at == 0 else "", "bold")
             last = at == len(asked) - 1
-            table.add_row(said, question.way.value, Text(question.text), answer, end_section=last)
+            table.add_row(said, question.way.value, cell(question.text), answer, end_section=last)
     Console().print(table)
 
 

@@ -6,22 +6,32 @@ import sys
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tpvqa.cli.notices import about_calibration
-from tpvqa.cli.options import trial_config, trial_layers, trial_options
-from tpvqa.config.layers import Layer, as_yaml
+from tpvqa.cli.notices import about_calibration, about_vlm, about_words
+from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_options
+from tpvqa.cli.plan import Problem, Task
+from tpvqa.cli.saying import tell
+from tpvqa.config.layers import NAMEABLE, Layer, as_yaml, settings
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
     from tpvqa.cli.person import TerminalPerson
     from tpvqa.cli.terminal import EpisodeView
+    from tpvqa.config import TrialConfig
+    from tpvqa.errors import WriteError
     from tpvqa.events import Ended
     from tpvqa.questions import QuestionBook
 
-_EXIT = "Exit codes: 0 goal reached, 1 not reached, 2 bad input, 130 interrupted."
+_EXIT = (
+    "Exit codes: 0 goal reached, 1 not reached, 2 bad input, 6 something could not be written "
+    "(what was is whole, and can be gone on with), 130 interrupted."
+)
+Verbose = Annotated[
+    bool, typer.Option("--verbose", "-v", help="Give the reasons of decisions in full.")
+]
 _OPTIMAL = Layer({("planner", "spec"): "fast-downward:optimal"}, {("planner", "spec"): "--optimal"})
 
 
@@ -34,13 +44,6 @@ def register(app: typer.Typer) -> None:
     app.command()(report)
 
 
-Task = Annotated[
-    str | None,
-    typer.Argument(help="A shipped task (see `tpvqa tasks`), or your own domain file."),
-]
-Problem = Annotated[
-    Path | None, typer.Argument(metavar="[PROBLEM]", help="Your problem, after a domain file.")
-]
 Optimal = Annotated[
     bool, typer.Option("--optimal", help="Plans of least cost: --planner fast-downward:optimal.")
 ]
@@ -57,6 +60,7 @@ def run(
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the result as JSON; the trial goes to stderr.")
     ] = False,
+    verbose: Verbose = False,
 ) -> None:
     """Run one trial: plan, look, ask, act, and repeat or replan where the pictures say so."""
     from tpvqa.assembly import Trial
@@ -64,7 +68,8 @@ def run(
     from tpvqa.episodes import EpisodeWriter
     from tpvqa.errors import TpvqaError
 
-    config = trial_config([*layers, *_optimal(optimal)], task, problem_file)
+    layers = trial_layers([*layers, *_optimal(optimal)], task, problem_file)
+    config = trial_config(layers)
     views: list[EpisodeView] = []
     with Trial(config, person=_person(views, as_json=as_json)) as trial:
         known = config.monitor
@@ -73,21 +78,30 @@ def run(
                 f"The monitor {known.spec} weighs no answers: leave out --calibration and "
                 "--experience, or take --monitor belief."
             )
-        for notice in (*trial.book.notices, *_about_calibration(trial)):
-            print(f"note: {notice}", file=sys.stderr)
+        told = (
+            *about_files(layers),
+            *about_words(trial.book),
+            *about_vlm(trial.config, trial.vlm_spec),
+            *_about_calibration(trial),
+        )
+        for notice in told:
+            tell(f"note: {notice}", error=True)
         trial.check()
         folder = out or _new_folder(trial.task.name, config.seed, config.episode)
+        _can_be_kept(config)
         writer = EpisodeWriter(folder)
+        if writer.begun_anew:
+            tell(f"note: {folder} held the torn beginning of an episode; begun anew", error=True)
         try:
-            with _view(as_json=as_json, book=trial.book) as view:
+            with _view(as_json=as_json, verbose=verbose, book=trial.book) as view:
                 views.append(view)
                 ended = trial.run(writer, folder=folder, listeners=[view])
         except Interrupted as stop:
             ended = stop.ended
         finally:
             writer.close()
-        _keep_experience(trial, ended)
-    _finish(ended, folder, as_json=as_json)
+        lost = _keep_experience(trial, ended)
+    _finish(ended, folder, lost, as_json=as_json)
 
 
 @trial_options()
@@ -115,36 +129,46 @@ def _optimal(wanted: bool) -> list[Layer]:
     return [_OPTIMAL] if wanted else []
 
 
+@trial_options(*(each.key for each in settings() if each.key not in NAMEABLE), file=False)
 def resume(
     episode: Annotated[Path, typer.Argument(help="Folder of an unfinished episode.")],
     *,
+    layers: Sequence[Layer],
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+    verbose: Verbose = False,
 ) -> None:
-    """Go on with an episode that was interrupted or killed, to the end it would have had."""
+    """Go on with an episode that was interrupted or killed, to the end it would have had.
+
+    An episode may be a stranger's: addresses, files, folders and options of plug-ins that its log
+    names are not used unless they are given here. Where one is missing, the command to use is said.
+    """
     from tpvqa.drivers import Interrupted
     from tpvqa.episodes.log import episode_folder
     from tpvqa.resuming import resume as go_on
 
     episode = episode_folder(episode)
     views: list[EpisodeView] = []
-    with _view(as_json=as_json) as view:
+    lost: list[WriteError | None] = []
+    with _view(as_json=as_json, verbose=verbose) as view:
         views.append(view)
         try:
             ended = go_on(
                 episode,
+                named=_named(layers),
                 listeners=[view],
                 person=_person(views, as_json=as_json),
-                then=_keep_experience,
+                then=lambda trial, ended: lost.append(_keep_experience(trial, ended)),
             )
         except Interrupted as stop:
             ended = stop.ended
-    _finish(ended, episode, as_json=as_json)
+    _finish(ended, episode, lost[0] if lost else None, as_json=as_json)
 
 
 def show(
     episode: Annotated[Path, typer.Argument(help="Folder of an episode.")],
     *,
     as_json: Annotated[bool, typer.Option("--json", help="Print the events as JSON.")] = False,
+    verbose: Verbose = False,
 ) -> None:
     """Print an episode again."""
     from rich.console import Console
@@ -161,11 +185,11 @@ def show(
             )
         )
         return
-    view = EpisodeView(Console(), live=False)
+    view = EpisodeView(Console(), live=False, verbose=verbose)
     for event in events:
         view(event)
     if not isinstance(events[-1], Ended):
-        print(f"unfinished; it can be gone on with: tpvqa resume {shlex.quote(str(episode))}")
+        tell(f"unfinished; it can be gone on with: tpvqa resume {shlex.quote(str(episode))}")
 
 
 def report(
@@ -178,7 +202,7 @@ def report(
     """Write one self-contained HTML page about an episode."""
     from tpvqa.episodes.report import write_report
 
-    print(write_report(episode, out))
+    tell(write_report(episode, out))
 
 
 def _new_folder(task: str, seed: int, episode: int) -> Path:
@@ -189,7 +213,9 @@ def _new_folder(task: str, seed: int, episode: int) -> Path:
     return folder
 
 
-def _view(*, as_json: bool, book: "QuestionBook | None" = None):  # type: ignore[no-untyped-def]
+def _view(  # type: ignore[no-untyped-def]
+    *, as_json: bool, verbose: bool, book: "QuestionBook | None" = None
+):
     from rich.console import Console
 
     from tpvqa.cli.terminal import EpisodeView
@@ -198,7 +224,7 @@ def _view(*, as_json: bool, book: "QuestionBook | None" = None):  # type: ignore
     return (
         nullcontext(_silent)
         if as_json and not console.is_terminal
-        else EpisodeView(console, book=book)
+        else EpisodeView(console, book=book, verbose=verbose)
     )
 
 
@@ -216,23 +242,29 @@ def _about_calibration(trial: "Trial") -> list[str]:
     return [*notices, *about_calibration(vlm, calibration)]
 
 
-def _keep_experience(trial: "Trial", ended: "Ended") -> None:
-    """Write what was learned where the user keeps it, unless other trials wrote there since."""
+def _keep_experience(trial: "Trial", ended: "Ended") -> "WriteError | None":
+    """Write what was learned where the user keeps it, unless other trials wrote there since; gives
+    why it could not be written."""
     from tpvqa.belief.experience import Experience
+    from tpvqa.errors import WriteError
 
     learned, file = trial.experience, trial.config.monitor.experience
     if learned is None or file is None or ended.because == "cancelled":
-        return
+        return None
     path = Path(file)
     before = 0 if trial.known is None else trial.known.trials
     there = Experience.load(path)
     if there is not None and there.trials != before:
-        print(
+        tell(
             f"note: {path} was written by other trials since this one began, and is left as it is",
-            file=sys.stderr,
+            error=True,
         )
-        return
-    learned.save(path)
+        return None
+    try:
+        learned.save(path)
+    except WriteError as error:
+        return error
+    return None
 
 
 def _person(views: "list[EpisodeView]", *, as_json: bool) -> "TerminalPerson | None":
@@ -248,11 +280,40 @@ def _person(views: "list[EpisodeView]", *, as_json: bool) -> "TerminalPerson | N
     return TerminalPerson(console, lambda: views[0].aside())
 
 
+def _named(layers: Sequence[Layer]) -> dict[str, Any]:
+    """What a command line names, by parts."""
+    found: dict[str, Any] = {}
+    for layer in layers:
+        for (part, *name), value in layer.values.items():
+            if name:
+                found.setdefault(part, {})[name[0]] = value
+            else:
+                found[part] = value
+    return found
+
+
+def _can_be_kept(config: "TrialConfig") -> None:
+    """See that what is learned can be written, before a robot moves.
+
+    Raises:
+        WriteError: It cannot.
+    """
+    from tpvqa.belief.writing import writable
+
+    if config.monitor.experience is not None:
+        writable(Path(config.monitor.experience), remedy="Name another file with --experience")
+
+
 def _silent(_event: object) -> None:
     """Show nothing."""
 
 
-def _finish(ended: "Ended", folder: Path, *, as_json: bool) -> None:
+def _finish(ended: "Ended", folder: Path, lost: "WriteError | None", *, as_json: bool) -> None:
+    """Print how it ended, and exit accordingly.
+
+    Raises:
+        WriteError: `lost`, what could not be written after the end.
+    """
     if as_json:
         from tpvqa.episodes import read_episode
         from tpvqa.events import Started
@@ -280,7 +341,9 @@ def _finish(ended: "Ended", folder: Path, *, as_json: bool) -> None:
         )
     else:
         named = shlex.quote(str(folder))
-        print(f"episode: {folder}  (tpvqa show {named} · tpvqa report {named})")
+        tell(f"episode: {folder}  (tpvqa show {named} · tpvqa report {named})")
+    if lost is not None:
+        raise lost
     if ended.because == "cancelled":
         raise typer.Exit(130)
     reached = ended.believed_goal if ended.completed is None else ended.completed

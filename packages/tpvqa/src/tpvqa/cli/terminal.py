@@ -2,14 +2,17 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from typing import NamedTuple
 
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
-from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
 from tpvqa.cli.belief_bars import BeliefBars
+from tpvqa.cli.brief import brief
+from tpvqa.cli.saying import marked, plain, rendered
+from tpvqa.episodes.agreement import Agreement
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.events import Decision, Ended, Event, Exchange, TrialState
 from tpvqa.events.events import (
@@ -27,13 +30,9 @@ from tpvqa.events.events import (
 )
 from tpvqa.questions import FactWords, QuestionBook
 from tpvqa.vlm import Reply
+from tpvqa.worlds import Report
 
-_REPLY_STYLE = {
-    Reply.YES: "green",
-    Reply.NO: "red",
-    Reply.UNKNOWN: "dim",
-    Reply.CANNOT_SEE: "dim",
-}
+_AGREEMENT_STYLE = {True: "green", False: "red", None: "dim"}
 _COURSE_STYLE = {
     Decision.GO_ON: "green",
     "skip ahead": "cyan",
@@ -44,7 +43,10 @@ _COURSE_STYLE = {
     Decision.GIVE_UP: "red",
 }
 _BAR = 10
+_HANGING = 4
 _MARKS = 40
+_ROOM = 100
+"""Columns of a decision's line, at most."""
 _MARK = {Reply.YES: "y", Reply.NO: "n"}
 
 
@@ -55,6 +57,7 @@ class EpisodeView:
         console: Where to print.
         truth: Whether to print what a simulated world knows about an action's outcome.
         live: Whether to keep the plan in view; by default in a terminal only.
+        verbose: Whether to give the reasons of decisions in full.
         book: The questions in whose words facts are said; by default those that the log keeps.
     """
 
@@ -64,15 +67,17 @@ class EpisodeView:
         *,
         truth: bool = True,
         live: bool | None = None,
+        verbose: bool = False,
         book: QuestionBook | None = None,
     ):
-        self._console, self._truth = console, truth
+        self._console, self._truth, self._verbose = console, truth, verbose
         self._words = None if book is None else FactWords(book)
+        self._agreement: Agreement | None = None
         self._bars = BeliefBars(bars=console.is_terminal)
         self._state = TrialState()
         self._headed: tuple[PlanMade | None, int, int] | None = None
         self._told = False
-        self._gathered: dict[str, list[Exchange]] = {}
+        self._gathered: dict[str, list[_Told]] = {}
         wanted = console.is_terminal if live is None else live
         self._live = Live(console=console, auto_refresh=False, transient=True) if wanted else None
 
@@ -107,9 +112,9 @@ class EpisodeView:
             case Started():
                 noise = " (a noise model, not a VLM)" if event.noise_model else ""
                 self._line(
-                    f"[bold]{escape(event.task)}[/]  [dim]world[/] {escape(event.world)}  "
-                    f"[dim]monitor[/] {escape(event.monitor)}  "
-                    f"[dim]VLM[/] {escape(event.vlm)}{noise}  [dim]seed[/] {event.config.seed}"
+                    f"[bold]{marked(event.task)}[/]  [dim]world[/] {marked(event.world)}  "
+                    f"[dim]monitor[/] {marked(event.monitor)}  "
+                    f"[dim]VLM[/] {marked(event.vlm)}{noise}  [dim]seed[/] {event.config.seed}"
                 )
             case PlanMade():
                 if not event.considered:
@@ -118,7 +123,7 @@ class EpisodeView:
                 self._head(before)
                 names = ", ".join(frame.file for frame in event.frames)
                 if names:
-                    self._line(f"  [dim]look {event.look}: {escape(names)}[/]")
+                    self._line(f"  [dim]look {event.look}: {marked(names)}[/]")
             case Asked():
                 self._head(before)
                 self._told = True
@@ -127,32 +132,35 @@ class EpisodeView:
             case Believed():
                 gone = ", ".join(map(self._say, event.removed)) or "nothing"
                 new = ", ".join(map(self._say, event.added)) or "nothing"
-                self._line(f"  [dim]now believed: {escape(new)}; no longer: {escape(gone)}[/]")
+                self._line(f"  [dim]now believed: {marked(new)}; no longer: {marked(gone)}[/]")
             case Decided():
                 self._head(before, event.step)
                 self._show_decision(event)
                 self._show_belief(event)
             case Acting():
                 self._head(before, event.step)
-                self._line(f"  [blue]▶ {escape(event.action.said)}[/]")
+                self._line(f"  [blue]▶ {marked(event.action.said)}[/]")
             case Acted():
                 self._show_outcome(event)
             case Resumed():
                 self._line("  [yellow]gone on after an interruption: looking anew[/]")
             case ListenerDropped():
-                self._line(f"  [yellow]{escape(event.listener)} broke: {escape(event.error)}[/]")
+                self._line(f"  [yellow]{marked(event.listener)} broke: {marked(event.error)}[/]")
             case Ended():
                 self._show_end(event)
         if self._live is not None:
             self._live.update(self._plan_panel(), refresh=True)
 
     def _show_answers(self) -> None:
+        if self._agreement is None:
+            self._agreement = Agreement(self._fact_words())
         observed = self._state.observed
         for each in self._state.latest:
+            told = _Told(each, self._agreement.of(each, self._state))
             if observed is not None and observed.frames:
-                self._line(_answer_line(each))
+                self._line(_answer_line(told))
             else:
-                self._gathered.setdefault(each.question.text, []).append(each)
+                self._gathered.setdefault(each.question.text, []).append(told)
 
     def _show_gathered(self) -> None:
         """Of looks without pictures, one line for all answers to a question."""
@@ -161,7 +169,13 @@ class EpisodeView:
         self._gathered.clear()
 
     def _line(self, text: str) -> None:
-        self._console.print(text, highlight=False, soft_wrap=True)
+        if not self._console.is_terminal:
+            self._console.print(rendered(text), highlight=False, soft_wrap=True)
+            return
+        lines = rendered(text).wrap(self._console, self._console.width - _HANGING)
+        for line in lines:
+            line.rstrip()
+        self._console.print(Text("\n" + " " * _HANGING).join(lines), highlight=False)
 
     def _head(self, state: TrialState, step: int | None = None) -> None:
         """Name the step, once, before the first that happens in it."""
@@ -172,13 +186,15 @@ class EpisodeView:
             return
         self._headed = here
         again = f" [yellow](attempt {attempt + 1})[/]" if attempt else ""
-        self._line(f"[bold]{step + 1}. {escape(state.plan.plan[step].said)}[/]{again}")
+        self._line(f"[bold]{step + 1}. {marked(state.plan.plan[step].said)}[/]{again}")
 
     def _show_decision(self, event: Decided) -> None:
         explained = bool(event.belief) and event.when == "after"
         if self._told or explained or event.decision is not Decision.GO_ON:
-            style = _COURSE_STYLE[event.course]
-            self._line(f"  [{style}]→ {event.course}:[/] {escape(event.reason)}")
+            style, reason = _COURSE_STYLE[event.course], event.reason
+            if not self._verbose:
+                reason = brief(reason, _ROOM - len(f"  → {event.course}: "))
+            self._line(f"  [{style}]→ {event.course}:[/] {marked(reason)}")
         self._told = False
 
     def _show_belief(self, event: Decided) -> None:
@@ -188,49 +204,67 @@ class EpisodeView:
             self._line(line)
 
     def _say(self, fact: str) -> str:
+        return self._fact_words().say(fact)
+
+    def _fact_words(self) -> FactWords:
         if self._words is None:
             started = self._state.started
             self._words = FactWords() if started is None else words_of(started)
-        return self._words.say(fact)
+        return self._words
 
     def _show_plan(self, event: PlanMade, *, again: bool) -> None:
         if event.result != "plan":
-            self._line(f"[red]no plan: {event.result}[/] {escape(event.reason)}")
-            return
+            return  # the trial ends by it, and its last line says why
         self._headed = None
         steps = " · ".join(action.said for action in event.plan) or "nothing left to do"
         word = "new plan" if again else "plan"
         self._line(
-            f"[cyan]{word}[/] {escape(steps)} "
-            f"[dim]({event.planner}, {event.seconds * 1e3:.0f} ms)[/]"
+            f"[cyan]{word}[/] {marked(steps)} "
+            f"[dim]({marked(event.planner)}, {event.seconds * 1e3:.0f} ms)[/]"
         )
 
     def _show_outcome(self, event: Acted) -> None:
-        if event.message:
-            self._line(f"  [dim]the robot reports {event.report}: {escape(event.message)}[/]")
+        if event.message or event.report is not Report.DONE:
+            why = f": {marked(event.message)}" if event.message else ""
+            self._line(f"  [dim]the robot reports {event.report}{why}[/]")
         if not self._truth or event.truth is None:
             return
         failure, undone = event.truth.failure, event.truth.undone
-        parts = [] if failure is None else [f"in truth {failure.said}"]
+        parts = [] if failure is None else [failure.said]
         if undone is not None:
             parts.append(f"{self._say(undone)} ended: {event.truth.undoing}")
         if parts:
-            self._line(f"  [dim italic]{escape('; '.join(parts))}[/]")
+            self._line(f"  [dim italic]in truth: {marked('; '.join(parts))}[/]")
 
     def _show_end(self, event: Ended) -> None:
-        counts = (
-            f"{event.actions} actions, {event.questions} questions, {event.repeats} repeats, "
-            f"{event.replans} replans"
-        )
         if event.completed:
             headline = "[bold green]goal reached[/]"
-        elif event.completed is None:
-            style = "green" if event.believed_goal else "red"
-            headline = f"[bold {style}]ended: {event.because}[/]"
+        elif event.completed is None and event.believed_goal:
+            headline = "[bold green]goal reached[/], as is believed"
+        elif event.because == "goal":
+            headline = "[bold red]goal not reached[/], though it was believed to be"
         else:
-            headline = f"[bold red]goal not reached[/] ({escape(event.ending)})"
-        message = f"; [dim]{escape(event.message)}[/]" if event.message else ""
-        self._line(f"{headline}: {counts}{message}")
+            headline = f"[bold red]goal not reached[/]: {marked(self._why(event))}"
+        counts = ", ".join(
+            f"{count} {what}" + "s" * (count != 1)
+            for count, what in (
+                (event.actions, "action"),
+                (event.questions, "question"),
+                (event.repeats, "repeat"),
+                (event.replans, "replan"),
+            )
+        )
+        self._line(f"{headline} [dim]({counts})[/]")
+
+    def _why(self, event: Ended) -> str:
+        """Why a trial ended short of its goal, and where."""
+        decided, plan, step = self._state.decided, self._state.plan, self._state.index
+        why: str = event.because
+        if event.message and (decided is None or event.message != decided.reason):
+            why = f"{why}: {event.message}"
+        if plan is None or step >= len(plan.plan):
+            return why
+        return f"{why}, at step {step + 1} of {len(plan.plan)}, {plan.plan[step].said}"
 
     def _plan_panel(self) -> RenderableType:
         state = self._state
@@ -245,33 +279,50 @@ class EpisodeView:
                 mark, style = "▶", "bold"
             else:
                 mark, style = " ", "dim"
-            table.add_row(Text(mark, style), Text(f"{number + 1}. {action.said}", style))
+            table.add_row(Text(mark, style), Text(f"{number + 1}. {plain(action.said)}", style))
         return Group(Text("─" * min(40, self._console.width), "dim"), table)
 
 
-def _answers_line(told: Sequence[Exchange]) -> str:
+class _Told(NamedTuple):
+    """An answer, and whether it agrees with what is expected."""
+
+    exchange: Exchange
+    agrees: bool | None
+
+
+def _answers_line(told: Sequence[_Told]) -> str:
     """Many answers to one question, counted, in the order in which they came."""
-    question, replies = told[0].question, [each.answer.reply for each in told]
+    question = told[0].exchange.question
+    replies = [each.exchange.answer.reply for each in told]
+    styles = {each.exchange.answer.reply: _AGREEMENT_STYLE[each.agrees] for each in told}
     counts = ", ".join(
-        f"[{_REPLY_STYLE[reply]}]{count} {reply}[/]"
-        for reply in Reply
-        if (count := replies.count(reply))
+        f"[{styles[reply]}]{count} {reply}[/]" for reply in Reply if (count := replies.count(reply))
     )
     marks = "".join(_MARK.get(reply, "·") for reply in replies[:_MARKS])
     more = "…" if len(replies) > _MARKS else ""
-    return f"  · {escape(question.text)} {counts}  [dim]{marks}{more}[/]"
+    ahead = sum(1 if each.agrees else -1 for each in told if each.agrees is not None)
+    mark = _mark(told[0] if not ahead else told[0]._replace(agrees=ahead > 0))
+    return f"  {mark} {marked(question.text)} {counts}  [dim]{marks}{more}[/]"
 
 
-def _answer_line(told: Exchange) -> str:
-    question, answer = told.question, told.answer
-    style = _REPLY_STYLE[answer.reply]
-    mark = {True: "[green]✓[/]", False: "[red]✗[/]", None: "[dim]·[/]"}[told.agrees]
+def _answer_line(told: _Told) -> str:
+    question, answer = told.exchange.question, told.exchange.answer
+    style = _AGREEMENT_STYLE[told.agrees]
     if answer.p_yes is None:
         chance = ""
     else:
         filled = round(answer.p_yes * _BAR)
         chance = f" [{style}]{'▰' * filled}[/][dim]{'▱' * (_BAR - filled)}[/] {answer.p_yes:.2f}"
-    why = f" [dim]{escape(answer.text)}[/]" if answer.reply is Reply.UNKNOWN else ""
+    abstains = answer.reply is Reply.UNKNOWN or answer.source == "camera"
+    why = f" [dim]{marked(answer.text)}[/]" if abstains else ""
     if answer.source == "person":
         why = f"{why} [dim](you)[/]"
-    return f"  {mark} {escape(question.text)} [{style}]{answer.reply}[/]{chance}{why}"
+    return f"  {_mark(told)} {marked(question.text)} [{style}]{answer.reply}[/]{chance}{why}"
+
+
+def _mark(told: _Told) -> str:
+    """✓ agrees, ✗ contradicts, ? is no answer, · answers what nobody had an expectation of."""
+    if told.agrees is None:
+        no_answer = told.exchange.answer.reply not in (Reply.YES, Reply.NO)
+        return "[yellow]?[/]" if no_answer else "[dim]·[/]"
+    return "[green]✓[/]" if told.agrees else "[red]✗[/]"

@@ -3,18 +3,30 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from tpvqa.config.model import TrialConfig
-from tpvqa.errors import ConfigError
+from tpvqa.errors import ConfigError, cut
 from tpvqa.yaml_places import Place, read_yaml
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 Key = tuple[str, ...]
 """Where a setting stands in the configuration: ("limits", "actions")."""
+NAMEABLE: tuple[Key, ...] = (
+    *(("world", name) for name in ("spec", "pictures", "simulator")),
+    *(("vlm", name) for name in ("spec", "base_url")),
+    *(("monitor", name) for name in ("spec", "majority", "experience")),
+    ("planner", "spec"),
+    ("options",),
+)
+"""What whoever goes on with an episode may name. All else is the log's: its texts are used instead
+of the files that it names, and so is the calibration that it holds."""
 DEFAULT = "default"
 SPECS = {"task": "name", "world": "spec", "vlm": "spec", "monitor": "spec", "planner": "spec"}
 """The setting of a part for which a name alone stands."""
@@ -31,6 +43,7 @@ class Setting:
         default: Its value where none is given.
         kind: Its type.
         file: Whether it names a file or a folder.
+        text: Whether the command line takes any text for it.
     """
 
     key: Key
@@ -39,6 +52,7 @@ class Setting:
     default: Any
     kind: Any
     file: bool
+    text: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +89,7 @@ def _settings(model: type[BaseModel], above: Key) -> Iterator[Setting]:
                 default,
                 info.annotation,
                 bool(told["file"]),
+                bool(told["text"]),
             )
 
 
@@ -112,7 +127,47 @@ def combined(layers: Sequence[Layer]) -> TrialConfig:
                 (layer.places[k] for layer in layers for k in layer.places if k[:1] == key[:1]),
                 DEFAULT,
             )
-        raise ConfigError(f"{place}: {'.'.join(key)}: {first_error['msg']}") from None
+        named = place if place.startswith("--") else f"{place}: {'.'.join(key)}:"
+        raise ConfigError(f"{named} {_what_is_wrong(first_error)}") from None
+
+
+_BOUNDS = {
+    "greater_than_equal": ("ge", "at least"),
+    "less_than_equal": ("le", "at most"),
+    "greater_than": ("gt", "more than"),
+    "less_than": ("lt", "less than"),
+}
+_KINDS = {
+    "int": "a whole number",
+    "float": "a number",
+    "finite": "a number",
+    "string": "text",
+    "bool": "true or false",
+    "dict": "'name: value' entries",
+    "mapping": "'name: value' entries",
+    "model": "'name: value' entries",
+}
+
+
+def _what_is_wrong(error: "ErrorDetails") -> str:
+    """What pydantic says of a value, in our words."""
+    kind, told = error["type"], error.get("ctx", {})
+    if kind == "value_error":
+        return f"does not fit: {told['error']}"
+    if kind in _BOUNDS:
+        key, words = _BOUNDS[kind]
+        wanted = f"{words} {told[key]:g}"
+    elif kind == "literal_error":
+        wanted = str(told["expected"])
+    elif kind == "string_too_short":
+        wanted = "text, not nothing"
+    else:
+        wanted = _KINDS.get(kind.partition("_")[0], "")
+    if not wanted:
+        return f"does not fit: {error['msg']}"
+    value = error["input"]
+    said = f"{value:g}" if isinstance(value, float) else cut(value)
+    return f"must be {wanted}, got {said}"
 
 
 def origin(key: Key, layers: Sequence[Layer]) -> str:
@@ -164,8 +219,10 @@ def _value(place: Place) -> Any:
     loader = yaml.SafeLoader("")
     try:
         return loader.construct_object(place.node, deep=True)
-    except (yaml.YAMLError, ValueError) as error:
-        raise place.wrong(f"cannot be read: {error}") from None
+    except (yaml.YAMLError, AttributeError, LookupError, TypeError, ValueError) as error:
+        # PyYAML trips in many ways over what explicit tags promise and values do not keep.
+        problem = getattr(error, "problem", None) or error
+        raise place.wrong(f"cannot be read: {cut(problem)}") from None
     finally:
         loader.dispose()
 

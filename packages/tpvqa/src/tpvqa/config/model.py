@@ -7,7 +7,9 @@ that, `tpvqa config` prints it, `started` stores it, and `resume` and the bench 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from tpvqa.addresses import checked_address
 
 LEAST_ACTIONS = 60
 """The limit of actions where none is given, unless `PLANS` times the first plan is more."""
@@ -15,7 +17,13 @@ PLANS = 6
 
 
 def setting(
-    option: str, says: str, default: Any = None, *, file: bool = False, **limits: Any
+    option: str,
+    says: str,
+    default: Any = None,
+    *,
+    file: bool = False,
+    text: bool = False,
+    **limits: Any,
 ) -> Any:
     """A field of the configuration.
 
@@ -24,15 +32,24 @@ def setting(
         says: What it is, in one line.
         default: Its value where none is given.
         file: Whether it names a file or a folder.
+        text: Whether the command line takes any text for it, as not only numbers count.
         **limits: Of pydantic's `Field`: ge, le, gt.
     """
-    told: dict[str, Any] = {"option": option, "file": file}
+    told: dict[str, Any] = {"option": option, "file": file, "text": text}
     return Field(default, description=says, json_schema_extra=told, **limits)
+
+
+def _address(value: str | None) -> str | None:
+    return None if value is None else checked_address(value)
 
 
 class _Part(BaseModel):
     model_config = ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        populate_by_name=True,
+        hide_input_in_errors=True,
     )
 
 
@@ -42,9 +59,15 @@ class TaskConfig(_Part):
     name: str | None = setting("TASK", "A shipped task (see `tpvqa tasks`).")
     domain: str | None = setting("--domain", "Your own domain.", file=True)
     problem: str | None = setting("--problem", "Your own problem.", file=True)
-    questions: str | None = setting("--questions", "Questions for your domain.", file=True)
+    questions: str | None = setting(
+        "--questions",
+        "Questions for your domain. Default: the questions.yaml beside it, if there is one.",
+        file=True,
+    )
     world_file: str | None = setting(
-        "--world-file", "What disturbances undo in your domain.", file=True
+        "--world-file",
+        "What disturbances undo in your domain. Default: the world.yaml beside it.",
+        file=True,
     )
 
     @model_validator(mode="after")
@@ -59,8 +82,9 @@ class WorldConfig(_Part):
 
     spec: str | None = setting(
         "--world",
-        "symbolic (the default for your own domain), pictures:FOLDER, scripted:FILE or a plug-in; "
-        "the household's tasks: images (their default) or kitchen.",
+        "symbolic (the default for your own domain), pictures:FOLDER, scripted:FILE (collect_toys "
+        "brings its own script) or a plug-in; the household's tasks: images (their default) or "
+        "kitchen.",
     )
     pictures: str | None = setting(
         "--pictures", "pictures and images world: folder of a set of your own.", file=True
@@ -78,7 +102,9 @@ class VLMConfig(_Part):
         "embedded (the default where there are pictures), openai:MODEL, or a noise model: "
         "oracle[:ACCURACY[:RHO]] (the default where there are none).",
     )
-    base_url: str | None = setting("--base-url", "Address of an OpenAI-like server.")
+    base_url: Annotated[str | None, AfterValidator(_address)] = setting(
+        "--base-url", "Address of an OpenAI-like server."
+    )
 
 
 class MonitorConfig(_Part):
@@ -86,13 +112,18 @@ class MonitorConfig(_Part):
 
     spec: str | None = setting(
         "--monitor",
-        "belief (the default), belief:COST=VALUE (question, look, action, person, failure), tpvqa "
-        "(the paper's; the default with --majority), tpvqa:LOOKS, effectvqa, palmevqa, successvqa, "
-        "tp or none. With a cost of person you are asked, too.",
+        "belief (the default), tpvqa (the paper's; the default with --majority) or another. Some "
+        "take arguments: tpvqa:LOOKS, vote:LOOKS, lead:ANSWERS, blind:TIMES, belief:COST=VALUE "
+        "(question, look, action, person, failure; with a cost of person you are asked, too).",
         min_length=1,
     )
     majority: str | None = setting(
         "--majority", "tie (at least half deny, the default) or strict (more than half)."
+    )
+    no_alternatives: bool = setting(
+        "--no-alternatives",
+        "tpvqa: do not ask where else a thing is whose place is denied; the paper does not ask.",
+        False,
     )
     calibration: str | None = setting(
         "--calibration",
@@ -107,9 +138,10 @@ class MonitorConfig(_Part):
 
     @property
     def named(self) -> str:
-        """The specification: where none is given, the paper's monitor with a majority, else
-        belief."""
-        return self.spec or ("belief" if self.majority is None else "tpvqa")
+        """The specification: where none is given, the paper's monitor with settings of its own,
+        else belief."""
+        of_paper = self.majority is not None or self.no_alternatives
+        return self.spec or ("tpvqa" if of_paper else "belief")
 
 
 class PlannerConfig(_Part):
@@ -125,23 +157,39 @@ class PlannerConfig(_Part):
     )
 
 
+def _none(value: Any) -> Any:
+    return None if value == "none" else value
+
+
+Limit = Annotated[int | None, BeforeValidator(_none)]
+"""A limit; `none` for none."""
+Times = Annotated[str, Field(pattern=r"^[1-9][0-9]{0,5}x$")]
+"""So many times the length of the first plan: `50x`."""
+
+
 class Limits(_Part):
     """When a trial is ended without success."""
 
-    repeats: int = setting("--max-repeats", "Repeats of an action in a row.", 10, ge=0)
-    replans: int = setting("--max-replans", "Replans in the trial.", 10, ge=0)
-    actions: int | None = setting(
+    repeats: Limit = setting(
+        "--max-repeats", "Repeats of an action in a row, or none.", 10, text=True, ge=0
+    )
+    replans: Limit = setting("--max-replans", "Replans in the trial, or none.", 10, text=True, ge=0)
+    actions: Annotated[int, Field(ge=1)] | Times | None = setting(
         "--max-actions",
-        f"Actions in the trial, repeats included. Default: the larger of {LEAST_ACTIONS} and "
-        f"{PLANS} times the first plan.",
-        ge=1,
+        "Actions in the trial, repeats included: a number, or 50x for fifty times the first plan. "
+        f"Default: the larger of {LEAST_ACTIONS} and {PLANS}x.",
+        text=True,
     )
     seconds: float | None = setting("--max-seconds", "Wall-clock time of the trial.", gt=0)
     action_seconds: float | None = setting("--action-deadline", "Seconds for one action.", ge=0)
 
     def actions_of(self, first_plan: int) -> int:
         """The limit of actions in a trial whose first plan has so many."""
-        return max(LEAST_ACTIONS, PLANS * first_plan) if self.actions is None else self.actions
+        if self.actions is None:
+            return max(LEAST_ACTIONS, PLANS * first_plan)
+        if isinstance(self.actions, str):
+            return max(int(self.actions[:-1]) * first_plan, 1)
+        return self.actions
 
 
 class SimulationConfig(_Part):
@@ -153,6 +201,13 @@ class SimulationConfig(_Part):
     )
     spontaneous: float = setting(
         "--spontaneous", "P(something is undone after a success).", 0.0, ge=0, le=1
+    )
+    redo: Literal["free", "risky", "refused"] = setting(
+        "--redo",
+        "What comes of an action whose effects hold already: free (nothing happens), risky (it "
+        "fails as any action, and a failure may undo something) or refused (nothing happens, and "
+        "the skill reports that it failed).",
+        "free",
     )
 
 
@@ -191,6 +246,12 @@ class TrialConfig(_Part):
     simulation: SimulationConfig | None = SimulationConfig()
     seed: int = setting("--seed", "Decides, with --episode, every random number.", 0)
     episode: int = setting("--episode", "Number of the episode under the seed.", 0, ge=0)
+    wording: Literal["usual", "paper"] = setting(
+        "--wording",
+        'How whole actions are asked about: usual ("Was wash the plate successful?"), or paper, '
+        'without articles as in the paper ("Was wash plate successful?").',
+        "usual",
+    )
     options: dict[str, Any] = setting(
         "--option", "NAME=VALUE for plug-ins of your own; may be given several times.", {}
     )
@@ -209,6 +270,7 @@ class TrialConfig(_Part):
             simulation: SimulationConfig | None = ...,
             seed: int = ...,
             episode: int = ...,
+            wording: Literal["usual", "paper"] = ...,
             options: dict[str, Any] = ...,
         ) -> None: ...
 
@@ -230,6 +292,7 @@ class TrialConfig(_Part):
         """What plug-ins may ask for by name, as far as it is given."""
         named = {
             "majority": self.monitor.majority,
+            "no_alternatives": self.monitor.no_alternatives or None,
             "simulator": self.world.simulator,
             "pictures": self.world.pictures,
             "base_url": self.vlm.base_url,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from threading import Event as Flag
 from typing import Any
 
+from tpvqa.drivers.freshness import Freshness
 from tpvqa.drivers.plugged import MALFORMED, called, malformed
 from tpvqa.errors import PluginError
 from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade
@@ -16,7 +17,8 @@ from tpvqa.planning import Planner, PlanningResult
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending
 from tpvqa.vlm import VLM, Answer, Reply
-from tpvqa.worlds import Execution, Restorable, World
+from tpvqa.vlm.sight import cannot_see, seen_by
+from tpvqa.worlds import Execution, Report, Restorable, World
 from tpvqa.worlds.capabilities import Telling
 from tpvqa.worlds.goal import goal_holds
 from tpvqa.worlds.outcome import Outcome
@@ -72,6 +74,7 @@ class Performer:
         self._planning_timeout, self._action_deadline = planning_timeout, action_deadline
         self.cancel = cancel or Flag()
         # asked once: such checks are slow
+        self._freshness = Freshness(parts.world)
         self._telling = parts.world if isinstance(parts.world, Telling) else None
 
     def perform(self, pending: Pending) -> Performed:
@@ -119,6 +122,8 @@ class Performer:
             )
         except MALFORMED as error:
             raise malformed(world, "observe", error) from error
+        if not during:
+            self._freshness.looked(seen)
         return Performed(seen, observed)
 
     def _frame(self, frame: Frame) -> FrameRecord:
@@ -139,7 +144,10 @@ class Performer:
         return Performed(result, made.model_copy(update={"considered": not request.followed}))
 
     def _ask(self, seen: Observation | None, questions: Sequence[Question]) -> Performed:
-        answers = _answers(self.parts.vlm, seen, questions)
+        why = ""
+        if seen is not None:
+            seen, why = seen_by(self.parts.vlm, seen, self._freshness.faults)
+        answers = cannot_see(questions, why) if why else _answers(self.parts.vlm, seen, questions)
         return Performed(answers, self._answered(self.parts.vlm, answers))
 
     def _ask_person(self, seen: Observation | None, question: Question) -> Performed:
@@ -158,6 +166,7 @@ class Performer:
 
     def _act(self, action: Action, seconds: float | None) -> Performed:
         world = self.parts.world
+        self._freshness.acted()
         before = self._last_outcome()
         execution = called(
             world,
@@ -167,6 +176,8 @@ class Performer:
             deadline=_less(self._action_deadline, seconds),
             cancel=self.cancel,
         )
+        if not isinstance(execution.report, Report):
+            raise malformed(world, "execute", ValueError(f"no Report: {execution.report!r:.80}"))
         try:
             outcome = self._last_outcome()
             acted = Acted(
@@ -209,4 +220,12 @@ def _answers(vlm: VLM, seen: Observation | None, questions: Sequence[Question]) 
             f"{vlm.name} has to give {len(questions)} Answers to {len(questions)} questions, "
             f"and gave {len(answers)} ({kinds})"
         )
+    for question, answer in zip(questions, answers, strict=True):
+        if answer.question != question:
+            raise PluginError(
+                f"{vlm.name} has to answer each question in its place, and gave to "
+                f"{question.text!r} an answer to {getattr(answer.question, 'text', None)!r}"
+            )
+        if not isinstance(answer.reply, Reply):
+            raise PluginError(f"{vlm.name} has to give a Reply, and gave {answer.reply!r:.80}")
     return answers

@@ -1,11 +1,13 @@
 """Calls into planners, worlds and VLMs: what plug-ins raise or return may be anything."""
 
 import traceback
-from typing import TypeVar
+from collections.abc import Mapping
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from tpvqa.errors import PluginError, TpvqaError
+from tpvqa.errors import EpisodeError, PluginError, TpvqaError
+from tpvqa.worlds import Restorable
 
 T = TypeVar("T")
 
@@ -29,7 +31,7 @@ def called(part: object, method: str, wanted: type[T], /, *given: object, **name
         result = getattr(part, method)(*given, **named)
     except TpvqaError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         place = traceback.extract_tb(error.__traceback__)[-1]
         raise PluginError(
             f"{where} broke: {type(error).__name__}: {error} ({place.filename}:{place.lineno}). "
@@ -38,6 +40,23 @@ def called(part: object, method: str, wanted: type[T], /, *given: object, **name
     if not isinstance(result, wanted):
         raise PluginError(f"{where} has to return {wanted.__name__}, not {_short(result)}")
     return result
+
+
+def put_back(part: Restorable, name: str, snapshot: Mapping[str, Any]) -> None:
+    """Put a part where the log left it.
+
+    Raises:
+        EpisodeError: What the log says of it is not what the part once gave.
+    """
+    try:
+        part.restore(snapshot)
+    except TpvqaError:
+        raise
+    except Exception as error:
+        raise EpisodeError(
+            f"the {name} cannot go on from what the log keeps of it ({type(error).__name__}: "
+            f"{error}): the log is damaged, or another version's. Show the episode instead"
+        ) from error
 
 
 def malformed(part: object, method: str, error: Exception) -> PluginError:

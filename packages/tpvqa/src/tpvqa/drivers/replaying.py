@@ -7,7 +7,17 @@ from typing import Any, TypeVar
 
 from tpvqa.errors import EpisodeError
 from tpvqa.events import Event, Resumed
-from tpvqa.events.events import Acted, Answered, ListenerDropped, Observed, PlanMade
+from tpvqa.events.events import (
+    Acted,
+    Acting,
+    Answered,
+    Asked,
+    Believed,
+    Decided,
+    ListenerDropped,
+    Observed,
+    PlanMade,
+)
 from tpvqa.events.records import answers_from, execution_from, observation_from, plan_from
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.pddl import Task
@@ -41,8 +51,22 @@ class Recording:
         """Name who is told of every event that is played back."""
         self._take = take
 
-    def event(self, kind: type[E]) -> E:
+    def say(self, said: Event) -> None:
         """Play back an event that the trial says itself.
+
+        Raises:
+            EpisodeError: The log holds another one.
+        """
+        recorded = self._events[0] if self._events else None
+        if type(recorded) is type(said) and _told(recorded) != _told(said):
+            raise EpisodeError(
+                f"event {recorded.number} of the log says something else than this version would "
+                f"({recorded.kind!r}): it cannot be resumed, only shown"
+            )
+        self.event(type(said))
+
+    def event(self, kind: type[E]) -> E:
+        """Play back an event of a kind.
 
         Raises:
             EpisodeError: The log holds another one.
@@ -89,6 +113,23 @@ class Recording:
                 return plan_from(self.event(PlanMade), self._task)
             case Act():
                 return execution_from(self.event(Acted))
+
+
+def _told(event: Event | None) -> object:
+    """What has to be the same where a trial is played back; words may be another version's."""
+    match event:
+        case Decided():
+            return event.when, event.step, event.action, event.decision, event.onto
+        case Believed():
+            return event.added, event.removed
+        case PlanMade():
+            return event.result, [action.pddl() for action in event.plan]
+        case Asked():
+            asked = [(each.atom or each.action, each.way) for each in event.questions]
+            return event.look, event.person, asked
+        case Acting():
+            return event.step, event.action.pddl(), event.attempt
+    return None
 
 
 def _beside(event: Event) -> bool:

@@ -148,7 +148,7 @@ class SteppingTrial:
     def _say(self, event: Event) -> TrialState:
         """Write an event of the trial, or take the recorded one in its place."""
         if self._recording:
-            self._recording.event(type(event))
+            self._recording.say(event)
         else:
             self.take_over()
             self.journal.write(event)
@@ -165,7 +165,7 @@ class SteppingTrial:
             if record.resumed():
                 raise Unwatched(self.state)
             if announced is not None:
-                record.event(type(announced))
+                record.say(announced)
                 self._announced = True
                 if record.resumed():
                     raise Unwatched(self.state)

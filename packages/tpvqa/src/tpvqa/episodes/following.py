@@ -5,9 +5,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from tpvqa.episodes.log import LOG, episode_folder, event_of
+from tpvqa.episodes.log import LOG, LogReader, episode_folder
+from tpvqa.episodes.strict_json import LONGEST
 from tpvqa.errors import EpisodeError
 from tpvqa.events import Ended, Event
+from tpvqa.files import opened_plain
 
 POLL = 0.1
 """Seconds between two looks at the file."""
@@ -28,16 +30,17 @@ def follow(
         timeout: Seconds without an event after which to give up; None for never.
 
     Raises:
-        EpisodeError: A line is damaged, or nothing came in time.
+        EpisodeError: A line is damaged or does not fit, or nothing came in time.
     """
     path = episode_folder(folder) / LOG
     position, number, quiet = 0, 0, time.monotonic()
+    reader = LogReader(path)
     while True:
         lines, position, cut = _lines_after(path, position)
         if cut:  # it was gone on with: what ended it before is cut off
-            number = 0
+            number, reader = 0, LogReader(path)
         for line in lines:
-            event = event_of(path, number + 1, line)
+            event = reader.event(line)
             number += 1
             if number > start:
                 start = number
@@ -55,15 +58,16 @@ def _lines_after(path: Path, position: int) -> tuple[list[bytes], int, bool]:
     """The whole lines after a position, and the position after them; from the beginning, where the
     file is shorter by now."""
     try:
-        with path.open("rb") as file:
-            cut = file.seek(0, os.SEEK_END) < position
+        with opened_plain(path) as descriptor:
+            cut = os.fstat(descriptor).st_size < position
             position = 0 if cut else position
-            file.seek(position)
-            data = file.read()
+            data = os.pread(descriptor, LONGEST + 1, position)
     except FileNotFoundError:
         return [], position, False
     except OSError as error:
         raise EpisodeError(f"{path}: cannot be read ({error.strerror})") from error
-    whole, newline, _ = data.rpartition(b"\n")
+    whole, newline, rest = data.rpartition(b"\n")
+    if not newline and len(rest) > LONGEST:
+        raise EpisodeError(f"{path}: a line is longer than {LONGEST:,} bytes; it is no episode")
     lines = whole.split(b"\n") if newline else []
     return lines, position + len(whole) + len(newline), cut

@@ -5,7 +5,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from tpvqa.errors import EpisodeError
+from tpvqa.errors import EpisodeError, PictureError
 from tpvqa.events.events import (
     Acted,
     ActionRecord,
@@ -19,6 +19,7 @@ from tpvqa.events.events import (
 )
 from tpvqa.observation import NPY, PNG, Depth, Frame, Intrinsics, Observation
 from tpvqa.pddl import Action, State, Task
+from tpvqa.pictures import read_file
 from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.questions import ActionQuestion, FactQuestion, Question, QuestionBook
 from tpvqa.vlm import Answer
@@ -149,17 +150,16 @@ def _frame(record: FrameRecord, folder: Path | None) -> Frame:
     depth = None
     if record.depth is not None:
         png = record.depth.endswith(".png")
-        depth = Depth(_bytes(folder / record.depth), PNG if png else NPY)
+        depth = Depth(_bytes(folder, record.depth), PNG if png else NPY)
     seen = record.intrinsics
     intrinsics = None
     if seen is not None:
         size = int(seen["width"]), int(seen["height"])
         intrinsics = Intrinsics(seen["fx"], seen["fy"], seen["cx"], seen["cy"], *size)
-    path = folder / record.file
     return Frame(
-        path.stem,
+        Path(record.file).stem,
         record.view,
-        _bytes(path),
+        _bytes(folder, record.file),
         record.media_type,
         record.source,
         record.stamp,
@@ -168,10 +168,10 @@ def _frame(record: FrameRecord, folder: Path | None) -> Frame:
     )
 
 
-def _bytes(path: Path) -> bytes:
+def _bytes(folder: Path, name: str) -> bytes:
     try:
-        return path.read_bytes()
-    except OSError as error:
+        return read_file(name, inside=folder)
+    except PictureError as error:
         raise EpisodeError(
-            f"{path}: the picture of a look cannot be read ({error.strerror})"
+            f"the picture of a look cannot be taken from the episode: {error}"
         ) from error

@@ -131,13 +131,15 @@ class TrialState:
 
     @property
     def replans_left(self) -> int | None:
-        """Replans that the limit still allows."""
-        return None if self.started is None else self.started.limits.replans - self.replans
+        """Replans that the limit still allows; None for any number."""
+        most = None if self.started is None else self.started.limits.replans
+        return None if most is None else most - self.replans
 
     @property
     def repeats_left(self) -> int | None:
-        """Repeats of this step's action that the limit still allows."""
-        return None if self.started is None else self.started.limits.repeats - self.attempt
+        """Repeats of this step's action that the limit still allows; None for any number."""
+        most = None if self.started is None else self.started.limits.repeats
+        return None if most is None else most - self.attempt
 
     @property
     def seconds_left(self) -> float | None:

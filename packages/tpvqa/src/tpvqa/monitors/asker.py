@@ -1,7 +1,7 @@
 """Looking and asking as the paper's monitors do: a look, all questions, a majority."""
 
 from collections.abc import Generator, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 from tpvqa.errors import PluginError
 from tpvqa.events.decision import Decision
@@ -14,6 +14,17 @@ from tpvqa.questions import Question
 from tpvqa.vlm import Answer
 
 Asking = Generator[Request, Any, tuple[bool | None, list[Answer]]]
+Telling = Generator[Request, Any, list[Answer]]
+
+
+class Asks(Protocol):
+    """Who has questions asked, and says what their answers come to."""
+
+    def ask(self, questions: Sequence[Question]) -> Asking:
+        """Whether the answers deny the action, and they; None where all of them abstain."""
+
+    def tell(self, questions: Sequence[Question]) -> Telling:
+        """What is answered, question by question."""
 
 
 class Asker:
@@ -35,6 +46,12 @@ class Asker:
             raise PluginError(f"A vote over {votes} looks decides nothing; it takes one or more.")
         self.majority, self.looks, self.votes = Majority.named(majority), looks, votes
 
+    @property
+    def words(self) -> list[str]:
+        """What a specification says of it: nothing of one vote in which a tie denies."""
+        votes = [] if self.votes == 1 else [str(self.votes)]
+        return votes + ([] if self.majority is Majority.TIE_DENIES else [self.majority.value])
+
     def ask(self, questions: Sequence[Question]) -> Asking:
         """Whether the answers deny the action, and they; None where they still abstain.
 
@@ -53,8 +70,20 @@ class Asker:
                 return denied, answers
         return None, answers
 
+    def tell(self, questions: Sequence[Question]) -> Telling:
+        """What is answered, question by question; nothing is decided by it.
 
-def check_effects(asker: Asker, step: Step) -> Check:
+        A single vote goes by the latest look, more of them by new ones.
+        """
+        rounds: list[list[Answer]] = []
+        for _ in range(self.votes):
+            if self.votes > 1:
+                yield Look()
+            rounds.append((yield Ask(tuple(questions))))
+        return vote(rounds)
+
+
+def check_effects(asker: Asks, step: Step) -> Check:
     """Ask about all effects of an action: go on believing them, or repeat it."""
     questions = step.book.effects(step.action, step.state)
     denied, answers = yield from asker.ask(questions)

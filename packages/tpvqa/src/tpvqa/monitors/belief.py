@@ -27,6 +27,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import regress
+from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWay, FactWords, QuestionBook, Way
 from tpvqa.vlm import Answer, Reply
 
@@ -34,7 +35,7 @@ SAME = 3
 """Looks in a row that may show a picture which the question was asked of already."""
 
 
-class BeliefMonitor(Learning):
+class BeliefMonitor(Learning, PlainArguments):
     """Keeps a Bayes filter over the facts and does what is expected to cost least.
 
     After every action it predicts what that may have led to, asks as long as an answer is worth

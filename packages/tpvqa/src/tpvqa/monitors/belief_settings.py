@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from tpvqa.belief.ablations import PARTS
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import Rates
-from tpvqa.errors import PluginError
+from tpvqa.errors import PluginError, suggestion
 
 _RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate")
 
@@ -58,11 +58,15 @@ class BeliefSettings:
         except ValidationError as error:
             first = error.errors()[0]
             where = ".".join(map(str, first["loc"]))
+            known = (*Costs.model_fields, *_RATES, "without")
             what = (
-                f"there is no cost {where!r}" if where not in Costs.model_fields else first["msg"]
+                f"there is no cost {where!r}{suggestion(where, known).rstrip('.')}"
+                if where not in Costs.model_fields
+                else first["msg"]
             )
             raise PluginError(
-                f"'belief:{arguments}' is not understood: {where}: {what}. Costs are "
+                f"'belief:{arguments}' is not understood: {where}: {what.rstrip('?')}"
+                f"{'?' if what.endswith('?') else '.'} Costs are "
                 f"{', '.join(Costs.model_fields)}; write belief:question=0.05:look=0.01, say, "
                 f"or without={'|'.join(PARTS)}."
             ) from None

@@ -13,10 +13,11 @@ from tpvqa.pddl import Atom, Literal, MutexGroup, State, Task
 
 
 class FactMemory:
-    """Remembers which believed facts ended, and repairs a state from which facts are taken out.
+    """Remembers what was believed before, and repairs a state from which facts are taken out.
 
-    What ended lies on a stack. Falling back to a fact takes it off: a fact that is believed again
-    has before it what it had the first time, and what was denied is never fallen back to.
+    Of every exactly-one group it keeps the members that were believed, the present one last. To
+    fall back to an earlier one drops the present one, so that what was denied does not come back;
+    what was seen instead comes after what it took the place of.
 
     Args:
         task: Gives the initial state and the mutex groups.
@@ -27,7 +28,7 @@ class FactMemory:
         self._groups = [group for group in task.mutex_groups if group.exactly_one]
         self._all_groups = task.mutex_groups
         self._initial = task.init
-        self._ended: list[Atom] = []
+        self._believed = {g.atoms: sorted(task.init & g.atoms) for g in self._groups}
         self._changed: set[Atom] = set()
 
     @cached_property
@@ -42,21 +43,66 @@ class FactMemory:
 
     def record(self, before: State, after: State) -> None:
         """Note what an action changed."""
-        self._ended += sorted(before - after)
+        for group, members in self._believed.items():
+            members += sorted(after & group - before)
         self._changed |= before ^ after
 
-    def correct(self, before: State, after: State) -> None:
-        """Note a correction by `take_out`."""
-        for atom in sorted(after - before):
-            if atom in self._ended:
-                latest = len(self._ended) - 1 - self._ended[::-1].index(atom)
-                del self._ended[latest]
+    def correct(self, before: State, after: State, denied: Iterable[Literal]) -> None:
+        """Note a correction by `take_out` of what was denied.
+
+        Only what was denied is dropped: that the hand is not free follows from what is in it
+        after all, and nobody has denied that it was.
+        """
+        out = {literal.atom for literal in denied if literal.positive}
+        for group, members in self._believed.items():
+            for atom in sorted(after & group - before):
+                if atom in members[:-1] and members[-1] in out:
+                    members.pop()
+                    latest = len(members) - 1 - members[::-1].index(atom)
+                    del members[latest]
+                members.append(atom)
         self._changed |= before ^ after
 
     def alternatives(self, atom: Atom) -> list[Atom]:
-        """The other members of its exactly-one groups that can come true, in a fixed order."""
-        others = {other for group in self._groups if atom in group.atoms for other in group.atoms}
-        return sorted(others & self._possible - {atom})
+        """The other places where the thing that a fact is about may be, in a fixed order.
+
+        The thing is what every fact of an exactly-one group speaks of. Of several it is the one
+        whose places say least of other things: the plate, not the hand in which the apple might
+        be instead. Where a group speaks of no thing, such as (robot-at ?room), the facts of one
+        predicate are places of the robot.
+        """
+        homes = [group for group in self._spoken if atom in group]
+        things = {name for name in atom.arguments if any(name in self._spoken[g] for g in homes)}
+        if not things:
+            alike = [g for g in homes if all(a.predicate == atom.predicate for a in g)]
+            others = {other for group in alike for other in group}
+            return sorted(others & self._possible - {atom})
+        places = {thing: self._places(thing, homes) - {atom} for thing in things}
+        thing = min(
+            sorted(things, key=atom.arguments.index),
+            key=lambda name: sum(self._says_of_others(place, name) for place in places[name]),
+        )
+        return sorted(places[thing] & self._possible)
+
+    def _places(self, thing: str, homes: Iterable[State]) -> set[Atom]:
+        """Where a thing may be; nothing is its own place."""
+        own = (group for group in homes if thing in self._spoken[group])
+        return {atom for group in own for atom in group if atom.arguments.count(thing) == 1}
+
+    def _says_of_others(self, atom: Atom, thing: str) -> bool:
+        """Whether a place of a thing is also one of another thing."""
+        return any(atom in group and names - {thing} for group, names in self._spoken.items())
+
+    @cached_property
+    def _spoken(self) -> dict[State, frozenset[str]]:
+        """Of which objects every fact of each exactly-one group speaks."""
+        return {
+            group.atoms: frozenset.intersection(*(frozenset(a.arguments) for a in group.atoms))
+            for group in self._groups
+        }
+
+    def _rivals(self, atom: Atom) -> set[Atom]:
+        return {o for group in self._all_groups if atom in group.atoms for o in group.atoms}
 
     def take_out(
         self,
@@ -107,19 +153,30 @@ class FactMemory:
             )
             if successor is not None:
                 replaced = self._with(replaced, successor)
-        if any(not replaced & group.atoms for group in self._groups):
-            return state
+        for group in self._groups:
+            if not replaced & group.atoms:
+                follows = self._what_follows(replaced, group)
+                if follows is None:
+                    return state
+                replaced |= {follows}
         return replaced
 
+    def _what_follows(self, state: State, group: MutexGroup) -> Atom | None:
+        """The one member of a group that goes with all the rest: where a block has left its place
+        for another, nothing is on it. None where several do, or none."""
+        fitting = [
+            atom
+            for atom in sorted(group.atoms & self._possible)
+            if self._rivals(atom).isdisjoint(state)
+        ]
+        return fitting[0] if len(fitting) == 1 else None
+
     def _previous(self, group: MutexGroup, atom: Atom, unseen: Collection[Atom]) -> Atom | None:
-        held = [e for e in reversed(self._ended) if e in group.atoms and e != atom]
+        held = [each for each in reversed(self._believed[group.atoms]) if each != atom]
         return next((each for each in held if each not in unseen), held[0] if held else None)
 
     def _with(self, state: State, atom: Atom) -> State:
-        rivals = {
-            other for group in self._all_groups if atom in group.atoms for other in group.atoms
-        }
-        return (state - rivals) | {atom}
+        return (state - self._rivals(atom)) | {atom}
 
     def _least_disturbing(self, state: State, candidates: Iterable[Atom]) -> Atom:
         def bereaved(candidate: Atom) -> int:

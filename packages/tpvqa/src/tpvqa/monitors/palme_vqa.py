@@ -7,10 +7,11 @@ from tpvqa.monitors.capabilities import AsksActions
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.pddl import State
+from tpvqa.pddl import Literal, State
+from tpvqa.plugins import PlainArguments
 
 
-class PaLMEVQA(AsksActions):
+class PaLMEVQA(AsksActions, PlainArguments):
     """Zhang et al. 2023, section "Baselines", with the questions of Driess et al. 2023.
 
     A no to "Is it possible …?" names no fact. So all preconditions that could have been asked
@@ -54,7 +55,7 @@ class PaLMEVQA(AsksActions):
                 return Verdict(Decision.GO_ON, f"yes: {question.text}")
             corrected = self._corrected(step)
             if corrected != step.state:
-                self._remember(step).correct(step.state, corrected)
+                self._remember(step).correct(step.state, corrected, self._denied(step))
                 return Verdict(Decision.REPLAN, f"no: {question.text}", corrected)
         return Verdict(
             Decision.GO_ON, f"no: {question.text}; looked twice, nothing else to believe"
@@ -75,9 +76,12 @@ class PaLMEVQA(AsksActions):
     def _corrected(self, step: Step) -> State:
         if self.start_over:
             return step.task.init
+        return self._remember(step).take_out(step.state, self._denied(step))
+
+    def _denied(self, step: Step) -> list[Literal]:
+        """What a no denies: all preconditions that could have been asked about."""
         asked = step.book.preconditions(step.action, step.state)
-        denied = [question.literal for question in asked]
-        return self._remember(step).take_out(step.state, denied)
+        return [question.literal for question in asked]
 
     def _remember(self, step: Step) -> FactMemory:
         if self._memory is None:

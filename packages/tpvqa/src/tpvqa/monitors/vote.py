@@ -27,6 +27,18 @@ def _vote(answers: Sequence[Answer]) -> Answer:
         reply = Reply.YES if yes > no else Reply.NO
     else:
         reply = Reply.UNKNOWN if yes else answers[-1].reply
+    return together(answers, reply)
+
+
+def together(answers: Sequence[Answer], reply: Reply) -> Answer:
+    """The answers to one question as one; P(yes) is the mean.
+
+    Args:
+        answers: Of several looks, at least one.
+        reply: What they come to.
+    """
+    replies = [answer.reply for answer in answers]
+    yes, no = replies.count(Reply.YES), replies.count(Reply.NO)
     chances = [answer.p_yes for answer in answers if answer.p_yes is not None]
     return replace(
         answers[-1],

@@ -43,6 +43,17 @@ def literals(condition: Condition) -> Iterator[Literal]:
             yield from literals(part)
 
 
+def said(condition: Condition) -> str:
+    """A condition in a line: "a(), b()" for both, "(a(), b()) or c()" for one of them."""
+    if isinstance(condition, Literal):
+        return str(condition)
+    parts = [
+        f"({said(part)})" if not isinstance(part, Literal) and len(part.parts) > 1 else said(part)
+        for part in condition.parts
+    ]
+    return (" or " if isinstance(condition, Disjunction) else ", ").join(parts)
+
+
 def supporting(condition: Condition, state: State) -> Iterator[Literal]:
     """The literals that a condition rests on in a state, in the order written.
 

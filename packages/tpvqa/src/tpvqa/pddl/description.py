@@ -10,6 +10,9 @@ from tpvqa.pddl.atoms import Atom, State
 from tpvqa.pddl.ground import MutexGroup
 from tpvqa.pddl.processes import WorkerTimedOut, ask_worker
 
+MEMORY = 4096
+"""The limit of a worker's memory in MiB, and that of a search's, where no other is given."""
+
 Description = Mapping[str, Any]
 """The worker's reply, in the form that `tpvqa.pddl.worker.describing` gives it."""
 
@@ -30,6 +33,7 @@ def described(
     domain_path: Path | None = None,
     problem_path: Path | None = None,
     timeout: float | None = 300.0,
+    memory: int | None = MEMORY,
 ) -> Description:
     """Let a worker read and ground a task.
 
@@ -40,6 +44,7 @@ def described(
         domain_path: What errors name.
         problem_path: The same.
         timeout: Seconds that it may take; None for no limit.
+        memory: The limit of the worker's memory in MiB; None for none.
 
     Raises:
         PDDLError: The text cannot be read as PDDL.
@@ -48,7 +53,11 @@ def described(
     """
     try:
         reply = ask_worker(
-            {"do": "describe", "init": None if state is None else to_lists(state)},
+            {
+                "do": "describe",
+                "init": None if state is None else to_lists(state),
+                "grounding_memory": memory,
+            },
             key=key_of(domain, problem),
             domain=domain,
             problem=problem,
@@ -65,9 +74,7 @@ def described(
         raise PDDLError(message, file=path or f"({part})", line=line)
     if "outcome" in reply:
         reason = f"the task cannot be grounded: {reply['outcome']['reason']}"
-        if reply["outcome"]["kind"] == "memory":
-            raise PlannerError(reason)
-        raise PDDLError(reason, file=domain_path or "(domain)")
+        raise PlannerError(reason)
     description: Description = reply["task"]
     return description
 

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import PDDLError
-from tpvqa.pddl.description import described, grounded_fields
+from tpvqa.pddl.description import MEMORY, described, grounded_fields
 from tpvqa.pddl.schema import (
     ActionSchema,
     AxiomSchema,
@@ -17,10 +17,15 @@ from tpvqa.pddl.schema import (
     ground_condition,
 )
 from tpvqa.pddl.task import Task
+from tpvqa.text_files import read_bytes
 
 
 def load_task(
-    name_or_domain: str | Path, problem: str | Path | None = None, *, timeout: float | None = 300.0
+    name_or_domain: str | Path,
+    problem: str | Path | None = None,
+    *,
+    timeout: float | None = 300.0,
+    memory: int | None = MEMORY,
 ) -> Task:
     """Read a task.
 
@@ -28,6 +33,7 @@ def load_task(
         name_or_domain: The name of a shipped task, or the path of a domain.
         problem: The path of the problem, where the first argument is a path.
         timeout: Seconds that reading and grounding may take; None for no limit.
+        memory: The limit of their memory in MiB; None for none.
 
     Raises:
         UnknownNameError: There is no shipped task of that name.
@@ -54,6 +60,7 @@ def load_task(
         domain_path=domain_path,
         problem_path=problem_path,
         timeout=timeout,
+        memory=memory,
     )
 
 
@@ -64,6 +71,7 @@ def task_from_text(
     domain_path: Path | None = None,
     problem_path: Path | None = None,
     timeout: float | None = 300.0,
+    memory: int | None = MEMORY,
 ) -> Task:
     """Read a task from PDDL text; the paths are only what errors name.
 
@@ -73,7 +81,12 @@ def task_from_text(
         PlannerError: Grounding failed.
     """
     description = described(
-        domain, problem, domain_path=domain_path, problem_path=problem_path, timeout=timeout
+        domain,
+        problem,
+        domain_path=domain_path,
+        problem_path=problem_path,
+        timeout=timeout,
+        memory=memory,
     )
     objects_by_type = {
         kind: tuple(things) for kind, things in description["objects_by_type"].items()
@@ -114,16 +127,7 @@ def task_from_text(
 
 
 def _text(path: Path, part: str) -> str:
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
-        raise PDDLError(f"there is no such {part} file", file=path) from None
-    except IsADirectoryError:
-        raise PDDLError(f"this is a folder; expected a {part} file", file=path) from None
-    except OSError as error:
-        raise PDDLError(
-            f"the {part} file cannot be read: {error.strerror or error}", file=path
-        ) from None
+    data = read_bytes(path, PDDLError, what=f"{part} file")
     # Comments may hold anything; Latin-1 reads what is not UTF-8.
     try:
         return data.decode("utf-8-sig")

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tpvqa.errors import PDDLError, suggestion, suggestion_or_list
+from tpvqa.errors import PDDLError, a, suggestion, suggestion_or_list
 from tpvqa.pddl.atoms import Atom
 from tpvqa.pddl.task import Task
 
@@ -106,7 +106,7 @@ class Pattern:
                 )
             if kind is not None and not task.related(kind, wanted):
                 raise PDDLError(
-                    f"{self}: {term} can be no {kind}, as {self.predicate} takes a {wanted} there"
+                    f"{self}: {term} can be no {kind}, as {self.predicate} takes {a(wanted)} there"
                 )
             if term.startswith("?"):
                 continue
@@ -117,8 +117,8 @@ class Pattern:
                 )
             if not task.is_a(term, wanted):
                 raise PDDLError(
-                    f"{self}: {term} is a {task.objects[term]}, but {self.predicate} takes a "
-                    f"{wanted} there"
+                    f"{self}: {term} is {a(task.objects[term])}, but {self.predicate} takes "
+                    f"{a(wanted)} there"
                 )
 
 
@@ -144,6 +144,6 @@ def check_together(patterns: Iterable[Pattern], task: Task) -> None:
             # A problem without objects of a type says nothing about the file.
             if before and fitting and not possible[term]:
                 raise PDDLError(
-                    f"{pattern}: {term} must be a {kind or wanted} here, but what it stands for "
+                    f"{pattern}: {term} must be {a(kind or wanted)} here, but what it stands for "
                     "before is none"
                 )

@@ -3,10 +3,11 @@
 import json
 from pathlib import Path
 
-from tpvqa.errors import PDDLError
+from tpvqa.errors import PDDLError, shown
 from tpvqa.pddl.atoms import Atom, State
 from tpvqa.pddl.lines import lines_of
 from tpvqa.pddl.task import Task
+from tpvqa.text_files import read_text
 
 
 def read_state(path: Path, task: Task) -> State:
@@ -19,11 +20,7 @@ def read_state(path: Path, task: Task) -> State:
     Raises:
         PDDLError: The file is missing, or an atom in it is none of this task's; with its line.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise PDDLError(f"the state cannot be read: {reason}", file=path) from None
+    text = read_text(path, PDDLError, what="state file")
     as_json = text.lstrip()[:1] in ("[", "{")
     state = set()
     for line, words in _json_atoms(text, path) if as_json else _lines(text):
@@ -60,6 +57,10 @@ def _json_atoms(text: str, path: Path) -> list[tuple[int | None, str]]:
         entries = json.loads(text)
     except json.JSONDecodeError as error:
         raise PDDLError(f"this is not JSON: {error.msg}", file=path, line=error.lineno) from None
+    except (RecursionError, ValueError):  # a number of thousands of digits
+        raise PDDLError(
+            'this is no JSON list of atoms, such as ["(on plate table)"]', file=path
+        ) from None
     if not isinstance(entries, list):
         raise PDDLError('expected a JSON list of atoms, such as ["(on plate table)"]', file=path)
     atoms: list[tuple[int | None, str]] = []
@@ -68,7 +69,7 @@ def _json_atoms(text: str, path: Path) -> list[tuple[int | None, str]]:
             entry = " ".join(entry)
         if not isinstance(entry, str):
             raise PDDLError(
-                f"entry {number} of the list is no atom: {json.dumps(entry)}; expected "
+                f"entry {number} of the list is no atom: {shown(json.dumps(entry))}; expected "
                 '"(on plate table)" or ["on", "plate", "table"]',
                 file=path,
             )

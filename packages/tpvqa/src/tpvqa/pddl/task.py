@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from tpvqa.errors import PDDLError, suggestion_or_list
+from tpvqa.errors import PDDLError, a, suggestion_or_list
 from tpvqa.pddl.atoms import Atom, State
 from tpvqa.pddl.conditions import Condition, holds
 from tpvqa.pddl.derivation import Derivation
@@ -128,8 +128,8 @@ class Task:
                 )
             if argument not in self.objects_by_type.get(parameter.type, ()):
                 raise PDDLError(
-                    f"{argument} is a {self.objects[argument]}, but {parameter.name} of the action "
-                    f"{name} must be a {parameter.type}",
+                    f"{argument} is {a(self.objects[argument])}, but {parameter.name} of the "
+                    f"action {name} must be {a(parameter.type)}",
                     file=self.domain_path,
                 )
         cost = schema.cost
@@ -162,6 +162,32 @@ class Task:
     def static(self) -> State:
         """The facts of the initial state that no action changes."""
         return frozenset(atom for atom in self.init if atom.predicate not in self.fluents)
+
+    def changes(self, atom: Atom) -> bool:
+        """Whether an action of any objects could change an atom, or it is derived."""
+        if atom.predicate in self.derived:
+            return True
+        return any(
+            all(
+                argument == kind if constant else self.is_a(argument, kind)
+                for argument, (kind, constant) in zip(atom.arguments, places, strict=True)
+            )
+            for places in self._effects_on.get(atom.predicate, ())
+        )
+
+    @cached_property
+    def _effects_on(self) -> dict[str, frozenset[tuple[tuple[str, bool], ...]]]:
+        """What actions can change, by predicate: types of the arguments, or constants."""
+        found: dict[str, set[tuple[tuple[str, bool], ...]]] = {}
+        for schema in self.schemas:
+            for effect in schema.effects:
+                kinds = {p.name: p.type for p in (*schema.parameters, *effect.parameters)}
+                places = tuple(
+                    (kinds.get(argument, argument), argument not in kinds)
+                    for argument in effect.literal.arguments
+                )
+                found.setdefault(effect.literal.predicate, set()).add(places)
+        return {name: frozenset(places) for name, places in found.items()}
 
     @cached_property
     def _derivations(self) -> dict[State, Derivation]:
@@ -280,8 +306,8 @@ class Task:
         for argument, variable, kind in zip(atom.arguments, variables, wanted, strict=True):
             if not self.is_a(argument, kind):
                 raise PDDLError(
-                    f"{atom.pddl()}: {argument} is a {self.objects[argument]}, but {variable} of "
-                    f"{atom.predicate} must be a {kind.replace('|', ' or a ')}"
+                    f"{atom.pddl()}: {argument} is {a(self.objects[argument])}, but {variable} of "
+                    f"{atom.predicate} must be {' or '.join(map(a, kind.split('|')))}"
                 )
 
     def with_init(self, state: State) -> "Task":

@@ -5,11 +5,12 @@ from typing import Any
 
 from tpvqa.errors import PDDLError, PlannerError, PluginError, suggestion
 from tpvqa.pddl import State, Task, literals, validate
-from tpvqa.pddl.description import to_lists
+from tpvqa.pddl.description import MEMORY, to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
 from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
+from tpvqa.plugins import PlainArguments
 
 SEARCHES = ("optimal", "lama")
 """What can be asked for beside the default."""
@@ -28,7 +29,7 @@ _HMAX = "astar(hmax())"
 _GRACE = 1.0  # seconds that the worker gets to say itself that the time is over
 
 
-class FastDownward:
+class FastDownward(PlainArguments):
     """Plans with Fast Downward (Helmert 2006). Safe to call from several threads.
 
     The first plan of a task grounds it; later ones only rewrite the initial state, wherever that
@@ -44,6 +45,7 @@ class FastDownward:
             greedy search with FF where every action costs 1, else as "lama".
         timeout: Seconds for a call; None for no limit.
         memory: The limit of the search's memory in MiB; None for none.
+        grounding_memory: The same of grounding's, see also `load_task`.
 
     Raises:
         PluginError: There is no such search.
@@ -58,7 +60,8 @@ class FastDownward:
         *,
         search: str | None = None,
         timeout: float | None = 60.0,
-        memory: int | None = 4096,
+        memory: int | None = MEMORY,
+        grounding_memory: int | None = MEMORY,
     ):
         if search is not None and search not in SEARCHES:
             raise PluginError(
@@ -66,6 +69,7 @@ class FastDownward:
                 f"fast-downward, or {' or '.join(f'fast-downward:{each}' for each in SEARCHES)}."
             )
         self.search, self.timeout, self.memory = search, timeout, memory
+        self.grounding_memory = grounding_memory
 
     @classmethod
     def from_spec(cls, arguments: str = "") -> "FastDownward":
@@ -107,6 +111,7 @@ class FastDownward:
             "searches": _searches(self.search, task),
             "seconds": limit,
             "memory": self.memory,
+            "grounding_memory": self.grounding_memory,
         }
         try:
             reply = ask_worker(

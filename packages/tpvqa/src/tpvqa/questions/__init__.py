@@ -10,6 +10,7 @@ from tpvqa.questions.question import (
     Question,
     Way,
 )
+from tpvqa.questions.wordings import Wording
 
 __all__ = [
     "ActionQuestion",
@@ -20,4 +21,5 @@ __all__ = [
     "Question",
     "QuestionBook",
     "Way",
+    "Wording",
 ]

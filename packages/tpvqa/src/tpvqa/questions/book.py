@@ -8,7 +8,9 @@ from tpvqa.pddl import Action, Atom, Condition, Disjunction, Literal, State, Tas
 from tpvqa.questions import fallback
 from tpvqa.questions.question import ActionQuestion, ActionWay, FactQuestion, FactWay, Way
 from tpvqa.questions.template import Template
-from tpvqa.questions.wordings import Wordings, parameters_of, read_wordings
+from tpvqa.questions.wordings import Wording, Wordings, parameters_of, read_wordings
+
+STATIC = "no action changes it"
 
 
 class QuestionBook:
@@ -20,20 +22,25 @@ class QuestionBook:
     Args:
         task: The task.
         wordings: What the questions file says; nothing by default.
+        wording: How actions are said in questions about them as a whole.
 
     Attributes:
         notices: What a user should know about the words: fallbacks, questions that cannot be
             told apart.
+        fallbacks: Those of them that are about words which no file gives.
     """
 
-    def __init__(self, task: Task, wordings: Wordings | None = None) -> None:
+    def __init__(
+        self, task: Task, wordings: Wordings | None = None, wording: Wording = "usual"
+    ) -> None:
         wordings = wordings or Wordings()
-        self.task = task
+        self.task, self.wording = task, wording
         self.notices: list[str] = list(wordings.notices)
         self._wordings = wordings
         self._predicates, self._actions = parameters_of(task)
         self._questions = dict(wordings.predicates)
         self._say, self._done = dict(wordings.say), dict(wordings.done)
+        self.fallbacks: list[str] = []
         self._texts: dict[Atom, tuple[str, tuple[Atom, ...]]] = {}
         self._why_not: dict[tuple[Literal, tuple[str, tuple[str, ...]] | None], str | None] = {}
         self._add_fallbacks()
@@ -51,6 +58,12 @@ class QuestionBook:
                 starts with file and line.
         """
         return QuestionBook(task, None if path is None else read_wordings(Path(path), task))
+
+    def worded(self, wording: Wording) -> "QuestionBook":
+        """The book that says actions otherwise in questions about them as a whole."""
+        if wording == self.wording:
+            return self
+        return QuestionBook(self.task, self._wordings, wording)
 
     # Facts
 
@@ -96,7 +109,10 @@ class QuestionBook:
         for pattern in self._wordings.never_asked:
             if pattern.matches(literal, name, arguments, self.task):
                 return pattern.because or "the questions file says so"
-        return None
+        if self.task.changes(literal.atom):
+            return None
+        doubted = (p.matches(literal, None, {}, self.task) for p in self._wordings.in_doubt)
+        return None if any(doubted) else STATIC
 
     def preconditions(self, action: Action, state: State) -> tuple[FactQuestion, ...]:
         """The questions about what an action's precondition rests on in the believed state.
@@ -123,6 +139,11 @@ class QuestionBook:
             (each for each in left if self.asked(each, action)), Way.EFFECT, action
         )
 
+    def goal(self, state: State) -> tuple[FactQuestion, ...]:
+        """The questions about what the goal rests on in the believed state."""
+        resting = self._rests_on(self.task.goal, self.task.extend(state), None)
+        return self._questions_about(resting, Way.EFFECT, None)
+
     def unasked(self, action: Action, state: State) -> dict[Literal, str]:
         """The literals of an action that no camera shows, each with the reason."""
         resting = supporting(action.precondition, self.task.extend(state))
@@ -137,7 +158,7 @@ class QuestionBook:
         return self._action_question(action, Way.POSSIBLE)
 
     def successful(self, action: Action) -> ActionQuestion:
-        """ "Was place the bread on the plate successful?", as the paper words it."""
+        """ "Was place the bread on the plate successful?" """
         return self._action_question(action, Way.SUCCESSFUL)
 
     def did(self, action: Action) -> ActionQuestion:
@@ -158,13 +179,12 @@ class QuestionBook:
         """What an object is called: "toy eggplant" for toy_eggplant."""
         return self._attribute(obj, "name")
 
-    def _attribute(self, obj: str, attribute: str) -> str:
-        wordings = self._wordings
-        for own in self._own_attributes(obj):
-            if attribute in own:
-                return own[attribute].render(lambda _: self.name(obj))
-        if attribute in wordings.attributes:
-            return wordings.attributes[attribute].render(lambda _: self.name(obj))
+    def _attribute(self, obj: str, attribute: str, *, bare: bool = False) -> str:
+        given = next((own for own in self._own_attributes(obj) if attribute in own), None)
+        template = (self._wordings.attributes if given is None else given).get(attribute)
+        if template is not None:
+            said = template.without_articles() if bare and attribute != "name" else template
+            return said.render(lambda _: self.name(obj))
         return fallback.words_of(obj) if attribute == "name" else ""
 
     def _own_attributes(self, obj: str) -> Iterator[dict[str, Template]]:
@@ -180,19 +200,22 @@ class QuestionBook:
     def _values(self, action: Action) -> dict[str, str]:
         return dict(zip(self._actions[action.name], action.arguments, strict=True))
 
-    def _fill(self, template: Template, values: dict[str, str]) -> str:
-        return template.render(
-            lambda place: self._attribute(values[place.parameter], place.attribute)
+    def _fill(self, template: Template, values: dict[str, str], *, bare: bool = False) -> str:
+        """A sentence about objects; bare, without articles but for those in their names."""
+        said = template.without_articles() if bare else template
+        return said.render(
+            lambda place: self._attribute(values[place.parameter], place.attribute, bare=bare)
         )
 
     def _action_question(self, action: Action, way: ActionWay) -> ActionQuestion:
-        said = self.say(action)
+        bare = self.wording == "paper"
+        said = self._fill(self._say[action.name], self._values(action), bare=bare)
         text = self._wordings.ways[way].render(
             lambda place: said if place.attribute == "name" else ""
         )
         return ActionQuestion(text, way, action)
 
-    def _rests_on(self, condition: Condition, state: State, action: Action) -> list[Literal]:
+    def _rests_on(self, condition: Condition, state: State, action: Action | None) -> list[Literal]:
         if isinstance(condition, Literal):
             return [condition] if self.asked(condition, action) else []
         parts: Sequence[Condition] = condition.parts
@@ -206,7 +229,7 @@ class QuestionBook:
         return [literal for part in resting for literal in part]
 
     def _questions_about(
-        self, literals: Iterable[Literal], way: FactWay, action: Action
+        self, literals: Iterable[Literal], way: FactWay, action: Action | None
     ) -> tuple[FactQuestion, ...]:
         """One question for each wording, none where the same words would expect both answers."""
         questions: dict[str, FactQuestion] = {}
@@ -216,13 +239,19 @@ class QuestionBook:
             first = questions.setdefault(question.text, question)
             if first.expected != question.expected:
                 contradictory.add(question.text)
+                where = "the goal" if action is None else action.name
                 self._notice(
-                    f"{action.name}: {first.atom} and {question.atom} are asked in the same words "
+                    f"{where}: {first.atom} and {question.atom} are asked in the same words "
                     f"({question.text!r}) and expect opposite answers, so neither is asked."
                 )
         return tuple(each for text, each in questions.items() if text not in contradictory)
 
     # Fallbacks
+
+    def _may_be_asked(self, predicate: str) -> bool:
+        """Whether an action changes facts of a predicate, or the file doubts them."""
+        doubted = {pattern.fact.predicate for pattern in self._wordings.in_doubt}
+        return predicate in self.task.fluents | self.task.derived | doubted
 
     def _add_fallbacks(self) -> None:
         never = {
@@ -233,20 +262,28 @@ class QuestionBook:
                 continue
             text = fallback.question_about(name, parameters)
             self._questions[name] = Template.parse(text)
-            if name not in never:
-                self._notice(f"No question is given for the predicate {name}; asked as {text!r}.")
+            if name not in never and self._may_be_asked(name):
+                self._fall_back(
+                    f"No question is given for the predicate {name}; asked as {text!r}."
+                )
         for name, parameters in self._actions.items():
             said = name in self._say
             if not said:
                 self._say[name] = Template.parse(fallback.say(name, parameters))
-                self._notice(f"The action {name} has no words; said as {str(self._say[name])!r}.")
+                self._fall_back(
+                    f"The action {name} has no words; said as {str(self._say[name])!r}."
+                )
             if name not in self._done:
                 self._done[name] = Template.parse(fallback.past(str(self._say[name])))
                 if said:
-                    self._notice(
+                    self._fall_back(
                         f"The action {name} has no words for when it is done; said as "
                         f"{str(self._done[name])!r}."
                     )
+
+    def _fall_back(self, sentence: str) -> None:
+        self.fallbacks.append(sentence)
+        self._notice(sentence)
 
     def _notice(self, sentence: str) -> None:
         if sentence not in self.notices:

@@ -2,6 +2,7 @@
 
 import re
 
+from tpvqa.errors import PDDLError
 from tpvqa.pddl import Atom, Literal
 from tpvqa.questions.book import QuestionBook
 
@@ -16,27 +17,32 @@ class FactWords:
     """
 
     def __init__(self, book: QuestionBook | None = None):
-        self._book = book
+        self.book = book
         self._said: dict[Atom, str] = {}
 
     def say(self, fact: str) -> str:
-        """A fact, given as PDDL, in words."""
-        if self._book is None:
+        """A fact, given as PDDL, in words; as it is, where it is none of the task's."""
+        if self.book is None:
             return fact
         atom = Atom.parse(fact)
-        return fact if atom.predicate not in self._book.task.predicates else self.of(atom)
+        if atom not in self._said:
+            try:
+                self.book.task.check_atom(atom)
+            except PDDLError:
+                return fact
+        return self.of(atom)
 
     def of(self, atom: Atom) -> str:
         """A fact of the task in words."""
-        if self._book is None:
+        if self.book is None:
             return str(atom)
         if atom not in self._said:
-            question = self._book.fact(Literal(atom))
+            question = self.book.fact(Literal(atom))
             asking = _ASKING.match(question.text)
             said = asking["said"] if asking else str(atom)
             # The words may leave out objects; then two facts would be called the same.
             unsaid = [
-                self._book.name(argument)
+                self.book.name(argument)
                 for place, argument in enumerate(atom.arguments)
                 if any(other.arguments[place] != argument for other in question.alike)
             ]

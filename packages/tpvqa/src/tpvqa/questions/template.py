@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from string import Formatter
 
 _ARTICLE = re.compile(r"(?:^|(?<=\s))([Aa])n?(\s+)$")
+_ANY_ARTICLE = re.compile(r"(?<![\w'-])(?:the|an?)\s+", re.IGNORECASE)
 # How a word sounds where its first letter misleads.
 _CONSONANT_SOUND = re.compile(r"(?:uni|use|usu|usb|ute|ufo|eu|ewe|one\b|once)", re.IGNORECASE)
 _VOWEL_SOUND = re.compile(r"(?:hour|honest|honou?r|heir)", re.IGNORECASE)
@@ -77,6 +78,14 @@ class Template:
                 said = said[: before.start()] + article + before[2]
             said += filling
         return said
+
+    def without_articles(self) -> "Template":
+        """The sentence without its own articles: "wash the {x}" → "wash {x}"."""
+        return Template(
+            tuple(
+                _ANY_ARTICLE.sub("", part) if isinstance(part, str) else part for part in self.parts
+            )
+        )
 
     def __str__(self) -> str:
         return "".join(

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 from tpvqa.errors import PDDLError, QuestionsError, suggestion
 from tpvqa.pddl import Task
@@ -17,6 +18,10 @@ WAYS: Mapping[ActionWay, str] = {
     Way.DID: "Did the robot successfully {action}?",
 }
 """How a whole action is asked about, in the words of the paper and of the works it cites."""
+
+Wording: TypeAlias = Literal["usual", "paper"]
+"""How an action is said in questions about it as a whole: "wash the plate", or without articles as
+in the paper, "wash plate"."""
 
 _OWN_ATTRIBUTES = ("name", "article")  # that every object has
 
@@ -33,6 +38,7 @@ class Wordings:
         of_types: Attributes by type.
         of_objects: Attributes by object.
         never_asked: What no camera shows.
+        in_doubt: What is asked although no action changes it.
         ways: How a whole action is asked about.
         notices: What the reader of the file should know.
     """
@@ -44,6 +50,7 @@ class Wordings:
     of_types: Mapping[str, Mapping[str, Template]] = field(default_factory=dict)
     of_objects: Mapping[str, Mapping[str, Template]] = field(default_factory=dict)
     never_asked: Sequence[NeverAsked] = ()
+    in_doubt: Sequence[NeverAsked] = ()
     ways: Mapping[ActionWay, Template] = field(
         default_factory=lambda: {way: Template.parse(text) for way, text in WAYS.items()}
     )
@@ -73,7 +80,7 @@ def read_wordings(path: Path, task: Task) -> Wordings:
     if root is None:
         return Wordings()
     sections = root.sections(
-        "predicates", "actions", "attributes", "types", "objects", "never_asked", "ways"
+        "predicates", "actions", "attributes", "types", "objects", "never_asked", "in_doubt", "ways"
     )
     predicates, actions = parameters_of(task)
     attributes = _attributes(sections.get("attributes"), [], of_objects=True)
@@ -106,6 +113,7 @@ def read_wordings(path: Path, task: Task) -> Wordings:
         },
         of_objects=of_objects,
         never_asked=[_never_asked(item, task) for item in _items(sections.get("never_asked"))],
+        in_doubt=[_pattern(item, task) for item in _items(sections.get("in_doubt"))],
         ways=_ways(sections.get("ways")),
         notices=notices,
     )
@@ -188,15 +196,18 @@ def _ways(place: Place | None) -> dict[ActionWay, Template]:
     return ways
 
 
+def _pattern(place: Place, task: Task) -> NeverAsked:
+    try:
+        return NeverAsked.parse(place.text(), task)
+    except PDDLError as error:
+        raise place.wrong(error.message) from None
+
+
 def _never_asked(place: Place, task: Task) -> NeverAsked:
     parts = place.sections("fact", "in", "because")
     if "fact" not in parts:
         raise place.wrong("an entry needs 'fact', e.g. fact: \"(free ?h)\"")
-    fact = parts["fact"]
-    try:
-        pattern = NeverAsked.parse(fact.text(), task)
-    except PDDLError as error:
-        raise fact.wrong(error.message) from None
+    pattern = _pattern(parts["fact"], task)
     names = [schema.name for schema in task.schemas]
     actions = []
     for item in parts["in"].texts() if "in" in parts else []:

@@ -18,6 +18,9 @@ from tpvqa.distributions import remedy
 from tpvqa.errors import PluginError, TpvqaError, UnknownNameError
 from tpvqa.plugins import Kind, load, names
 
+QUESTIONS, WORLD = "questions.yaml", "world.yaml"
+"""What the files of a task are called that are found beside it."""
+
 _LOG = logging.getLogger(__name__)
 
 
@@ -33,6 +36,7 @@ class TaskFiles:
         world: How facts come undone in a simulated world; None where they do not.
         default_world: Specification of the world that it is run in where none is named.
         pictures: The folder of labelled pictures of it; None where there are none.
+        script: What goes wrong in it in the scripted world; None for nothing.
     """
 
     name: str
@@ -42,6 +46,7 @@ class TaskFiles:
     world: Path | None
     default_world: str = "symbolic"
     pictures: Path | None = None
+    script: Path | None = None
 
 
 def tasks_in(
@@ -50,13 +55,14 @@ def tasks_in(
     """The tasks of a folder.
 
     Args:
-        folder: Holds `domain.pddl`, `questions.yaml` and `world.yaml` (each where there is one);
-            every other PDDL file in it is a problem, and a task of that name.
+        folder: Holds `domain.pddl`, `questions.yaml`, `world.yaml` and `script.yaml` (each where
+            there is one); every other PDDL file in it is a problem, and a task of that name.
         default_world: As in `TaskFiles`.
         pictures: As in `TaskFiles`.
     """
     domain = folder / "domain.pddl"
-    questions, world = folder / "questions.yaml", folder / "world.yaml"
+    questions, world = folder / QUESTIONS, folder / WORLD
+    script = folder / "script.yaml"
     return tuple(
         TaskFiles(
             name=problem.stem,
@@ -66,10 +72,25 @@ def tasks_in(
             world=world if world.exists() else None,
             default_world=default_world,
             pictures=pictures,
+            script=script if script.exists() else None,
         )
         for problem in sorted(folder.glob("*.pddl"))
         if problem != domain
     )
+
+
+def beside(name: str, problem: Path, domain: Path) -> Path | None:
+    """A file that belongs to a task because it lies beside its problem, or else beside its domain.
+
+    A link is not followed: nobody has named it.
+
+    Args:
+        name: QUESTIONS or WORLD.
+        problem: The problem.
+        domain: The domain.
+    """
+    found = (folder / name for folder in (problem.parent, domain.parent))
+    return next((path for path in found if path.is_file() and not path.is_symlink()), None)
 
 
 @cache

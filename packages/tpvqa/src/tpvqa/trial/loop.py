@@ -164,11 +164,21 @@ class _Loop:
     def _perform(self, check: Check) -> Generator[Any, Any, Verdict]:
         """Have done what a check asks for, until it decides."""
         value: Any = None
+        if not isinstance(check, Generator):
+            raise PluginError(
+                f"The monitor {self.monitor.name} has to give a generator of requests that returns "
+                f"a Verdict, not {type(check).__name__}"
+            )
         while True:
             try:
                 request = check.send(value)
             except StopIteration as end:
-                verdict: Verdict = end.value
+                verdict = end.value
+                if not isinstance(verdict, Verdict):
+                    raise PluginError(
+                        f"The monitor {self.monitor.name} has to return a Verdict, not "
+                        f"{type(verdict).__name__}"
+                    ) from None
                 return verdict
             match request:
                 case Look():

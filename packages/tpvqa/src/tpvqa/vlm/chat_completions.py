@@ -11,13 +11,17 @@ from pydantic import BaseModel, Field, ValidationError
 
 from tpvqa.observation import Frame
 from tpvqa.vlm.answer import Reply
-from tpvqa.vlm.yes_no import Token, answer_token, mass, read_words, still_thinking
+from tpvqa.vlm.reply_shape import read_words, still_thinking
+from tpvqa.vlm.yes_no import Token, answer_token, mass, meaning, spelt
 
 INSTRUCTION = "Answer with one word, yes or no."
 """Said after the question, so that the options are not the first thing the model hears: naming
 them pushes judges towards the negative one."""
 
 _ROOM_TO_THINK = 2048
+_ENDED_BY_ITSELF = ("stop", "eos", "eos_token", "end_turn", "stop_sequence")
+_MOST_CHOICES = 16
+_LONGEST = 100_000  # characters, reasoning included
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,8 +134,10 @@ class _Logprobs(BaseModel):
 
 
 class _Message(BaseModel):
+    role: str | None = None
     content: str | None = None
     refusal: str | None = None
+    tool_calls: Any = None
 
 
 class _Choice(BaseModel):
@@ -143,33 +149,72 @@ class _Choice(BaseModel):
 
 class _Completion(BaseModel):
     choices: list[_Choice] = Field(min_length=1)
+    error: Any = None
 
 
-def read_completion(body: str | bytes) -> Reading:
-    """Read the body of a reply. Whatever cannot be read is *unknown*, with the reason."""
+def read_completion(body: str | bytes, question: str | None = None) -> Reading:
+    """Read the body of a reply. Whatever cannot be read is *unknown*, with the reason.
+
+    A word counts (see `reply_shape`) where the reply ended by itself, and where the probabilities
+    of its tokens, if there are any, say the same as the word.
+
+    Args:
+        body: What the server sent.
+        question: What was asked, where that is known.
+    """
     try:
-        choice = _Completion.model_validate_json(body).choices[0]
+        completion = _Completion.model_validate_json(body)
     except (ValidationError, ValueError, RecursionError):
         shown = body if isinstance(body, str) else body.decode("utf-8", "replace")
         return Reading(Reply.UNKNOWN, text=f"garbled reply: {shown[:200]}")
-    said = choice.message.content or ""
+    if completion.error:
+        return Reading(
+            Reply.UNKNOWN, text=f"the server reports an error: {completion.error!s:.200}"
+        )
+    readings = [_read_choice(choice, question) for choice in completion.choices[:_MOST_CHOICES]]
+    if len({reading.reply for reading in readings}) > 1:
+        said = " / ".join(reading.text for reading in readings)
+        return Reading(Reply.UNKNOWN, text=f"several answers: {said[:200]}")
+    return readings[0]
+
+
+def _read_choice(choice: _Choice, question: str | None) -> Reading:
+    message, ended = choice.message, (choice.finish_reason or "stop").lower()
+    said, cut = message.content or "", ended == "length"
+    if len(said) > _LONGEST:
+        return Reading(Reply.UNKNOWN, text=f"a reply of {len(said)} characters: {said[:200]}")
+    if message.refusal:
+        return Reading(Reply.UNKNOWN, text=f"refused: {message.refusal[:200]}")
     if not said.strip():
-        if choice.message.refusal:
-            return Reading(Reply.UNKNOWN, text=f"refused: {choice.message.refusal[:200]}")
-        cut = choice.finish_reason == "length"
         return Reading(Reply.UNKNOWN, text="cut short" if cut else "empty reply", cut_short=cut)
-    tokens = _tokens(choice.logprobs)
-    word = read_words(said)
-    token = answer_token(tokens)
-    if token is None or word is Reply.UNKNOWN:
-        cut = choice.finish_reason == "length" and still_thinking(said)
+    if not cut and ended not in _ENDED_BY_ITSELF:
+        return Reading(Reply.UNKNOWN, text=f"ended by {ended[:40]!r}: {said}")
+    if message.tool_calls or message.role not in (None, "assistant"):
+        return Reading(Reply.UNKNOWN, text=f"not said by the model as an answer: {said}")
+    word = read_words(said, question, cut=cut)
+    if word is Reply.UNKNOWN:
+        cut = cut and (still_thinking(said) or read_words(said, question) is not Reply.UNKNOWN)
         return Reading(word, text=said, cut_short=cut)
+    return _weighed(word, said, _tokens(choice.logprobs))
+
+
+def _weighed(word: Reply, said: str, tokens: Sequence[Token]) -> Reading:
+    """A clear word, with the probabilities of its tokens; *unknown* where these say otherwise."""
+    token = answer_token(tokens)
+    if token is None:
+        other = spelt(tokens)
+        if other and not said.strip().startswith(other) and word.value not in other.lower():
+            return Reading(Reply.UNKNOWN, text=f"its tokens say otherwise ({other[:40]!r}): {said}")
+        return Reading(word, text=said)
     found = mass(token.alternatives.items())
     p_yes = found.p_yes
-    if p_yes is None or p_yes == 0.5 or found.leftover > 0.5:
+    if p_yes is None or found.leftover > 0.5:
         return Reading(Reply.UNKNOWN, "logprobs", said, leftover=found.leftover)
-    reply = Reply.YES if p_yes > 0.5 else Reply.NO
-    return Reading(reply, "logprobs", said, p_yes=p_yes, leftover=found.leftover)
+    sides = (p_yes > 0.5, p_yes < 0.5)
+    if sides != (word is Reply.YES, word is Reply.NO) or meaning(token.text) != word.value:
+        text = f"its tokens say otherwise (P(yes) = {p_yes:.3f}): {said}"
+        return Reading(Reply.UNKNOWN, "logprobs", text, leftover=found.leftover)
+    return Reading(word, "logprobs", said, p_yes=p_yes, leftover=found.leftover)
 
 
 def _tokens(logprobs: Any) -> list[Token]:

@@ -25,10 +25,11 @@ def make_vlm(spec: str, context: Mapping[str, Any]) -> tuple[VLM, set[str]]:
         PluginError: It cannot be made, or it is a noise model and there is no truth here.
     """
     if not is_noise_model(load_spec(Kind.VLM, spec)):
-        return make_from(Kind.VLM, spec, context)
+        return make_from(Kind.VLM, spec, context, protocol=VLM)
     if context.get("truth") is None:
         raise PluginError(
             f"The VLM {spec!r} is a noise model: it answers from the truth of a simulated world, "
             "and there is none here. Choose one that looks at pictures, e.g. 'openai:MODEL'."
         )
-    return make_from(Kind.VLM, spec, context, entitled=("truth", "simulation"))
+    entitled = ("truth", "simulation")
+    return make_from(Kind.VLM, spec, context, entitled=entitled, protocol=VLM)

@@ -6,13 +6,14 @@ import importlib.util
 import os
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
-from io import BytesIO
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from tpvqa.addresses import checked_address
 from tpvqa.chance import chance
 from tpvqa.errors import AnswerError, MissingExtraError, PluginError
 from tpvqa.observation import Frame, Observation
+from tpvqa.plugins import PlainArguments
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import NeedsPictures
@@ -26,6 +27,8 @@ from tpvqa.vlm.chat_completions import (
     refuses_form,
 )
 from tpvqa.vlm.connection import Connection
+from tpvqa.vlm.pictures import grey_frame
+from tpvqa.vlm.server_text import ServerText
 
 if TYPE_CHECKING:
     from openai import APIStatusError, AsyncOpenAI
@@ -47,7 +50,7 @@ class _Retry(Exception):  # noqa: N818 — a request to try again, not an error
         self.why, self.pause, self.unreachable = why, pause, unreachable
 
 
-class OpenAICompatibleVLM(NeedsPictures):
+class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
     """Asks a server with the pictures and one question a request, several at a time.
 
     P(yes) comes from the logprobs of the first answer token, P(yes) = yes / (yes + no) summed
@@ -73,7 +76,7 @@ class OpenAICompatibleVLM(NeedsPictures):
 
     Raises:
         MissingExtraError: The `openai` package is not installed.
-        AnswerError: The address is not one.
+        AnswerError: The address is not one, or holds a password.
     """
 
     def __init__(
@@ -91,15 +94,16 @@ class OpenAICompatibleVLM(NeedsPictures):
             raise MissingExtraError("openai", "openai", f"The VLM 'openai:{model}'")
         self.model = model
         self.base_url = base_url or os.environ.get("OPENAI_BASE_URL") or None
-        if self.base_url and not self.base_url.startswith(("http://", "https://")):
-            raise AnswerError(
-                f"{self.base_url!r} is no address of a server. Write it with http:// or https:// "
-                "and its path, e.g. http://localhost:8000/v1."
-            )
+        if self.base_url:
+            try:
+                checked_address(self.base_url)
+            except ValueError as error:
+                raise AnswerError(f"openai:{model}: {error}.") from None
         self._concurrency, self._deadline = concurrency, deadline
         self._request_timeout, self._retries = request_timeout, retries
         self._instruction = instruction
         self._dialect = Dialect()
+        self._text = ServerText("")
         self._connection: Connection | None = None
         self._looked_at: tuple[object, ...] = ()
         self._known: dict[str, _TimedReading] = {}
@@ -152,8 +156,7 @@ class OpenAICompatibleVLM(NeedsPictures):
         Raises:
             AnswerError: As `ask` does.
         """
-        grey = Frame("check", "front", _grey(), "image/png")
-        self._ask_all((grey,), ("Is this picture grey?",))
+        self._ask_all((grey_frame(),), ("Is this picture grey?",))
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
@@ -164,6 +167,8 @@ class OpenAICompatibleVLM(NeedsPictures):
         if self._connection is None or not self._connection.alive:
             import openai
 
+            from tpvqa.vlm.http_client import bounded_client
+
             key = os.environ.get("OPENAI_API_KEY", "").strip()
             if not key and self.base_url is None:
                 raise AnswerError(
@@ -172,9 +177,13 @@ class OpenAICompatibleVLM(NeedsPictures):
                 )
             if not key.isascii():
                 raise AnswerError("OPENAI_API_KEY has characters that no key has. Set it again.")
+            self._text = ServerText(key)
             try:
                 client = openai.AsyncOpenAI(
-                    api_key=key or "none-needed", base_url=self.base_url, max_retries=0
+                    api_key=key or "none-needed",
+                    base_url=self.base_url,
+                    max_retries=0,
+                    http_client=bounded_client(),
                 )
             except (openai.OpenAIError, ValueError) as error:
                 raise AnswerError(f"{self._where()} cannot be asked: {error}") from error
@@ -182,8 +191,19 @@ class OpenAICompatibleVLM(NeedsPictures):
         return self._connection
 
     def _ask_all(self, frames: Sequence[Frame], texts: Sequence[str]) -> list[_TimedReading]:
+        """Ask; the one place that all that a server says comes out of."""
         connection = self._connect()
-        return connection.run(self._ask_side_by_side, connection.client, frames, texts)
+        try:
+            outcomes = connection.run(self._ask_side_by_side, connection.client, frames, texts)
+        except AnswerError as error:
+            raise AnswerError(self._text(str(error))) from None
+        except Exception as error:  # noqa: BLE001  its text may be the server's
+            why = self._text(f"{type(error).__name__}: {error}")
+            raise AnswerError(f"{self._where()} cannot be asked: {why}") from None
+        return [
+            replace(each, reading=replace(each.reading, text=self._text(each.reading.text)))
+            for each in outcomes
+        ]
 
     async def _ask_side_by_side(
         self, client: "AsyncOpenAI", frames: Sequence[Frame], texts: Sequence[str]
@@ -293,6 +313,8 @@ class OpenAICompatibleVLM(NeedsPictures):
         """One request; what the server complains of where it refuses its form."""
         import openai
 
+        from tpvqa.vlm.http_client import ReplyTooLargeError
+
         parameters: dict[str, Any] = dialect.parameters()
         try:
             async with asyncio.timeout(self._request_timeout):
@@ -304,7 +326,10 @@ class OpenAICompatibleVLM(NeedsPictures):
                 )
         except (TimeoutError, openai.APITimeoutError):
             raise _Retry(f"late: nothing within {self._request_timeout:g} s") from None
-        except openai.APIConnectionError as error:
+        except (openai.APIConnectionError, ReplyTooLargeError) as error:
+            for cause in (error, error.__cause__):
+                if isinstance(cause, ReplyTooLargeError):
+                    return Reading(Reply.UNKNOWN, text=f"garbled reply: {cause}")
             why = str(error.__cause__ or error) or type(error.__cause__).__name__
             raise _Retry(f"no connection: {why}", unreachable=True) from None
         except openai.APIStatusError as error:
@@ -313,13 +338,19 @@ class OpenAICompatibleVLM(NeedsPictures):
             raise AnswerError(
                 f"{self._where()} answers with a web page. Is the path right (usually /v1)?"
             )
-        return read_completion(response.content)
+        return read_completion(response.content, text)
 
     def _refused(self, error: "APIStatusError") -> Reading | str:
         status, parts = error.status_code, complaint(error.body)
         said = ", ".join(parts.values()) or f"HTTP status {status}"
         if any("content_" in value for key, value in parts.items() if key in ("code", "type")):
             return Reading(Reply.UNKNOWN, text=f"refused: {said}")
+        if 300 <= status < 400:
+            there = error.response.headers.get("location", "elsewhere")
+            raise AnswerError(
+                f"{self._where()} sends requests on to {there[:200]}, and pictures are not sent to "
+                "another address than the one given. Give the right one by --base-url."
+            )
         if refuses_form(status, said):
             return said
         if status in (401, 403):
@@ -342,14 +373,6 @@ class OpenAICompatibleVLM(NeedsPictures):
 
     def _where(self) -> str:
         return self.base_url or "OpenAI's server"
-
-
-def _grey() -> bytes:
-    from PIL import Image
-
-    file = BytesIO()
-    Image.new("RGB", (64, 64), (128, 128, 128)).save(file, "png")
-    return file.getvalue()
 
 
 def _pause(retry: _Retry, attempt: int, text: str) -> float:

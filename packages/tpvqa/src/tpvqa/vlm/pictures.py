@@ -1,36 +1,40 @@
-"""A picture file as an observation."""
+"""A picture file as an observation; and a picture to try a server with."""
 
 from io import BytesIO
 from pathlib import Path
 
-from tpvqa.errors import AnswerError
-from tpvqa.observation import Frame, Observation
+from tpvqa.errors import PictureError
+from tpvqa.observation import PNG, Frame, Observation
+from tpvqa.pictures import decoded, picture_type, read_picture
 
 
 def observe_file(path: str | Path) -> Observation:
-    """One look at a picture in a file, of any format that Pillow reads.
+    """One look at a picture in a file.
 
-    JPEG and PNG are taken as they are, others are turned into PNG.
+    JPEG and PNG are taken as they are, WebP, which few servers read, is turned into PNG.
 
     Raises:
-        AnswerError: The file cannot be read, or is not a picture.
+        PictureError: It is no regular file, no JPEG, PNG or WebP, damaged, or too large.
     """
-    from PIL import Image, UnidentifiedImageError
-
     path = Path(path)
+    data = read_picture(path)
+    media_type = picture_type(data)
     try:
-        data = path.read_bytes()
-        with Image.open(BytesIO(data)) as picture:
-            picture.load()
-            media_type = {"JPEG": "image/jpeg", "PNG": "image/png"}.get(picture.format or "")
-            if media_type is None:
-                as_png = BytesIO()
-                picture.convert("RGB").save(as_png, "PNG")
-                data, media_type = as_png.getvalue(), "image/png"
-    except UnidentifiedImageError as error:
-        raise AnswerError(f"{path} is not a picture. Give a JPEG or PNG file.") from error
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
-        why = getattr(error, "strerror", None) or error
-        raise AnswerError(f"{path} cannot be read as a picture: {why}") from error
+        picture = decoded(data)
+    except PictureError as error:
+        raise PictureError(f"{path}: {error}") from error
+    if media_type == "image/webp":
+        as_png = BytesIO()
+        picture.convert("RGB").save(as_png, "PNG")
+        data, media_type = as_png.getvalue(), PNG
     frame = Frame(path.stem, "front", data, media_type, source=str(path))
     return Observation(frames={"front": frame})
+
+
+def grey_frame() -> Frame:
+    """A picture that is grey all over."""
+    from PIL import Image
+
+    file = BytesIO()
+    Image.new("RGB", (64, 64), (128, 128, 128)).save(file, "png")
+    return Frame("check", "front", file.getvalue(), PNG)

@@ -1,7 +1,8 @@
 """What a world can do besides acting and looking, and the one place that asks whether it can.
 
-A world has a capability by having all of its members, but for `Simulated` and `Pictureless`, which
-a class declares by deriving from them: what they say is known before a world is made.
+A world has a capability by having all of its members, but for `Simulated`, `Pictureless` and
+`Noiseless`, which a class declares by deriving from them: what they say is known before a world
+is made.
 """
 
 from collections.abc import Mapping
@@ -59,6 +60,19 @@ class Simulated:
 
 class Pictureless:
     """Declares that a world's observations hold no pictures: only noise models can answer."""
+
+
+class Noiseless:
+    """Declares that a world's pictures have no noise: what has not changed looks the very same.
+
+    Of other worlds, but for simulated ones, a picture that an action has not changed in a single
+    byte is taken to be that of a frozen camera. A simulator of your own derives from this.
+    """
+
+
+def is_noiseless(world: object) -> bool:
+    """Whether pictures of a world, or a class of worlds, may be the same after an action."""
+    return issubclass(class_of(world), (Simulated, Noiseless))
 
 
 def is_simulated(world: object) -> bool:

@@ -24,4 +24,5 @@ def make_world(spec: str, context: Mapping[str, Any]) -> tuple[World, set[str]]:
         PluginError: It cannot be made.
     """
     simulated = is_simulated(load_spec(Kind.WORLD, spec))
-    return make_from(Kind.WORLD, spec, context, entitled=("simulation",) if simulated else ())
+    entitled = ("simulation",) if simulated else ()
+    return make_from(Kind.WORLD, spec, context, entitled=entitled, protocol=World)

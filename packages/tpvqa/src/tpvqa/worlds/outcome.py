@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from tpvqa.pddl import Atom, State
+from tpvqa.worlds.protocol import Execution, Report
 
 
 class Failure(StrEnum):
@@ -12,6 +13,7 @@ class Failure(StrEnum):
     PRECONDITION = "precondition"  # one did not hold
     CHANCE = "chance"  # it was possible, and failed
     SCRIPT = "script"  # a script says so
+    REFUSED = "refused"  # its effects held already, and the skill will not do it again
 
     @property
     def said(self) -> str:
@@ -22,7 +24,8 @@ class Failure(StrEnum):
 _SAID = {
     Failure.PRECONDITION: "a precondition did not hold",
     Failure.CHANCE: "the action failed",
-    Failure.SCRIPT: "the script says so",
+    Failure.SCRIPT: "the action failed, as the script says",
+    Failure.REFUSED: "it was done already, and is refused",
 }
 
 
@@ -48,3 +51,13 @@ class Outcome:
     def succeeded(self) -> bool:
         """Whether the action did what its effects say, or they held already."""
         return self.failure is None
+
+    def execution(self, seconds: float) -> Execution:
+        """What the skill itself tells: it notices no fault, but knows what it refuses.
+
+        Args:
+            seconds: How long it took.
+        """
+        if self.failure is Failure.REFUSED:
+            return Execution(Report.FAILED, seconds, self.failure.said)
+        return Execution(Report.DONE, seconds)

@@ -13,6 +13,7 @@ from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.symbolic import SymbolicWorld
 
 _LOG = logging.getLogger(__name__)
+_UNDOING = "the script says so"
 
 
 class _ScriptedSimulation(Simulation):
@@ -35,7 +36,7 @@ class _ScriptedSimulation(Simulation):
             return outcome
         self._become((self.state - fault.delete) | fault.add)
         gone = next(iter(sorted(fault.delete)), None)
-        return Outcome(outcome.failure, gone, Failure.SCRIPT.said, before, self.state)
+        return Outcome(outcome.failure, gone, _UNDOING, before, self.state)
 
 
 class ScriptedWorld(SymbolicWorld):
@@ -51,14 +52,18 @@ class ScriptedWorld(SymbolicWorld):
         self._script = script
 
     @classmethod
-    def from_spec(cls, arguments: str, *, simulation: Simulation) -> "ScriptedWorld":
-        """Make it from `scripted:FILE`; without a file every action works.
+    def from_spec(
+        cls, arguments: str, *, simulation: Simulation, script_file: Path | None = None
+    ) -> "ScriptedWorld":
+        """Make it from `scripted:FILE`; without a file the shipped task's own script counts.
+
+        Where there is none either, every action works.
 
         Raises:
             WorldFileError: The file cannot be read or is not a script for the task.
         """
-        script = load_script(Path(arguments), simulation.task) if arguments else {}
-        return cls(simulation, script)
+        file = Path(arguments) if arguments else script_file
+        return cls(simulation, {} if file is None else load_script(file, simulation.task))
 
     def close(self) -> None:
         """Say which entries of the script never came to pass."""

@@ -4,8 +4,10 @@ As in the paper's experiment: an action fails with probability 0.25, and a quart
 also undo something achieved before. The truth is kept for judging and never shown to a monitor.
 """
 
+import operator
 from collections import Counter
 from collections.abc import Callable, Mapping
+from enum import StrEnum
 from typing import Any
 
 from tpvqa.chance import chance
@@ -17,6 +19,14 @@ FAILURE = 0.25
 DISTURBANCE = 0.25
 
 
+class Redo(StrEnum):
+    """What comes of an action whose effects hold already; the paper does not say."""
+
+    FREE = "free"  # nothing happens, and nothing can fail
+    RISKY = "risky"  # it fails as any action, preconditions waived, and may undo something
+    REFUSED = "refused"  # nothing happens, and the skill reports that it failed
+
+
 class Simulation:
     """A true state that actions change, with seeded faults.
 
@@ -26,6 +36,7 @@ class Simulation:
         failure: Probability that an action fails although it is possible.
         disturbance: Probability that a failure also undoes an achieved fact.
         spontaneous: Probability that an achieved fact is undone after a success.
+        redo: What comes of an action whose effects hold already.
         seed: With `episode`, the action and its attempt, decides every fault.
         episode: Number of the episode under this seed.
     """
@@ -38,11 +49,13 @@ class Simulation:
         failure: float = FAILURE,
         disturbance: float = DISTURBANCE,
         spontaneous: float = 0.0,
+        redo: Redo | str = Redo.FREE,
         seed: int = 0,
         episode: int = 0,
     ):
         self.task, self.rules = task, rules or WorldRules()
         self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
+        self.redo = Redo(redo)
         self.seed, self.episode = seed, episode
         self.state: State = task.init
         self.attempts: Counter[str] = Counter()
@@ -68,21 +81,22 @@ class Simulation:
         self.attempts[action.pddl()] += 1
         draw = chance(self.seed, self.episode, "fault", action.pddl(), attempt)
         fails, disturbs = draw.random() < self.failure, draw.random()
-        possible = self.possible(action)
-        intended = self.task.apply(before, self.truly(action))
+        achieved = self.achieved(action)
+        if achieved and self.redo is not Redo.RISKY:
+            failure = Failure.REFUSED if self.redo is Redo.REFUSED else None
+            return Outcome(failure, None, "", before, before)
         undone, undoing = None, ""
-        failure: Failure | None = None
-        if not self.achieved(action):
-            disturbance = self.disturbance
-            if not possible:
-                failure = Failure.PRECONDITION
-            elif fails:
-                failure = Failure.CHANCE
-            else:
-                self._become(intended)
-                disturbance = self.spontaneous
-            if disturbs < disturbance:
-                undone, undoing = self._disturb(draw.random(), draw.random())
+        failure, disturbance = None, self.disturbance
+        if not achieved and not self.possible(action):
+            failure = Failure.PRECONDITION
+        elif fails:
+            failure = Failure.CHANCE
+        else:
+            disturbance = self.spontaneous
+            if not achieved:
+                self._become(self.task.apply(before, self.truly(action)))
+        if disturbs < disturbance:
+            undone, undoing = self._disturb(draw.random(), draw.random())
         return Outcome(failure, undone, undoing, before, self.state)
 
     def truly(self, action: Action) -> Action:
@@ -121,10 +135,17 @@ class Simulation:
         }
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
-        """Put back what `snapshot` gave."""
-        self.state = frozenset(map(Atom.parse, snapshot["state"]))
-        self.attempts = Counter(snapshot["attempts"])
-        self.ended = list(map(Atom.parse, snapshot["ended"]))
+        """Put back what `snapshot` gave.
+
+        Raises:
+            PDDLError: Its facts are not of the task.
+            ValueError: It is another damaged snapshot, as are a KeyError and a TypeError.
+        """
+        state = frozenset(map(Atom.parse, snapshot["state"]))
+        ended = list(map(Atom.parse, snapshot["ended"]))
+        attempts = {str(name): operator.index(n) for name, n in snapshot["attempts"].items()}
+        self.task.check_state(state | {*ended})
+        self.state, self.attempts, self.ended = state, Counter(attempts), ended
 
 
 class SimulatedTruth:

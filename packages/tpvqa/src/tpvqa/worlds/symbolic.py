@@ -1,5 +1,6 @@
 """A world that is told, not seen: for experiments without pictures and for users' own domains."""
 
+import operator
 from collections.abc import Mapping, Sequence
 from threading import Event
 from typing import Any
@@ -40,13 +41,13 @@ class SymbolicWorld(Simulated, Pictureless):
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
     ) -> Execution:
-        """Try the action at once; the skill notices nothing."""
+        """Try the action at once; the skill notices no fault."""
         if cancel is not None and cancel.is_set():
             return Execution(Report.CANCELLED, 0.0)
         if deadline is not None and deadline <= 0:
             return Execution(Report.LATE, 0.0, "no time was given")
         self.last_outcome = self.simulation.execute(action)
-        return Execution(Report.DONE, 0.0)
+        return self.last_outcome.execution(0.0)
 
     def snapshot(self) -> Mapping[str, Any]:
         """The true state and the number of looks."""
@@ -54,7 +55,7 @@ class SymbolicWorld(Simulated, Pictureless):
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
         """Put back what `snapshot` gave."""
-        self._looks = snapshot["look"]
+        self._looks = operator.index(snapshot["look"])
         self.simulation.restore(snapshot["simulation"])
 
     def close(self) -> None:

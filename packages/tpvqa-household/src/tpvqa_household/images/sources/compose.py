@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tpvqa.errors import GeneratorError, PictureRefused, PictureSetError
+from tpvqa.errors import GeneratorError, PictureError, PictureRefused, PictureSetError
+from tpvqa.pictures import read_file
 from tpvqa.worlds.pictures import MANIFEST, digest
 from tpvqa_household.images.manifest import (
     Manifest,
@@ -126,7 +127,7 @@ class _Composer:
                 if one.kind != "rendered" and drawn.renderer is None:
                     data = as_jpeg(read_picture(data))
             except ValueError as error:
-                raise GeneratorError(f"{one.file}: what was made is {error}") from error
+                raise GeneratorError(f"{one.file}: what was made {error}") from error
             replace(self._folder / one.file, data)
             done[one.file] = self._entry(one, data, drawn)
             composed.made += 1
@@ -142,7 +143,7 @@ class _Composer:
                 path.replace(self._folder / UNUSED / path.name)
 
     def _kept(self, one: Wanted, path: Path) -> Picture:
-        data = path.read_bytes()
+        data = read_file(path)
         known = self._existing.get(one.file)
         if path.parent != self._folder:
             replace(self._folder / one.file, data)
@@ -191,8 +192,8 @@ class _Composer:
 
 def _existing(folder: Path) -> dict[str, Picture]:
     try:
-        manifest = Manifest.model_validate_json((folder / MANIFEST).read_bytes())
-    except (OSError, ValueError):
+        manifest = Manifest.model_validate_json(read_file(MANIFEST, inside=folder))
+    except (PictureError, ValueError):
         return {}
     if any(picture.origin == Origin() for picture in manifest.pictures):
         raise PictureSetError(
@@ -206,8 +207,8 @@ def _there(one: Wanted, folder: Path, existing: Mapping[str, Picture]) -> Path |
     known = existing.get(one.file)
     for path in (folder / one.file, folder / UNUSED / one.file):
         try:
-            data = path.read_bytes()
-        except OSError:
+            data = read_file(path)
+        except PictureError:
             continue
         if known is not None and digest(data) == known.sha256:
             return path
@@ -232,9 +233,9 @@ def _draw(one: Wanted) -> Drawn:
         return one.generator.generate(one.prompt, seed=one.seed)
     assert one.source is not None
     try:
-        data = one.source.path.read_bytes()
-    except OSError as error:
-        raise PictureSetError(f"{one.source.path}: cannot be read ({error.strerror})") from error
+        data = read_file(one.source.path)
+    except PictureError as error:
+        raise PictureSetError(str(error)) from error
     if digest(data) != one.source.sha256:
         raise PictureSetError(f"{one.source.path}: is not what it was when it was listed")
     if one.generator is None:

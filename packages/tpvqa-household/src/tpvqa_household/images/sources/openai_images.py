@@ -7,8 +7,10 @@ import uuid
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from tpvqa.addresses import checked_address
 from tpvqa.chance import chance
 from tpvqa.errors import GeneratorError, MissingExtraError, PictureRefused
+from tpvqa.vlm.server_text import ServerText
 from tpvqa.worlds.pictures import digest
 from tpvqa_household.images.sources.generator import Drawn, Original
 from tpvqa_household.images.sources.images_reply import (
@@ -80,11 +82,12 @@ class OpenAIImages:
             raise MissingExtraError("openai", "openai", f"The generator 'openai:{model}'")
         self.model, self.price, self.requests = model, price, 0
         self.base_url = base_url or os.environ.get("OPENAI_BASE_URL") or None
-        if self.base_url and not self.base_url.startswith(("http://", "https://")):
-            raise GeneratorError(
-                f"{self.base_url!r} is no address of a server. Write it with http:// or https:// "
-                "and its path, e.g. http://localhost:8000/v1."
-            )
+        if self.base_url:
+            try:
+                checked_address(self.base_url)
+            except ValueError as error:
+                raise GeneratorError(f"openai:{model}: {error}.") from None
+        self._text = ServerText("")
         self._size = size or ("512x512" if model == "dall-e-2" else None)
         self._deadline, self._request_timeout = deadline, request_timeout
         self._retries = retries
@@ -145,9 +148,13 @@ class OpenAIImages:
                 )
             if not key.isascii():
                 raise GeneratorError("OPENAI_API_KEY has characters that no key has. Set it again.")
+            self._text = ServerText(key)
             try:
                 self._client = openai.OpenAI(
-                    api_key=key or "none-needed", base_url=self.base_url, max_retries=0
+                    api_key=key or "none-needed",
+                    base_url=self.base_url,
+                    max_retries=0,
+                    http_client=openai.DefaultHttpxClient(follow_redirects=False),
                 )
             except (openai.OpenAIError, ValueError) as error:
                 raise GeneratorError(f"{self._where()} cannot be asked: {error}") from error
@@ -156,6 +163,13 @@ class OpenAIImages:
     def _insist(
         self, ask: Callable[..., Any], sent: dict[str, Any], seed: int, *, of: str
     ) -> Drawn:
+        """Ask for one picture; the one place that all that a server says comes out of."""
+        try:
+            return self._drawn(ask, sent, seed, of=of)
+        except GeneratorError as error:
+            raise type(error)(self._text(str(error))) from None
+
+    def _drawn(self, ask: Callable[..., Any], sent: dict[str, Any], seed: int, *, of: str) -> Drawn:
         """Ask for one picture, again after failures that may pass."""
         time.sleep(max(0.0, self._next_turn - time.monotonic()))
         end = time.monotonic() + self._deadline

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tpvqa.errors import PhotosError, WorldError, suggestion_or_list
+from tpvqa.errors import PhotosError, PictureError, WorldError, suggestion_or_list
 from tpvqa.pddl import Atom, State
+from tpvqa.pictures import read_file
 from tpvqa.worlds.pictures import digest
 from tpvqa_household.images.manifest import OUTCOMES
 from tpvqa_household.images.recipe import FACTS
@@ -114,7 +115,7 @@ def read_photos(folder: Path, labels: Sequence[Label], *, table: Path | None = N
 class _Claim:
     """What a folder or a line of the table says of a file."""
 
-    path: Path
+    folder: Path
     name: str
     task: str
     action: str
@@ -122,6 +123,10 @@ class _Claim:
     facts: str = ""
     table: Path | None = None
     line: int | None = None
+
+    @property
+    def path(self) -> Path:
+        return self.folder / self.name
 
     def wrong(self, message: str) -> PhotosError:
         if self.table is None:
@@ -144,7 +149,7 @@ def _by_folder(folder: Path) -> Iterator[_Claim]:
                 file=path,
             )
         task = parts[0] if len(parts) == 3 else ""
-        yield _Claim(path, below.as_posix(), task, parts[-2], parts[-1].lower())
+        yield _Claim(folder, below.as_posix(), task, parts[-2], parts[-1].lower())
 
 
 def _by_table(table: Path, folder: Path) -> Iterator[_Claim]:
@@ -165,7 +170,7 @@ def _by_table(table: Path, folder: Path) -> Iterator[_Claim]:
         if not any(entry.values()):
             continue
         yield _Claim(
-            path=folder / entry["file"],
+            folder=folder,
             name=entry["file"],
             task=entry["task"],
             action=entry["action"],
@@ -180,10 +185,10 @@ def _photo(claim: _Claim, labels: Sequence[Label]) -> Photo:
     label = _label(claim, labels)
     state = _state(claim, label)
     try:
-        data = claim.path.read_bytes()
+        data = read_file(claim.name, inside=claim.folder)
         read_picture(data)
-    except OSError as error:
-        raise claim.wrong(f"{claim.name} cannot be read ({error.strerror})") from error
+    except PictureError as error:
+        raise claim.wrong(str(error)) from error
     except ValueError as error:
         raise claim.wrong(f"{claim.name}: {error}") from error
     return Photo(claim.path, claim.name, label, state, digest(data))

@@ -2,7 +2,10 @@
 
 from io import BytesIO
 
-from PIL import Image, ImageOps, UnidentifiedImageError
+from PIL import Image, ImageOps
+
+from tpvqa.errors import PictureError
+from tpvqa.pictures import decoded
 
 LONGEST = 512
 """Pixels of the longer side at most. Photos tell where they were taken; that is left out too."""
@@ -16,15 +19,11 @@ def read_picture(data: bytes) -> Image.Image:
         ValueError: It is no picture, or a broken one; says which.
     """
     try:
-        with Image.open(BytesIO(data)) as image:
-            image.load()
-            return ImageOps.exif_transpose(image).convert("RGB")
-    except UnidentifiedImageError:
-        raise ValueError("not a picture that can be read; save it as JPEG or PNG") from None
-    except Image.DecompressionBombError:
-        raise ValueError("more pixels than any photo has") from None
-    except (OSError, SyntaxError, ValueError) as error:
-        raise ValueError(f"a damaged picture ({error})") from error
+        return ImageOps.exif_transpose(decoded(data)).convert("RGB")
+    except PictureError as error:
+        raise ValueError(str(error)) from error
+    except Exception as error:  # what a camera wrote into it may be anything
+        raise ValueError(f"is a damaged picture ({error})") from error
 
 
 def as_jpeg(image: Image.Image) -> bytes:

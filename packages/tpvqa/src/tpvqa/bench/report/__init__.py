@@ -10,10 +10,12 @@ from typing import Any
 from tpvqa.bench import figures
 from tpvqa.bench.accuracy import Decisions, answers_of, decisions_of
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.curve import Curve, crossing
+from tpvqa.bench.curve import Curve, crossings
+from tpvqa.bench.ledger import REMEDY
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.summary import REFERENCE, Summary, summaries
-from tpvqa.errors import BenchError
+from tpvqa.errors import WriteError
+from tpvqa.files import write_whole
 from tpvqa.questions import Way
 from tpvqa.vlm.metrics import Metrics
 
@@ -148,14 +150,11 @@ class Results:
 
     def crossings(self) -> list[tuple[str, str, float | None]]:
         """By task and monitor, from which accuracy on asking beats not asking."""
-        found = []
-        for task, by_monitor in self.curves.items():
-            level = by_monitor.get("tp", by_monitor.get("none"))
-            if level:
-                for monitor, curve in by_monitor.items():
-                    if monitor not in ("tp", "none"):
-                        found.append((task, monitor, crossing(curve, next(iter(level.values())))))
-        return found
+        return [
+            (task, monitor, at)
+            for task, by_monitor in self.curves.items()
+            for monitor, at in crossings(by_monitor).items()
+        ]
 
 
 def draw(results: Results) -> dict[str, Any]:
@@ -177,7 +176,7 @@ def write_bench_report(folder: Path, results: Results) -> Path:
 
     Raises:
         MissingExtraError: Matplotlib is not installed.
-        BenchError: The folder cannot be written to.
+        WriteError: The folder cannot be written to.
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -195,7 +194,7 @@ def write_bench_report(folder: Path, results: Results) -> Path:
         for name, figure in drawn.items():
             for kind in ("svg", "png"):
                 data = figures.saved(figure, kind)
-                (folder / "figures" / f"{name}.{kind}").write_bytes(data)
+                write_whole(folder / "figures" / f"{name}.{kind}", data, remedy=REMEDY)
                 if kind == "svg":
                     encoded = base64.b64encode(data).decode()
                     pictures[name] = f"data:image/svg+xml;base64,{encoded}"
@@ -204,11 +203,9 @@ def write_bench_report(folder: Path, results: Results) -> Path:
             results=results, pictures=pictures, rate=_rate
         )
         path = folder / "report.html"
-        temporary = path.with_name(path.name + ".part")
-        temporary.write_text(page, encoding="utf-8")
-        temporary.replace(path)
+        write_whole(path, page.encode(), remedy=REMEDY)
     except OSError as error:
-        raise BenchError(f"{folder}: cannot be written to ({error})") from error
+        raise WriteError.of(folder, error, REMEDY) from error
     return path
 
 

@@ -1,18 +1,36 @@
 """One self-contained HTML page about an episode: pictures, questions, answers, decisions."""
 
 import base64
-from contextlib import suppress
+from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.log import episode_folder, read_episode
 from tpvqa.episodes.notable_facts import probability
 from tpvqa.episodes.report.belief_chart import chart
 from tpvqa.episodes.report.story import Story, tell
-from tpvqa.errors import EpisodeError
-from tpvqa.events.events import Event, FrameRecord
+from tpvqa.errors import EpisodeError, PictureError
+from tpvqa.events.events import Event, Started
+from tpvqa.files import write_whole
+from tpvqa.pictures import picture_type, read_picture
+from tpvqa.questions import FactWords
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 __all__ = ["Story", "render_report", "tell", "write_report"]
+
+
+MOST = 256 * 2**20
+"""Bytes of all pictures of a page at most; those beyond are named in it, but not shown."""
+
+
+class Shown(NamedTuple):
+    """A picture as the page holds it: its source, or why there is none."""
+
+    source: str = ""
+    why: str = ""
 
 
 def write_report(folder: Path | str, out: Path | str | None = None) -> Path:
@@ -26,49 +44,62 @@ def write_report(folder: Path | str, out: Path | str | None = None) -> Path:
         The file that was written.
 
     Raises:
-        EpisodeError: There is no episode, or the page cannot be written.
+        EpisodeError: There is no episode, or no folder to write the page in.
+        WriteError: The page cannot be written.
     """
     folder = episode_folder(folder)
     path = folder / "report.html" if out is None else Path(out)
     if path.is_dir():
         raise EpisodeError(f"{path} is a folder; name the file to write, e.g. {path}/report.html")
+    if out is not None and not path.parent.is_dir():
+        raise EpisodeError(f"{path}: there is no folder {path.parent}; make it, or name another")
     page = render_report(read_episode(folder), folder)
-    temporary = path.with_name(path.name + ".part")
-    try:
-        temporary.write_text(page, encoding="utf-8")
-        temporary.replace(path)
-    except OSError as error:
-        with suppress(OSError):
-            temporary.unlink()
-        raise EpisodeError(f"{path}: cannot be written ({error.strerror})") from error
+    data = page.encode(errors="replace")
+    write_whole(path, data, remedy="Name another file with --out")
     return path
 
 
 def render_report(events: list[Event], folder: Path) -> str:
     """The page as text, pictures embedded."""
+    left = MOST
+
+    @cache
+    def picture(file: str) -> Shown:
+        nonlocal left
+        try:
+            data = read_picture(file, inside=folder)
+        except PictureError as error:
+            return Shown(why=str(error))
+        if len(data) > left:
+            return Shown(why=f"{file}: the pictures of this page have {MOST:,} bytes already")
+        left -= len(data)
+        return Shown(f"data:{picture_type(data)};base64,{base64.b64encode(data).decode()}")
+
+    first = events[0] if events else None
+    words = words_of(first) if isinstance(first, Started) else FactWords()
+    story = tell(events, words)
+    return (
+        _environment()
+        .get_template("report.html.j2")
+        .render(
+            story=story,
+            picture=picture,
+            chart=chart(story, words.say),
+            say=words.say,
+            probability=probability,
+        )
+    )
+
+
+@cache
+def _environment() -> "Environment":
+    """The templates, compiled once."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    environment = Environment(
+    return Environment(
         loader=PackageLoader("tpvqa.episodes.report", "."),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-    )
-
-    def picture(frame: FrameRecord) -> str:
-        try:
-            data = (folder / frame.file).read_bytes()
-        except OSError:
-            return ""
-        return f"data:{frame.media_type};base64,{base64.b64encode(data).decode()}"
-
-    story = tell(events)
-    words = words_of(story.started)
-    return environment.get_template("report.html.j2").render(
-        story=story,
-        picture=picture,
-        chart=chart(story, words.say),
-        say=words.say,
-        probability=probability,
     )

@@ -110,16 +110,20 @@ class Row:
         ]
 
 
+MOST_POINTS = 500_000
+"""Facts times decisions of a chart, at most."""
 COURSES = ("go on", "skip ahead", "repeat", "go back", "replan", "done", "give up")
 """What can be decided, in the order of the key."""
 
 
 @dataclass(frozen=True, slots=True)
 class BeliefChart:
-    """The rows with what they share: the decisions from left to right."""
+    """The rows with what they share: the decisions from left to right. `left_out` are facts for
+    which there is no room."""
 
     columns: tuple[Column, ...]
     rows: tuple[Row, ...]
+    left_out: int = 0
     height: int = HEIGHT
 
     @property
@@ -162,7 +166,13 @@ def chart(story: Story, say: Callable[[str], str]) -> BeliefChart | None:
     """
     acted = [chapter.acted for chapter in story.actions if chapter.acted]
     truth = TrueFacts(story.started, known=any(each.truth for each in acted))
-    facts = _doubtful(story.actions)
+    decisions = sum(
+        bool(phase.decided and phase.decided.belief)
+        for each in story.actions
+        for phase in (each.before, each.after)
+    )
+    doubtful = _doubtful(story.actions)
+    facts = doubtful[: max(1, MOST_POINTS // max(500, decisions))]
     columns: list[Column] = []
     truths: list[list[bool | None]] = []
     for number, chapter in enumerate(story.actions, start=1):
@@ -184,7 +194,8 @@ def chart(story: Story, say: Callable[[str], str]) -> BeliefChart | None:
         )
         for place, fact in enumerate(facts)
     ]
-    return BeliefChart(tuple(columns), tuple(rows)) if rows else None
+    left_out = len(doubtful) - len(facts)
+    return BeliefChart(tuple(columns), tuple(rows), left_out) if rows else None
 
 
 def _doubtful(chapters: Sequence[Chapter]) -> list[str]:

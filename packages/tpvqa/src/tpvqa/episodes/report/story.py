@@ -2,15 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
+from tpvqa.episodes.agreement import Agreement
 from tpvqa.episodes.notable_facts import FactNow, notable
 from tpvqa.errors import EpisodeError
-from tpvqa.events import Exchange, TrialState
+from tpvqa.events import TrialState
 from tpvqa.events.events import (
     Acted,
     Acting,
     ActionRecord,
     Answered,
+    AnswerRecord,
     Believed,
     Decided,
     Ended,
@@ -18,8 +21,18 @@ from tpvqa.events.events import (
     FrameRecord,
     Observed,
     PlanMade,
+    QuestionRecord,
     Started,
 )
+from tpvqa.questions import FactWords
+
+
+class Told(NamedTuple):
+    """A question, its answer, and whether that agrees with what is expected."""
+
+    question: QuestionRecord
+    answer: AnswerRecord
+    agrees: bool | None
 
 
 @dataclass
@@ -28,7 +41,7 @@ class Check:
 
     look: int | None = None
     frames: tuple[FrameRecord, ...] = ()
-    exchanges: list[Exchange] = field(default_factory=list)
+    exchanges: list[Told] = field(default_factory=list)
 
 
 @dataclass
@@ -79,8 +92,12 @@ class Story:
         return [chapter for chapter in self.chapters if chapter.plan is None]
 
 
-def tell(events: Sequence[Event]) -> Story:
+def tell(events: Sequence[Event], words: FactWords | None = None) -> Story:
     """Put events in order of chapters; an unfinished episode is told as far as it goes.
+
+    Args:
+        events: Of an episode.
+        words: Those of the trial, by which answers are compared with what is expected.
 
     Raises:
         EpisodeError: The events do not begin with the beginning.
@@ -88,7 +105,7 @@ def tell(events: Sequence[Event]) -> Story:
     if not events or not isinstance(events[0], Started):
         raise EpisodeError("the episode has no beginning")
     story = Story(events[0], [], None)
-    state = TrialState()
+    state, agreement = TrialState(), Agreement(words or FactWords())
     current: Chapter | None = None
     phase = Phase()
 
@@ -116,7 +133,10 @@ def tell(events: Sequence[Event]) -> Story:
                 chapter()
                 if not phase.checks:
                     phase.checks.append(Check())
-                phase.checks[-1].exchanges += state.latest
+                phase.checks[-1].exchanges += [
+                    Told(each.question, each.answer, agreement.of(each, state))
+                    for each in state.latest
+                ]
             case Decided():
                 # A monitor may go on at another step instead of acting: that step is told anew.
                 if event.when == "before" and current is not None and current.step != event.step:

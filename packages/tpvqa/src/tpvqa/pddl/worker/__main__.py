@@ -5,9 +5,11 @@ A thread watches beside it. So the worker notices at any moment that the package
 that is busy from one that hangs.
 """
 
+import contextlib
 import ctypes
 import json
 import os
+import resource
 import select
 import signal
 import sys
@@ -21,6 +23,8 @@ from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
 _KEPT_TASKS = 8
 _HEARTBEAT = 0.5  # seconds
+_FULL = 10  # heartbeats in a row at the limit of memory, where allocating takes all the time
+_NEAR = 2 << 20  # bytes below the limit
 _PR_SET_PDEATHSIG = 1
 
 
@@ -37,6 +41,8 @@ class Worker:
         self._searcher = Searcher()
         self._tasks: OrderedDict[str, KnownTask] = OrderedDict()
         self._busy = False
+        self._request: dict[str, Any] = {}
+        self._exhausted = False
 
     def run(self) -> None:
         """Read and answer; does not return."""
@@ -49,23 +55,43 @@ class Worker:
             *lines, rest = (rest + data).split(b"\n")
             for line in lines:
                 self._busy = True
-                request = json.loads(line)
-                reply = self._answer(request)
+                request = self._request = json.loads(line)
+                reply = self._encoded(request, self._answer(request))
                 self._busy = False
-                self._send({"id": request["id"], **reply})
+                self._send(reply)
+                if self._exhausted:
+                    os._exit(0)  # gives the memory back; the next call starts another worker
                 self._searcher.prepare()
 
     def _watch(self) -> None:
         poll = select.poll()
         poll.register(0, 0)  # nothing but the end of the pipe
+        full = 0
         while True:
             if poll.poll(_HEARTBEAT * 1000):
                 os._exit(0)
             if self._busy:
-                self._send({})
+                with contextlib.suppress(MemoryError):
+                    self._send(b"{}\n")
+                    full = full + 1 if _memory_left() < _NEAR else 0
+                    if full >= _FULL and self._busy:
+                        told = self._out_of_memory(self._request)
+                        line = json.dumps({"id": self._request["id"], **told}).encode()
+                        self._send(line + b"\n")
+                        os._exit(0)
 
-    def _send(self, message: dict[str, Any]) -> None:
-        view = memoryview(json.dumps(message).encode() + b"\n")
+    def _encoded(self, request: dict[str, Any], reply: dict[str, Any]) -> bytes:
+        """A reply as a line; one that cannot be written is a crash."""
+        try:
+            return json.dumps({"id": request["id"], **reply}).encode() + b"\n"
+        except MemoryError:
+            told = self._out_of_memory(request)
+        except (TypeError, ValueError, RecursionError) as error:
+            told = _crashed(error)
+        return json.dumps({"id": request["id"], **told}).encode() + b"\n"
+
+    def _send(self, line: bytes) -> None:
+        view = memoryview(line)
         try:
             with self._writing:
                 while view:
@@ -75,6 +101,7 @@ class Worker:
 
     def _answer(self, request: dict[str, Any]) -> dict[str, Any]:
         try:
+            limit_memory(request.get("grounding_memory"))
             task = self._task(request)
             if task is None:
                 return {"unknown": True}
@@ -91,12 +118,21 @@ class Worker:
         except ReadingError as error:
             return {"error": [error.message, error.part, error.line]}
         except MemoryError:
-            return {
-                "outcome": _as_json(SearchOutcome("memory", reason="grounding ran out of memory"))
-            }
+            return self._out_of_memory(request)
         except Exception as error:  # noqa: BLE001  the translator asserts and raises many kinds
-            reason = f"the planning process failed: {type(error).__name__} {error}".rstrip()
-            return {"outcome": _as_json(SearchOutcome("crash", reason=reason))}
+            return _crashed(error)
+
+    def _out_of_memory(self, request: dict[str, Any]) -> dict[str, Any]:
+        self._exhausted = True
+        self._tasks.clear()
+        limit_memory(None)
+        memory = request.get("grounding_memory")
+        than = "there is" if memory is None else f"{memory / 1024:.3g} GB"
+        reason = (
+            f"grounding needs more memory than {than}; make the problem smaller (fewer objects, "
+            "fewer parameters of an action), or allow more (memory=…)"
+        )
+        return {"outcome": _as_json(SearchOutcome("memory", reason=reason))}
 
     def _task(self, request: dict[str, Any]) -> KnownTask | None:
         key = request["key"]
@@ -108,6 +144,32 @@ class Worker:
                 self._tasks.popitem(last=False)
         self._tasks.move_to_end(key)
         return self._tasks[key]
+
+
+def limit_memory(memory: int | None) -> None:
+    """Limit this process to so many MiB; None for no limit but that which it was started with."""
+    _, highest = resource.getrlimit(resource.RLIMIT_AS)
+    limit = highest if memory is None else memory << 20
+    if highest != resource.RLIM_INFINITY:
+        limit = min(limit, highest)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, highest))
+
+
+def _memory_left() -> int:
+    """Bytes of address space below this process's limit."""
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit == resource.RLIM_INFINITY:
+        return sys.maxsize
+    with open("/proc/self/statm", "rb", buffering=0) as file:
+        pages = int(file.read(64).split()[0])
+    return limit - pages * resource.getpagesize()
+
+
+def _crashed(error: Exception) -> dict[str, Any]:
+    said = f"{type(error).__name__} {error}".strip()[:300]
+    return {
+        "outcome": _as_json(SearchOutcome("crash", reason=f"the planning process failed: {said}"))
+    }
 
 
 def _as_json(outcome: SearchOutcome) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """Two PDDL texts → the translator's task, and errors that say where and what was expected."""
 
 from collections.abc import Iterable
+from itertools import pairwise
 from types import TracebackType
 from typing import Any
 
@@ -8,8 +9,12 @@ from fast_downward.translate import pddl
 from fast_downward.translate.pddl_parser import parsing_functions
 from fast_downward.translate.pddl_parser.parse_error import ParseError
 
-from tpvqa.errors import suggestion_or_list
+from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
+from tpvqa.pddl.worker.typing_check import ill_typed
+
+_HIGHEST_COST = 1_000_000_000
+"""Of one action; plans add them up in 32 bits."""
 
 
 class ReadingError(Exception):
@@ -57,43 +62,105 @@ def read(domain_text: str, problem_text: str) -> Any:
             blocks[part] = read_block(text)
         except LispError as error:
             raise ReadingError(error.message, part, error.line) from None
+        _check_kind(part, blocks[part])
+    _check_functions(blocks["domain"])
     try:
         task = parsing_functions.parse_task(blocks["domain"], blocks["problem"])
+        _check_types(task, blocks)
+        _check_derived(task)
+        _check_names(task)
+        _check_costs(task)
     except _LocatedError as error:
         raise _explained(error, blocks) from None
-    except (ParseError, ValueError) as error:
-        raise ReadingError(str(error), "domain", None) from None
-    except RecursionError:
-        raise ReadingError("the parentheses are nested too deeply", "domain", None) from None
-    except (AssertionError, AttributeError, IndexError, KeyError, TypeError) as error:
-        part, line = _innermost(error.__traceback__)
-        raise ReadingError(
-            f"the translator cannot make sense of this definition ({type(error).__name__} {error})",
-            part,
-            line,
-        ) from None
-    _check_types(task, blocks)
-    _check_derived(task)
-    _check_names(task)
-    _check_costs(task)
+    except (MemoryError, ReadingError):
+        raise
+    except Exception as error:  # noqa: BLE001  the parser trips over what it does not expect
+        raise _not_understood(error) from None
+    for wrong in ill_typed(task):
+        raise ReadingError(*wrong)
     return task
+
+
+def _check_kind(part: str, block: Block) -> None:
+    """A problem where the domain is expected, and the other way round, is told as that."""
+    begins = block[1] if len(block) > 1 else None
+    found = str(begins[0]) if isinstance(begins, Block) and begins else ""
+    other = "problem" if part == "domain" else "domain"
+    if found == other:
+        raise ReadingError(
+            f"this file is a {other}, where the {part} is expected; name the domain first, then "
+            "the problem",
+            part,
+            block.line,
+        )
+    if part == "problem" and found == "problem":
+        kinds = [each[0] for each in block[2:] if isinstance(each, Block) and each]
+        for wanted in (":domain", ":init", ":goal"):
+            if wanted not in kinds:
+                raise ReadingError(f"the problem has no ({wanted} …)", part, block.line)
+        if kinds.index(":init") > kinds.index(":goal"):
+            raise ReadingError(
+                "(:goal …) stands before (:init …); put it after, as Fast Downward wants it",
+                part,
+                line_of(kinds[kinds.index(":goal")]),
+            )
+
+
+def _check_functions(domain: Block) -> None:
+    """The translator knows numbers only, and fails without a word at other functions."""
+    for section in domain:
+        if not isinstance(section, Block) or section[:1] != [":functions"]:
+            continue
+        for before, word in pairwise(section):
+            if before == "-" and word != "number":
+                raise ReadingError(
+                    f"the functions before this have the type {_shown(word)}; expected "
+                    "'- number', as the only functions are those of action costs",
+                    "domain",
+                    line_of(word),
+                )
+
+
+def _not_understood(error: Exception) -> ReadingError:
+    """What the parser broke at, where it has no words for it."""
+    part, line = _innermost(error.__traceback__)
+    layers: list[str] = []
+    item: object = None
+    trace = error.__traceback__
+    while trace is not None:
+        names = trace.tb_frame.f_locals
+        context = names.get("context")
+        if isinstance(context, _Context):
+            layers = list(context._traceback)
+        for name in ("entry", "alist", "fact", "exp", "item"):
+            item = names[name] if line_of(names.get(name)) is not None else item
+        trace = trace.tb_next
+    if isinstance(error, RecursionError):
+        message = "this is nested too deeply"
+    else:
+        message = "this cannot be read"
+    message += f": {_shown(item)}" if item is not None else ""
+    message += _in(layers) + "; a word stands where a block is expected, or the other way round"
+    return ReadingError(message, part, line_of(item) or line)
+
+
+def _in(layers: list[str]) -> str:
+    told = " / ".join(layer.removeprefix("Parsing ") for layer in layers[1:4])
+    return f" [in {told}]" if told else ""
 
 
 def _explained(error: _LocatedError, blocks: dict[str, Block]) -> ReadingError:
     if "duplicate object" in error.message:
         name = error.message.split(":")[1].split(",")[0].strip()
         part, line = _place_of(name, dict(reversed(blocks.items())))
-        message = f"the object {name!r} is declared twice; expected it once"
+        message = f"the object {shown(name)} is declared twice; expected it once"
         return ReadingError(message, part, line)
-    layers = " / ".join(layer.removeprefix("Parsing ") for layer in error.layers[1:4])
     message = " ".join(error.message.replace("Reason: ", "").split()).rstrip(".")
     if error.item is not None and not isinstance(error.item, ParseError):
         message += f": got {_shown(error.item)}"
     if error.syntax:
         message += f"; expected {error.syntax}"
-    if layers:
-        message += f" [in {layers}]"
-    message += _names_that_exist(error)
+    message += _in(error.layers) + _names_that_exist(error)
     part, line = _innermost(error.__traceback__)
     if "does not match the name specified" in error.message:
         part, line = _place_of(":domain", blocks)
@@ -105,8 +172,7 @@ def _explained(error: _LocatedError, blocks: dict[str, Block]) -> ReadingError:
 
 
 def _shown(item: object) -> str:
-    text = parsing_functions.lispify(item) if isinstance(item, list | str) else str(item)
-    return repr(text if len(text) <= 80 else text[:77] + "…")
+    return shown(parsing_functions.lispify(item) if isinstance(item, list | str) else str(item))
 
 
 def _names_that_exist(error: _LocatedError) -> str:
@@ -221,21 +287,42 @@ def _check_derived(task: Any) -> None:
 
 
 def _check_names(task: Any) -> None:
-    """Two actions of one name would make a plan ambiguous."""
-    seen: set[str] = set()
+    """Two actions, predicates or parameters of one name would be ambiguous."""
+    _check_unique("actions", (action.name for action in task.actions))
+    _check_unique("predicates", (each.name for each in task.predicates if each.name != "="))
     for action in task.actions:
-        if action.name in seen:
+        _check_unique(
+            f"parameters of the action {shown(action.name)}",
+            (parameter.name for parameter in action.parameters),
+        )
+
+
+def _check_unique(what: str, names: Iterable[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
             raise ReadingError(
-                f"there are two actions of the name {str(action.name)!r}; expected one of each",
+                f"there are two {what} of the name {shown(name)}; expected one of each",
                 "domain",
-                line_of(action.name),
+                line_of(name),
             )
-        seen.add(action.name)
+        seen.add(name)
 
 
 def _check_costs(task: Any) -> None:
     """The translator does not compare how functions are used with how they are given values."""
     things = {thing.name for thing in task.objects}
+    given = [("domain", action.cost, action.name) for action in task.actions if action.cost]
+    given += [("problem", fact, "") for fact in task.init if isinstance(fact, pddl.Assign)]
+    for part, said, name in given:
+        if getattr(said.expression, "value", 0) > _HIGHEST_COST:
+            where = f"the cost of the action {shown(name)}" if name else "a value in (:init …)"
+            raise ReadingError(
+                f"{where} is {shown(said.expression.value)}; Fast Downward counts to "
+                f"{_HIGHEST_COST:,}, so take a larger unit",
+                part,
+                line_of(name) or line_of(getattr(said.fluent, "symbol", None)),
+            )
     for action in task.actions:
         called = action.cost.expression if action.cost else None
         if not isinstance(called, pddl.PrimitiveNumericExpression):

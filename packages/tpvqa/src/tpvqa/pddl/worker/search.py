@@ -149,6 +149,8 @@ class Searcher:
 
     def _in_child(self) -> None:
         self._prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        _, highest = resource.getrlimit(resource.RLIMIT_AS)
+        resource.setrlimit(resource.RLIMIT_AS, (highest, highest))  # grounding's is not its own
         if os.getppid() != self._own:
             os._exit(1)
 

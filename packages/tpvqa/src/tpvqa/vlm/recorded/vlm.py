@@ -8,6 +8,7 @@ from tpvqa.chance import chance
 from tpvqa.errors import PluginError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Task
+from tpvqa.plugins import PlainArguments
 from tpvqa.questions.question import FactQuestion, Question, Way
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import FactsOnly, NoiseModel
@@ -32,7 +33,7 @@ _KIND = {
 }
 
 
-class Recorded(NoiseModel, FactsOnly):
+class Recorded(NoiseModel, FactsOnly, PlainArguments):
     """Draws answers from those that a model gave to questions of the same kind.
 
     A noise model, not a VLM. An answer with its P(yes) is drawn from the model's recorded answers

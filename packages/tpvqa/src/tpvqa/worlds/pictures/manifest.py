@@ -12,26 +12,46 @@ from typing import Literal as Choice
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
-from tpvqa.errors import PictureSetError
+from tpvqa.errors import PictureError, PictureSetError
 from tpvqa.pddl import Atom, State
+from tpvqa.pictures import read_file
 
 MANIFEST = "manifest.json"
+_LONGEST_NAME = 300
+_MOST_BYTES = 128 * 2**20  # 360 pictures take 0.5 MB
+
+
+def _name(text: str) -> str:
+    """Something that messages may repeat."""
+    if len(text) > _LONGEST_NAME or not text.isprintable():
+        raise ValueError(f"write it in one line of at most {_LONGEST_NAME} characters")
+    return text
 
 
 @lru_cache(maxsize=4096)
 def _fact(text: str) -> str:
     """A fact as PDDL writes it."""
-    return Atom.parse(text).pddl()
+    return Atom.parse(_name(text)).pddl()
 
 
 Fact = Annotated[str, AfterValidator(_fact)]
+
+
+def _below(file: str) -> str:
+    """The name of a file that lies beside the manifest or in a folder there."""
+    if any(part in ("", ".", "..") for part in _name(file).split("/")):
+        raise ValueError("name a file that lies in the manifest's folder, e.g. left.png")
+    return file
+
+
+File = Annotated[str, AfterValidator(_below)]
 
 
 class Picture(BaseModel):
     """One picture and what is true in it.
 
     Attributes:
-        file: Its name, beside the manifest.
+        file: Its name, beside the manifest or in a folder there; no link.
         sha256: Of the file.
         state: The facts that are true in it, as PDDL atoms; all others are false.
         seen: The facts, true or false, that can be told from it.
@@ -41,7 +61,7 @@ class Picture(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
-    file: str
+    file: File
     sha256: str
     state: tuple[Fact, ...]
     seen: frozenset[Fact]
@@ -85,7 +105,7 @@ class Manifest(BaseModel, Generic[P]):
     model_config = ConfigDict(frozen=True, extra="ignore")
 
     version: Choice[1] = 1
-    domain: str
+    domain: Annotated[str, AfterValidator(_name)]
     facts: tuple[Fact, ...] = ()
     pictures: tuple[P, ...] = Field(min_length=1)
 
@@ -107,9 +127,9 @@ def read_manifest(folder: Path, kind: type[M], *, missing: str, broken: str) -> 
     """
     path = folder / MANIFEST
     try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise PictureSetError(f"{path}: cannot be read ({error.strerror}). {missing}") from error
+        text = read_file(MANIFEST, inside=folder, most=_MOST_BYTES)
+    except PictureError as error:
+        raise PictureSetError(f"{error}. {missing}") from error
     try:
         return kind.model_validate_json(text)
     except ValidationError as error:

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar, Generic
 
-from tpvqa.errors import PictureSetError
+from tpvqa.errors import PictureError, PictureSetError
+from tpvqa.pictures import read_picture
 from tpvqa.worlds.pictures.manifest import MANIFEST, Manifest, P, Picture, digest, read_manifest
 
 
@@ -36,14 +37,12 @@ class PictureSet(Generic[P]):
         """The encoded picture.
 
         Raises:
-            PictureSetError: Its file is missing.
+            PictureSetError: Its file is missing, is no picture, or lies elsewhere.
         """
         try:
-            return (self.folder / picture.file).read_bytes()
-        except OSError as error:
-            raise PictureSetError(
-                f"{self.folder / picture.file}: cannot be read ({error.strerror}). {self.gone}"
-            ) from error
+            return read_picture(picture.file, inside=self.folder)
+        except PictureError as error:
+            raise PictureSetError(f"{error}. {self.gone}") from error
 
     def check(self) -> None:
         """See whether all pictures are there, and are those that the manifest means.

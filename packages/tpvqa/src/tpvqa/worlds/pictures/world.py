@@ -6,6 +6,7 @@ as any other. So pictures that show different parts of a scene take turns, and a
 next to nothing comes only where nothing better is there.
 """
 
+import operator
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -122,7 +123,7 @@ class DrawnWorld(Simulated, Generic[P]):
                 f"no picture shows what {action} could lead to: {self.describe(outcome.after)}",
             )
         self.last_outcome = outcome
-        return Execution(Report.DONE, 0.0)
+        return outcome.execution(0.0)
 
     def snapshot(self) -> Mapping[str, Any]:
         """The true state, the number of looks and the picture last seen."""
@@ -145,7 +146,7 @@ class DrawnWorld(Simulated, Generic[P]):
                 f"The episode saw the picture {name!r}, which is not in {self.pictures.folder}. "
                 "Resume it with the set of pictures that it began with"
             )
-        self._look, self.last = snapshot["look"], last
+        self._look, self.last = operator.index(snapshot["look"]), last
         self.simulation.restore(snapshot["simulation"])
 
     def close(self) -> None:

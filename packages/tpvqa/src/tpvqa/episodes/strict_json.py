@@ -1,0 +1,58 @@
+"""One line of JSON, read without mercy: what another reader could take otherwise is refused."""
+
+import json
+import math
+from typing import Any
+
+LONGEST = 16 * 2**20
+"""Bytes of a line at most. The first event of a large task has a few hundred thousand."""
+_DIGITS = 20
+_NUMBER = 400
+"""Characters of a number with a fraction, at most."""
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        twice = next(name for at, (name, _) in enumerate(pairs) if name in dict(pairs[:at]))
+        raise ValueError(f"{twice[:40]!r} is given twice")
+    return found
+
+
+def _whole(text: str) -> int:
+    if len(text) > _DIGITS:
+        raise ValueError(f"a number has {len(text)} digits")
+    return int(text)
+
+
+def _real(text: str) -> float:
+    value = float(text) if len(text) <= _NUMBER else math.inf
+    if not math.isfinite(value):
+        raise ValueError(f"{text[:20]} is no number that can be counted with")
+    return value
+
+
+def _never(text: str) -> None:
+    raise ValueError(f"{text} is no number")
+
+
+_DECODER = json.JSONDecoder(
+    object_pairs_hook=_unique, parse_int=_whole, parse_float=_real, parse_constant=_never
+)
+
+
+def check_json(line: bytes) -> None:
+    """See that a line is one value of JSON: no name twice in an object, no number that is none or
+    endless, nothing nested without end.
+
+    Raises:
+        ValueError: It is not; says why.
+    """
+    if len(line) > LONGEST:
+        raise ValueError(f"the line is longer than {LONGEST:,} bytes")
+    try:
+        _DECODER.decode(line.decode("utf-8"))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    except UnicodeDecodeError as error:
+        raise ValueError(f"it is not UTF-8 ({error.reason})") from None

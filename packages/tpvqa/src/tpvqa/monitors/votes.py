@@ -1,0 +1,43 @@
+"""The paper's monitor, improved by nothing but looking more often: votes wherever it asks."""
+
+from tpvqa.errors import PluginError
+from tpvqa.monitors.asker import Asker
+from tpvqa.monitors.correcting import CorrectingMonitor
+from tpvqa.monitors.majority import Majority
+from tpvqa.plugins import PlainArguments
+
+
+class Votes(CorrectingMonitor, PlainArguments):
+    """TPVQA with votes over several looks everywhere, and a check of the goal at the end.
+
+    Args:
+        votes: Looks at which every question is asked.
+        majority: When votes deny an action.
+    """
+
+    def __init__(self, votes: int, *, majority: Majority | str = Majority.TIE_DENIES):
+        self._votes = Asker(majority=majority, votes=votes)
+        super().__init__(self._votes, goal=True)
+
+    @classmethod
+    def from_spec(
+        cls, arguments: str = "", *, majority: Majority | str = Majority.TIE_DENIES
+    ) -> "Votes":
+        """Make it from `vote:K[:MAJORITY]`, with votes over K looks.
+
+        Raises:
+            PluginError: The arguments are others.
+        """
+        votes, _, rule = arguments.partition(":")
+        if not votes.isdecimal() or int(votes) < 1 or rule not in ("", *Majority):
+            raise PluginError(
+                f"'vote:{arguments}' is not understood. Write vote:K for votes over K looks, "
+                "e.g. vote:5, or with the majority tie or strict at its end, e.g. vote:5:strict."
+            )
+        return cls(int(votes), majority=rule or majority)
+
+    @property
+    def name(self) -> str:
+        """What the log calls it."""
+        strict = ":strict" if self._votes.majority is Majority.STRICT else ""
+        return f"vote:{self._votes.votes}{strict}"

@@ -1,0 +1,159 @@
+"""Encoded pictures, which may come from a stranger: read from disk and decoded within bounds.
+
+Everything that reads a picture goes through here. A file is read if it is a regular one and not too
+large; where a folder is given it has to lie inside it, and no link on the way is followed. Only
+JPEG, PNG and WebP are decoded, by Pillow, after their headers have said how many pixels there are.
+"""
+
+import errno
+import os
+import stat
+import warnings
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tpvqa.errors import PictureError
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+FORMATS = {"JPEG": "image/jpeg", "MPO": "image/jpeg", "PNG": "image/png", "WEBP": "image/webp"}
+"""What Pillow calls what is decoded, and its media type. MPO is what some phones write: JPEG."""
+MOST_BYTES = 32 * 2**20
+"""Of a file."""
+MOST_PIXELS = 50_000_000
+"""Of a picture: as many as the largest photos of phones."""
+_MOST_SCANS = 100  # of a JPEG; each is decoded over the whole picture, photos have some ten
+
+
+def read_file(path: str | Path, *, inside: Path | None = None, most: int = MOST_BYTES) -> bytes:
+    """The bytes of a regular file that may come from a stranger. Never waits for a pipe.
+
+    Args:
+        path: The file. With `inside`, as seen from that folder.
+        inside: Where it has to lie. Then the path has to be relative, without "..", and neither
+            the file nor a folder below `inside` may be a link.
+        most: How many bytes it may have.
+
+    Raises:
+        PictureError: It is missing, no regular file, too large, or lies elsewhere.
+    """
+    shown = _shown(path if inside is None else inside / path)
+    try:
+        file = _open(Path(path)) if inside is None else _open_inside(str(path), inside)
+    except (OSError, ValueError) as error:  # a ValueError for a NUL in the path
+        raise PictureError(f"{shown}: cannot be read ({_why(error)})") from error
+    try:
+        if not stat.S_ISREG(os.fstat(file).st_mode):
+            raise PictureError(f"{shown}: is no regular file. Name a file on disk")
+        parts, left = [], most + 1
+        while left and (part := os.read(file, min(left, 2**20))):
+            parts.append(part)
+            left -= len(part)
+    except OSError as error:
+        raise PictureError(f"{shown}: cannot be read ({_why(error)})") from error
+    finally:
+        os.close(file)
+    if not left:
+        raise PictureError(f"{shown}: has more than {most / 2**20:g} MiB. Make it smaller")
+    return b"".join(parts)
+
+
+def read_picture(path: str | Path, *, inside: Path | None = None) -> bytes:
+    """The bytes of a picture in a file; as `read_file`, and its header has been read.
+
+    Raises:
+        PictureError: As `read_file` and `picture_type` do.
+    """
+    data = read_file(path, inside=inside)
+    try:
+        picture_type(data)
+    except PictureError as error:
+        shown = _shown(path if inside is None else inside / path)
+        raise PictureError(f"{shown}: {error}") from error
+    return data
+
+
+def picture_type(data: bytes) -> str:
+    """The media type of an encoded picture, by its content.
+
+    Raises:
+        PictureError: It is no JPEG, PNG or WebP, or has too many pixels.
+    """
+    with _opened(data) as picture:
+        return FORMATS[picture.format or ""]
+
+
+def decoded(data: bytes) -> "Image.Image":
+    """The pixels of an encoded picture.
+
+    Raises:
+        PictureError: It is no JPEG, PNG or WebP, is damaged, or has too many pixels.
+    """
+    picture = _opened(data)
+    try:
+        picture.load()
+    except Exception as error:  # decoders raise of every kind
+        raise PictureError(f"is a damaged picture ({error})") from error
+    return picture
+
+
+def _opened(data: bytes) -> "Image.Image":
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            picture = Image.open(BytesIO(data), formats=("JPEG", "PNG", "WEBP"))
+    except UnidentifiedImageError as error:
+        raise PictureError("is not a JPEG, PNG or WebP picture. Save it as one") from error
+    except Image.DecompressionBombError as error:
+        raise PictureError(_TOO_LARGE) from error
+    except Exception as error:  # so do readers of headers
+        raise PictureError(f"is a damaged picture ({error})") from error
+    width, height = picture.size
+    if width * height > MOST_PIXELS:
+        raise PictureError(f"{width} × {height}: {_TOO_LARGE}")
+    if picture.format in ("JPEG", "MPO") and data.count(b"\xff\xda") > _MOST_SCANS:
+        raise PictureError("is a JPEG of very many scans. Save it again as an ordinary one")
+    return picture
+
+
+_TOO_LARGE = f"has more than {MOST_PIXELS // 10**6} million pixels. Make it smaller"
+
+
+def _open(path: Path) -> int:
+    return os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
+
+
+def _open_inside(path: str, folder: Path) -> int:
+    """Open a file step by step, so that no link leads elsewhere."""
+    parts = path.split("/")
+    if any(part in ("", ".", "..") for part in parts):
+        raise OSError(0, "its path leads out of the folder")
+    kinds = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY
+    at = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    for part in parts[:-1]:
+        try:
+            below = os.open(part, kinds | os.O_NOFOLLOW | os.O_DIRECTORY, dir_fd=at)
+        finally:
+            os.close(at)
+        at = below
+    try:
+        return os.open(parts[-1], kinds | os.O_NOFOLLOW, dir_fd=at)
+    finally:
+        os.close(at)
+
+
+def _why(error: Exception) -> str:
+    strerror = getattr(error, "strerror", None)
+    if isinstance(error, OSError) and error.errno == errno.ELOOP:
+        return "it is a link, which is not followed; put the file itself there"
+    return str(strerror or error)
+
+
+def _shown(path: str | Path) -> str:
+    """A path for a message: what could steer a terminal, or is not UTF-8, is escaped."""
+    text = str(path)
+    return text if text.isprintable() else ascii(text)[1:-1]

@@ -1,0 +1,46 @@
+"""The HTTP client for a server that is not trusted: no redirects, and replies of bounded size."""
+
+from collections.abc import AsyncIterator
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from openai import DefaultAsyncHttpxClient
+
+MOST_BYTES = 4 * 2**20
+"""Of a reply: 2,000 tokens with 20 alternatives each have 3.5 MB."""
+
+
+class ReplyTooLargeError(Exception):
+    """A reply goes on beyond `MOST_BYTES`, or is compressed though nobody asked for that."""
+
+
+async def _bound(response: Any) -> None:
+    """Let no more be read of a response than it may have.
+
+    Its class is httpx's or that of httpx's successor, whichever openai uses.
+    """
+    encoding = response.headers.get("content-encoding", "").strip().lower()
+    if encoding not in ("", "identity"):  # a few bytes can become gigabytes
+        raise ReplyTooLargeError("it is compressed, which was not asked for")
+    parts = response.aiter_raw
+
+    async def bounded(chunk_size: int | None = None) -> AsyncIterator[bytes]:
+        left = MOST_BYTES
+        async for part in parts(chunk_size):
+            left -= len(part)
+            if left < 0:
+                raise ReplyTooLargeError(f"it has more than {MOST_BYTES // 2**20} MiB")
+            yield part
+
+    response.aiter_raw = bounded
+
+
+def bounded_client() -> "DefaultAsyncHttpxClient":
+    """A client that sends to the address that it is given, and reads no more than it should."""
+    from openai import DefaultAsyncHttpxClient
+
+    return DefaultAsyncHttpxClient(
+        follow_redirects=False,
+        headers={"Accept-Encoding": "identity"},
+        event_hooks={"response": [_bound]},
+    )

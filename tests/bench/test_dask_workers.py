@@ -1,0 +1,84 @@
+"""Dask's workers on this machine: nobody else is let in, and one that dies at the start is told."""
+
+import time
+from pathlib import Path
+from urllib.error import HTTPError
+from urllib.request import urlopen
+
+import dask
+import pytest
+from distributed import Client, Security
+
+from tpvqa.bench.dask_workers import as_they_finish, dask_client
+from tpvqa.errors import BenchError
+
+
+def listening() -> set[int]:
+    """The ports of TCP that something listens on."""
+    found = set()
+    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
+        for line in Path(table).read_text().splitlines()[1:]:
+            _, local, _, state, *_ = line.split()
+            if state == "0A":
+                found.add(int(local.rpartition(":")[2], 16))
+    return found
+
+
+@pytest.mark.slow
+def test_nobody_else_is_let_in_and_there_is_no_page() -> None:
+    before = listening()
+    with dask_client(1) as client:
+        assert client.submit(int, "7").result() == 7
+        address = client.scheduler.address
+        assert address.startswith("tls://127.0.0.1:")
+        with pytest.raises(OSError, match=r"(?s)."):
+            Client(address.replace("tls://", "tcp://"), timeout="1s")
+        with pytest.raises(OSError, match=r"(?s)."):
+            Client(address, security=Security.temporary(), timeout="1s")
+        assert 8787 not in listening() - before
+        page = client.cluster.scheduler.http_server.port
+        for path in ("", "status", "metrics", "json/counts.json"):
+            with pytest.raises(HTTPError, match="404"):
+                urlopen(f"http://127.0.0.1:{page}/{path}")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("broken", ["import os; os._exit(3)", "raise RuntimeError('no licence')"])
+def test_a_worker_that_dies_at_the_start(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], broken: str
+) -> None:
+    preload = tmp_path / "preload.py"
+    preload.write_text(broken)
+    with (
+        dask.config.set({"distributed.worker.preload": [str(preload)]}),
+        pytest.raises(BenchError, match=r"workers do not start .*--workers 1") as caught,
+        dask_client(1),
+    ):
+        pass
+    assert ("no licence" in str(caught.value)) == ("licence" in broken)
+    assert "Traceback" not in capfd.readouterr().err
+
+
+@pytest.mark.slow
+def test_work_that_no_worker_is_left_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tpvqa.bench.dask_workers.WAIT", 1)
+    with dask_client(1) as client:
+        assert [each.result() for each in as_they_finish(client, [client.submit(int, "7")])] == [7]
+        client.cluster.scale(0)
+        while client.nthreads():
+            time.sleep(0.05)
+        with pytest.raises(BenchError, match="All of Dask's workers have ended"):
+            list(as_they_finish(client, [client.submit(int, "8", pure=False)]))
+
+
+@pytest.mark.slow
+def test_a_scheduler_without_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    from distributed import LocalCluster
+
+    monkeypatch.setattr("tpvqa.bench.dask_workers.WAIT", 1)
+    with (
+        LocalCluster(n_workers=0, dashboard_address="127.0.0.1:0") as cluster,
+        pytest.raises(BenchError, match=r"no workers for 1 s.*dask worker tcp://"),
+        dask_client(1, cluster.scheduler_address),
+    ):
+        pass

@@ -1,0 +1,76 @@
+"""Figures of a bench: every curve in its interval, every monitor told apart without colour."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+
+from tests.bench.test_statistics import row
+from tpvqa.bench import figures
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.curve import ACCURACIES, curve_cells, curves
+from tpvqa.bench.statistics import wilson
+from tpvqa.bench.style import styles
+from tpvqa.bench.summary import summaries
+
+MONITORS = ("tpvqa", "tpvqa:strict", "effectvqa", "palmevqa", "successvqa", "belief", "tp")
+EPISODES = 20
+
+
+@pytest.fixture(scope="module")
+def drawn() -> Any:
+    rows = {
+        cell: [row(episode=k, completed=k < 20 * float(cell.vlm[7:]) - 5) for k in range(EPISODES)]
+        for cell in curve_cells(["eat"], MONITORS)
+    }
+    figure = figures.accuracy_curves(curves(rows, ["eat"], MONITORS))
+    yield figure
+    figures.close(figure)
+
+
+def test_every_curve_lies_in_a_band_that_is_its_interval(drawn: Any) -> None:
+    (axes,) = drawn.axes
+    bands = [each for each in axes.collections if isinstance(each, PolyCollection)]
+    assert len(bands) == len(MONITORS)
+    found = wilson(15, EPISODES)  # all of them at an accuracy of 1
+    corners = np.concatenate([band.get_paths()[0].vertices for band in bands])
+    ends = set(np.round(corners[corners[:, 0] == 1, 1], 6))
+    assert ends == {round(found.low, 6), round(found.high, 6)}
+
+
+def test_the_legend_names_every_monitor_in_order(drawn: Any) -> None:
+    (legend,) = drawn.legends
+    assert [text.get_text() for text in legend.get_texts()] == list(MONITORS)
+
+
+def test_what_never_asks_is_measured_once() -> None:
+    cells = curve_cells(["eat"], ["tp", "none", "tpvqa"])
+    assert [cell for cell in cells if cell.monitor != "tpvqa"] == [
+        Cell("eat", monitor, "oracle:1", "symbolic") for monitor in ("tp", "none")
+    ]
+    assert len(cells) == 2 + len(ACCURACIES)
+
+
+def test_no_two_monitors_are_drawn_alike() -> None:
+    """Nor printed alike: line, marker and filling differ where the colour does not tell."""
+    many = [
+        *("tpvqa", "tpvqa:strict", "tpvqa:3", "tpvqa:5:strict", "effectvqa", "effectvqa:strict"),
+        *("palmevqa", "successvqa", "tp", "blind:5", "vote:3", "lead:3", "belief", "of-others"),
+    ]
+    found = styles(many)
+    assert len({str(each.plotted) for each in found.values()}) == len(many)
+    shapes = [(str(s.line), s.marker, s.filled) for m, s in found.items() if m != "blind:5"]
+    assert len(set(shapes)) == len(many) - 1
+
+
+def test_bars_have_intervals_and_figures() -> None:
+    cells = {
+        Cell("eat", monitor, "oracle:0.8", "symbolic"): [row(episode=0, completed=True), row()]
+        for monitor in MONITORS
+    }
+    figure = figures.completion(summaries(cells))
+    (axes,) = figure.axes
+    assert [text.get_text() for text in axes.texts] == [".50"] * len(MONITORS)
+    assert len(axes.containers) == 2 * len(MONITORS)  # a bar and its interval
+    figures.close(figure)

@@ -1,0 +1,215 @@
+"""What the terminal says of answers, decisions and the end: in few words, in 80 columns."""
+
+import re
+from collections.abc import Iterable, Sequence
+from io import StringIO
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.console import Console
+
+from tests.cli.conftest import Run
+from tests.cli.test_belief_view import shown
+from tests.episodes.believing import FIND, PICK, decided, plan, started
+from tpvqa.cli.brief import MORE, brief
+from tpvqa.cli.terminal import EpisodeView
+from tpvqa.episodes.agreement import Agreement
+from tpvqa.episodes.fact_words import words_of
+from tpvqa.episodes.report import tell
+from tpvqa.events import Event, TrialState
+from tpvqa.events.events import (
+    Acted,
+    Acting,
+    Answered,
+    AnswerRecord,
+    Asked,
+    Decided,
+    Ended,
+    FrameRecord,
+    Observed,
+    OutcomeRecord,
+    PlanMade,
+    QuestionRecord,
+)
+from tpvqa.monitors import Decision
+from tpvqa.questions import Way
+from tpvqa.vlm import Reply
+from tpvqa.worlds import Report
+from tpvqa.worlds.outcome import Failure
+
+REASON = (
+    "bread in a robot's hand (left) 0.00 after a no, which place the bread on the plate (step 4) "
+    "needs; plate in the image 0.74 → 0.04 after two noes, which place the bread on the plate "
+    "(step 4) needs; replanning from bread on the floor (1.00) and bread in the image (0.96)"
+)
+
+
+def asked(atom: str, reply: Reply, *, expected: bool = True) -> list[Event]:
+    """A question about a fact, as a monitor that weighs answers asks it, and its answer."""
+    question = QuestionRecord(text=f"{atom}?", way=Way.EFFECT, atom=atom, expected=expected)
+    return [
+        Observed(
+            look=0,
+            world_time=0,
+            frames=(FrameRecord(view="front", file="f.jpg", media_type="image/jpeg"),),
+        ),
+        Asked(look=0, questions=(question,)),
+        Answered(answers=(AnswerRecord(reply=reply, text=reply),)),
+    ]
+
+
+def picked(*exchanges: Sequence[Event]) -> list[Event]:
+    """The bread, near and on the table, is picked up; then something is asked."""
+    begun = started().model_copy(
+        update={"initial": ("(near bread)", "(on bread table)", "(free left)")}
+    )
+    return [
+        begun,
+        plan(PICK),
+        Acting(step=0, action=PICK, attempt=0),
+        Acted(report=Report.DONE, seconds=0.0),
+        *(event for each in exchanges for event in each),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("atom", "reply", "mark"),
+    [
+        ("(in_hand bread left)", Reply.YES, "✓"),
+        ("(in_hand bread left)", Reply.NO, "✗"),
+        ("(on bread table)", Reply.NO, "✓"),  # no longer there, as is expected
+        ("(on bread table)", Reply.YES, "✗"),
+        ("(on bread floor)", Reply.NO, "✓"),
+        ("(on bread floor)", Reply.CANNOT_SEE, "?"),
+        ("(in_hand bread left)", Reply.UNKNOWN, "?"),
+    ],
+)
+def test_a_mark_says_whether_an_answer_is_as_expected(atom: str, reply: Reply, mark: str) -> None:
+    events = picked(asked(atom, reply))
+    (line,) = [line for line in shown(events) if f"{atom}?" in line]
+    assert line.strip().startswith(f"{mark} {atom}? {reply}")
+    (told,) = tell(events, words_of(events[0])).actions[0].after.checks[0].exchanges  # type: ignore[arg-type]
+    assert told.agrees is {"✓": True, "✗": False, "?": None}[mark]
+
+
+def test_before_an_action_what_is_believed_is_expected() -> None:
+    events = [*picked()[:2], *asked("(on bread table)", Reply.YES)]
+    assert any("✓ (on bread table)? yes" in line for line in shown(events))
+
+
+def test_what_a_monitor_wants_denied_says_so_itself() -> None:
+    """Whatever is believed: the paper's monitors ask about literals."""
+    events = picked(asked("(in_hand bread left)", Reply.NO, expected=False))
+    assert any("✓ (in_hand bread left)? no" in line for line in shown(events))
+
+
+def test_without_a_domain_that_can_be_read_the_questions_own_expectation_counts() -> None:
+    begun = started(domain="(define (domain of-another-version")
+    state = TrialState()
+    for event in (begun, plan(PICK), *asked("(on bread floor)", Reply.YES)):
+        state = state.after(event)
+    assert Agreement(words_of(begun)).of(state.latest[0], state) is True
+
+
+def test_many_answers_of_one_question_are_marked_by_most_of_them() -> None:
+    text = picked(*(asked("(on bread table)", r) for r in (Reply.NO, Reply.YES, Reply.NO)))
+    bare: list[Event] = [each for each in text if not isinstance(each, Observed)]
+    assert any(
+        "✓ (on bread table)? 1 yes, 2 no  nyn" in line for line in shown([*bare, decision("")[-1]])
+    )
+
+
+def decision(reason: str) -> list[Event]:
+    """A replan, for a reason."""
+    known = decided("after", 0, Decision.REPLAN).model_copy(update={"reason": reason})
+    return [*picked(), known]
+
+
+def test_a_decision_is_one_line_with_its_numbers_first() -> None:
+    (line,) = [line for line in shown(decision(REASON)) if "replan" in line]
+    assert line == (
+        "  → replan: bread in a robot's hand (left) 0.00; plate in the image 0.74 → 0.04; …"
+    )
+
+
+@given(st.lists(st.text("abc 0.9→()?", min_size=1, max_size=80), min_size=1, max_size=8))
+def test_no_decision_is_longer_than_a_line(parts: list[str]) -> None:
+    reason = "; ".join(parts)
+    said = brief(reason, 88)
+    assert len(said) <= 88
+    assert said == reason or len(reason) > 88 or MORE not in said
+
+
+def test_the_whole_reason_is_there_on_request_and_wraps(tpvqa: Run) -> None:
+    lines = _in_terminal(decision(REASON), verbose=True)
+    assert max(map(len, lines)) <= 80
+    first = next(n for n, line in enumerate(lines) if "→ replan:" in line)
+    rest = lines[first : first + 4]
+    assert all(line.startswith("    ") for line in rest[1:])
+    assert re.sub(r"\s+", " ", " ".join(rest)).strip() == f"→ replan: {REASON}"
+    code, short, _ = tpvqa("run", "build_tower", "--seed", 3, "--vlm", "oracle:0.8", "--out", "e")
+    assert code in (0, 1)
+    _, full, _ = tpvqa("show", "e", "--verbose")
+    assert ", which the goal needs" in full
+    assert max(len(line) for line in short.splitlines() if "→" in line[:4]) <= 100
+
+
+def _in_terminal(events: Iterable[Event], *, verbose: bool = False) -> list[str]:
+    console = Console(file=StringIO(), force_terminal=True, color_system=None, width=80)
+    view = EpisodeView(console, live=False, verbose=verbose)
+    for event in events:
+        view(event)
+    assert isinstance(console.file, StringIO)
+    return console.file.getvalue().splitlines()
+
+
+def ended(**how: object) -> Ended:
+    """The end of a trial that took one of everything."""
+    counts = dict.fromkeys(("actions", "questions", "looks", "repeats"), 1)
+    given = {"because": "goal", "believed_goal": False, "completed": False, "replans": 2}
+    return Ended.model_validate({**counts, **given, **how})
+
+
+COUNTS = "(1 action, 1 question, 1 repeat, 2 replans)"
+
+
+@pytest.mark.parametrize(
+    ("end", "says"),
+    [
+        (ended(believed_goal=True, completed=True), "goal reached"),
+        (ended(believed_goal=True, completed=None), "goal reached, as is believed"),
+        (ended(believed_goal=True), "goal not reached, though it was believed to be"),
+        (
+            ended(because="limit of repeats"),
+            "goal not reached: limit of repeats, at step 2 of 2, pick up the bread",
+        ),
+        (
+            ended(because="gave up", message="because after 1", completed=None),
+            "goal not reached: gave up, at step 2 of 2, pick up the bread",
+        ),
+        (
+            ended(because="world refused", message="the gripper is cold"),
+            "goal not reached: world refused: the gripper is cold, at step 2 of 2, "
+            "pick up the bread",
+        ),
+    ],
+)
+def test_the_last_line_says_where_a_trial_ended_and_why(end: Ended, says: str) -> None:
+    reason: Decided = decided("after", 1, Decision.GIVE_UP)
+    lines = shown([started(), plan(FIND, PICK), reason, end])
+    assert lines[-1] == f"{says} {COUNTS}"
+
+
+def test_why_there_is_no_plan_is_said_once() -> None:
+    why = "(lit moon): nothing brings it about"
+    made = PlanMade(state=(), result="unsolvable", reason=why)
+    text = "\n".join(shown([started(), made, ended(because="no plan", message=why)]))
+    assert text.count(why) == text.count("no plan") == 1
+    assert text.endswith(f"goal not reached: no plan: {why} {COUNTS}")
+
+
+def test_a_scripted_failure_says_what_failed() -> None:
+    truth = OutcomeRecord(failure=Failure.SCRIPT)
+    events = [*picked()[:3], Acted(report=Report.DONE, seconds=0.0, truth=truth)]
+    assert shown(events)[-1] == "  in truth: the action failed, as the script says"

@@ -1,0 +1,96 @@
+"""Whatever a plug-in returns, a trial says so, and writes nothing that cannot be read again."""
+
+import math
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import EpisodeWriter, read_episode
+from tpvqa.errors import PluginError
+from tpvqa.observation import Observation
+from tpvqa.questions import Question
+from tpvqa.vlm import Answer, Reply
+from tpvqa.worlds import Execution, Report
+
+
+def _answer(question: Question) -> Answer:
+    return Answer(question, Reply.YES if question.expected else Reply.NO)
+
+
+class _VLM:
+    name = "strange"
+
+    def __init__(self, ask: Callable[[Sequence[Question]], Any]):
+        self._ask = ask
+
+    def ask(self, observation: Observation, questions: Sequence[Question]) -> Any:
+        return self._ask(questions)
+
+
+def _trial(vlm: _VLM | None = None) -> Trial:
+    config = TrialConfig().but(
+        task={"name": "eat_apple"},
+        world={"spec": "symbolic"},
+        vlm={"spec": "oracle:1"},
+        monitor={"spec": "tpvqa"},
+    )
+    return Trial(config, vlm=vlm)
+
+
+def _fails(trial: Trial, folder: Path) -> None:
+    writer = EpisodeWriter(folder, durable=False)
+    with trial, pytest.raises(PluginError):
+        trial.run(writer, folder=folder)
+    writer.close()
+    assert read_episode(folder)  # what was written can be read
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda questions: sys.exit(0),  # 0 would say that the goal is reached
+        lambda questions: [replace(_answer(each), seconds=math.inf) for each in questions],
+        lambda questions: [replace(_answer(each), text="\ud800") for each in questions],
+        lambda questions: [replace(_answer(each), reply="yes") for each in questions],  # type: ignore[arg-type]
+        lambda questions: [
+            Answer(replace(each, text="Is it late?"), Reply.YES) for each in questions
+        ],
+    ],
+    ids=["exit", "endless", "no text", "no reply", "another question"],
+)
+def test_a_vlm_that_answers_strangely(ask: Any, tmp_path: Path) -> None:
+    _fails(_trial(_VLM(ask)), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("method", "result"),
+    [
+        ("execute", Execution(Report.DONE, math.nan)),
+        ("execute", Execution(Report.DONE, 0.0, "\ud800")),
+        ("execute", Execution("done", 0.0)),  # type: ignore[arg-type]
+        ("observe", Observation(time=math.inf, frames={})),
+        ("observe", Observation(frames={}, detail={"a": object()})),
+    ],
+)
+def test_a_world_that_says_strange_things(method: str, result: object, tmp_path: Path) -> None:
+    trial = _trial()
+    setattr(trial.world, method, lambda *given, **named: result)
+    _fails(trial, tmp_path)
+
+
+def _without_verdict(step: object) -> Any:
+    return None
+    yield
+
+
+@pytest.mark.parametrize("check", [lambda step: None, _without_verdict])
+def test_a_monitor_that_decides_nothing(check: Any, tmp_path: Path) -> None:
+    trial = _trial()
+    trial.monitor.before = check  # type: ignore[method-assign]
+    _fails(trial, tmp_path)

@@ -1,0 +1,152 @@
+"""Pictures of strangers: what is read from disk, and what is decoded."""
+
+import os
+import socket
+import struct
+import zlib
+from collections.abc import Callable
+from contextlib import suppress
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from tpvqa.errors import PictureError
+from tpvqa.observation import Frame
+from tpvqa.pictures import MOST_BYTES, decoded, picture_type, read_file, read_picture
+
+
+def encoded(kind: str, size: tuple[int, int] = (4, 3)) -> bytes:
+    file = BytesIO()
+    Image.new("RGB", size, (200, 30, 30)).save(file, kind)
+    return file.getvalue()
+
+
+def png_that_says(width: int, height: int) -> bytes:
+    """A PNG of a few bytes whose header promises many pixels."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", b"") + chunk(b"IEND", b"")
+
+
+@pytest.mark.parametrize("kind", ["jpeg", "png", "webp"])
+def test_jpeg_png_and_webp_are_read(kind: str, tmp_path: Path) -> None:
+    (tmp_path / "picture").write_bytes(encoded(kind))
+    data = read_picture(tmp_path / "picture")
+    assert read_picture("picture", inside=tmp_path) == data == encoded(kind)
+    assert picture_type(data) == f"image/{kind}"
+    assert decoded(data).size == (4, 3)
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (encoded("bmp"), "JPEG, PNG or WebP"),
+        (encoded("gif"), "JPEG, PNG or WebP"),
+        (b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n", "JPEG, PNG or WebP"),
+        (b"", "JPEG, PNG or WebP"),
+        (png_that_says(13000, 13000), "13000 × 13000: has more than 50 million pixels"),
+        (png_that_says(100_000, 100_000), "million pixels"),
+        (encoded("jpeg") + b"\xff\xda" * 200, "scans"),
+    ],
+    ids=["bmp", "gif", "eps", "empty", "169 megapixels", "10 gigapixels", "scans"],
+)
+def test_what_is_no_picture_or_too_large_is_told_before_it_is_decoded(
+    data: bytes, said: str, tmp_path: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    (tmp_path / "picture.jpg").write_bytes(data)
+    with pytest.raises(PictureError, match=said) as caught:
+        read_picture(tmp_path / "picture.jpg")
+    assert str(caught.value).startswith(f"{tmp_path / 'picture.jpg'}: ")
+    with pytest.raises(PictureError, match=said):
+        Frame("a", "front", data).pixels  # noqa: B018
+    assert not recwarn.list
+
+
+@given(st.binary(max_size=200), st.integers(0, 300), st.sampled_from(["jpeg", "png", "webp"]))
+def test_damaged_pictures_are_pictures_or_told(junk: bytes, at: int, kind: str) -> None:
+    whole = encoded(kind)
+    with suppress(PictureError):
+        decoded(whole[:at] + junk + whole[at + len(junk) :])
+
+
+def fifo(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+def listening(path: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as one:
+        one.bind(str(path))
+
+
+@pytest.mark.parametrize("make", [fifo, device, listening, Path.mkdir])
+def test_what_is_no_regular_file_is_told_and_nobody_waits(
+    make: Callable[[Path], None], tmp_path: Path
+) -> None:
+    make(tmp_path / "p.png")
+    for inside in (None, tmp_path):
+        with pytest.raises(PictureError, match=r"p\.png: "):
+            read_file("p.png" if inside else tmp_path / "p.png", inside=inside)
+
+
+def test_a_file_that_is_too_large_is_told(tmp_path: Path) -> None:
+    with (tmp_path / "p.png").open("wb") as file:
+        file.truncate(MOST_BYTES + 1)
+    with pytest.raises(PictureError, match="more than 32 MiB"):
+        read_file(tmp_path / "p.png")
+    assert len(read_file(tmp_path / "p.png", most=MOST_BYTES + 1)) == MOST_BYTES + 1
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "../secret.png",
+        "below/../../secret.png",
+        "/etc/hostname",
+        "link.png",
+        "folder/secret.png",
+        "loop/below/p.png",
+        "p.png/",
+        "./p.png",
+        "",
+        ".",
+        "p.png\0",
+        "missing.png",
+        "n" * 300,
+        "\x1b[2J.png",
+        "\udcff.png",
+    ],
+)
+def test_a_path_that_leads_out_of_the_folder_is_not_followed(path: str, tmp_path: Path) -> None:
+    folder = tmp_path / "set"
+    (folder / "below").mkdir(parents=True)
+    (tmp_path / "secret.png").write_bytes(encoded("png"))
+    (folder / "p.png").write_bytes(encoded("png"))
+    (folder / "below" / "p.png").write_bytes(encoded("png"))
+    (folder / "link.png").symlink_to(tmp_path / "secret.png")
+    (folder / "folder").symlink_to(tmp_path)
+    (folder / "loop").symlink_to(folder)
+    assert read_file("below/p.png", inside=folder)
+    with pytest.raises(PictureError) as caught:
+        read_file(path, inside=folder)
+    assert str(caught.value).isprintable()
+    str(caught.value).encode()
+
+
+def test_the_folder_itself_may_be_a_link(tmp_path: Path) -> None:
+    (tmp_path / "set").mkdir()
+    (tmp_path / "set" / "p.png").write_bytes(encoded("png"))
+    (tmp_path / "here").symlink_to(tmp_path / "set")
+    assert read_picture("p.png", inside=tmp_path / "here")
