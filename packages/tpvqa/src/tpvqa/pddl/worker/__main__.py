@@ -8,6 +8,7 @@ that is busy from one that hangs.
 import contextlib
 import ctypes
 import json
+import math
 import os
 import resource
 import select
@@ -23,8 +24,9 @@ from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
 _KEPT_TASKS = 8
 _HEARTBEAT = 0.5  # seconds
-_FULL = 10  # heartbeats in a row at the limit of memory, where allocating takes all the time
-_NEAR = 2 << 20  # bytes below the limit
+# A process at the limit that the system holds it to can turn there for minutes, allocating and
+# failing; so that one lies above the limit at which the heartbeat ends the grounding.
+_MARGIN = 64 << 20  # bytes, at least
 _PR_SET_PDEATHSIG = 1
 
 
@@ -43,6 +45,7 @@ class Worker:
         self._busy = False
         self._request: dict[str, Any] = {}
         self._exhausted = False
+        self._memory: float = math.inf  # bytes
 
     def run(self) -> None:
         """Read and answer; does not return."""
@@ -66,15 +69,13 @@ class Worker:
     def _watch(self) -> None:
         poll = select.poll()
         poll.register(0, 0)  # nothing but the end of the pipe
-        full = 0
         while True:
             if poll.poll(_HEARTBEAT * 1000):
                 os._exit(0)
             if self._busy:
                 with contextlib.suppress(MemoryError):
                     self._send(b"{}\n")
-                    full = full + 1 if _memory_left() < _NEAR else 0
-                    if full >= _FULL and self._busy:
+                    if _memory_taken() > self._memory and self._busy:
                         told = self._out_of_memory(self._request)
                         line = json.dumps({"id": self._request["id"], **told}).encode()
                         self._send(line + b"\n")
@@ -101,7 +102,7 @@ class Worker:
 
     def _answer(self, request: dict[str, Any]) -> dict[str, Any]:
         try:
-            limit_memory(request.get("grounding_memory"))
+            self._limit_memory(request.get("grounding_memory"))
             task = self._task(request)
             if task is None:
                 return {"unknown": True}
@@ -125,7 +126,7 @@ class Worker:
     def _out_of_memory(self, request: dict[str, Any]) -> dict[str, Any]:
         self._exhausted = True
         self._tasks.clear()
-        limit_memory(None)
+        self._limit_memory(None)
         memory = request.get("grounding_memory")
         than = "there is" if memory is None else f"{memory / 1024:.3g} GB"
         reason = (
@@ -133,6 +134,18 @@ class Worker:
             "fewer parameters of an action), or allow more (memory=…)"
         )
         return {"outcome": _as_json(SearchOutcome("memory", reason=reason))}
+
+    def _limit_memory(self, memory: int | None) -> None:
+        """Limit this process to so many MiB; None for no limit but that it was started with."""
+        _, highest = resource.getrlimit(resource.RLIMIT_AS)
+        self._memory = math.inf if memory is None else memory << 20
+        limit = highest
+        if memory is not None:
+            limit = (memory << 20) + max(_MARGIN, memory << 18)
+            if highest != resource.RLIM_INFINITY:
+                limit = min(limit, highest)
+                self._memory = min(self._memory, highest - _MARGIN)
+        resource.setrlimit(resource.RLIMIT_AS, (limit, highest))
 
     def _task(self, request: dict[str, Any]) -> KnownTask | None:
         key = request["key"]
@@ -146,23 +159,10 @@ class Worker:
         return self._tasks[key]
 
 
-def limit_memory(memory: int | None) -> None:
-    """Limit this process to so many MiB; None for no limit but that which it was started with."""
-    _, highest = resource.getrlimit(resource.RLIMIT_AS)
-    limit = highest if memory is None else memory << 20
-    if highest != resource.RLIM_INFINITY:
-        limit = min(limit, highest)
-    resource.setrlimit(resource.RLIMIT_AS, (limit, highest))
-
-
-def _memory_left() -> int:
-    """Bytes of address space below this process's limit."""
-    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if limit == resource.RLIM_INFINITY:
-        return sys.maxsize
+def _memory_taken() -> int:
+    """Bytes of address space that this process has."""
     with open("/proc/self/statm", "rb", buffering=0) as file:
-        pages = int(file.read(64).split()[0])
-    return limit - pages * resource.getpagesize()
+        return int(file.read(64).split()[0]) * resource.getpagesize()
 
 
 def _crashed(error: Exception) -> dict[str, Any]:
