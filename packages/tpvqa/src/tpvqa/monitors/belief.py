@@ -13,6 +13,7 @@ from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
 from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
+from tpvqa.belief.sight import Sight
 from tpvqa.belief.trust import Trust
 from tpvqa.errors import PlannerError
 from tpvqa.events.decision import Decision
@@ -86,11 +87,14 @@ class BeliefMonitor(Learning, PlainArguments):
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
         self.evidence = Evidence(self.belief, calibration, self.trust)
-        self._chooser = Chooser(self.belief.model, self.costs)
+        self._sight = Sight(self.belief.model)
+        self._chooser = Chooser(self.belief.model, self.costs, self._sight)
+        self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
         self._looks = self._questions = 0
         self._words: FactWords | None = None
+        self._book: QuestionBook | None = None
         self._person = self.costs.person is not None
         self._plans: dict[State, Plan] = {}
         self._followed: Plan | None = None
@@ -134,7 +138,7 @@ class BeliefMonitor(Learning, PlainArguments):
         if self.trust is None:
             return None
         chances = deepcopy(self.chances)
-        chances.learn(self.belief.outcome_shares())  # of the last action
+        chances.learn(self.belief.outcome_shares(), self._now.action)
         return Experience.of(chances, self.trust, self._trials + 1)
 
     def before(self, step: Step) -> Check:
@@ -158,7 +162,11 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _know(self, step: Step) -> None:
         """Annotate the plan that is being followed, and know what the trial still allows."""
-        self._chooser.allow(step.actions_left, step.replans_left)
+        if self._book is not step.book:
+            self._book = step.book
+            self._sight.by(lambda atom: step.book.asked(Literal(atom)))
+        self._chooser.ahead.allow(step.actions_left)
+        self._chooser.changes_left = step.replans_left
         if step.plan is not self._followed:
             self._followed = step.plan
             self._plans[step.state] = step.plan
@@ -173,17 +181,22 @@ class BeliefMonitor(Learning, PlainArguments):
         try:
             needs = regress(self.task, plan.actions, state)
         except PlannerError:
-            self._chooser.give_up_on(state)
+            self._chooser.ahead.give_up_on(state)
             return
-        self._chooser.add(AnnotatedPlan(self.task, plan.actions, needs))
+        self._chooser.ahead.add(AnnotatedPlan(self.task, plan.actions, needs))
 
     def _acted(self, step: Step) -> None:
-        if self._learns:
-            self.chances.learn(self.belief.outcome_shares())
-        self.belief.act(step.action, self.chances.rates)
+        self._learn(self._now.action)
+        self._chooser.acted(self.belief, step.action)
+        self.belief.act(step.action, self.chances.rates_of(step.action))
         self.evidence.acted(troubled=bool(step.trouble))
-        self._chooser.acted()
         self._now = self._begin(step.action)
+
+    def _learn(self, action: Action | None) -> None:
+        """Learn from how the last action came out, after all that was seen of it."""
+        if action is not None and self._learns:
+            self.chances.learn(self.belief.outcome_shares(), action)
+        self._chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
     def _begin(self, action: Action | None) -> Inspection:
         return Inspection(action, self._views[0] if self._views else None)
@@ -196,7 +209,7 @@ class BeliefMonitor(Learning, PlainArguments):
                     self._plans[state] = result
                     self._annotate(result, state)
                 elif isinstance(result, Unsolvable):
-                    self._chooser.give_up_on(state)
+                    self._chooser.ahead.give_up_on(state)
                 else:
                     self._chooser.postpone(state)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
