@@ -1,6 +1,6 @@
 """How often actions fail: Beta distributions that learn from what came of actions."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from tpvqa.belief.faults import Rates
@@ -85,6 +85,10 @@ class Chances:
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
         return Rates(self.skill(action).failure, self.disturbance.mean, self.spontaneous)
+
+    def tried(self) -> Iterable[Action]:
+        """The actions that were tried."""
+        return self.skills.all()
 
     def learn(self, shares: Mapping[str, float], action: Action | None = None) -> None:
         """Learn from how an action came out, see `Belief.outcome_shares`.

@@ -9,10 +9,11 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
 from tpvqa.belief.sight import Sight
+from tpvqa.belief.skills import GIVEN_UP
 from tpvqa.pddl import Action, State
 
 LIKELY = 0.02
@@ -121,6 +122,10 @@ class Chooser:
         self._commitments.renumbered(model)
         self._done = [(numbers.get(number, -1), action) for number, action in self._done]
 
+    def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
+        """The cheapest known way from a state: a place in a plan, and that plan."""
+        return self.ahead.best(self._model.number(JointState(state)))
+
     def unplanned(self, belief: Belief) -> State | None:
         """The most probable joint state that no known plan helps; None if none is likely."""
         for number, weight in belief.ranked():
@@ -158,6 +163,8 @@ class Chooser:
             and not self._idle(each, ranked)
         ]
         choices = [each for each in choices if self._possible(each, ranked)] or choices
+        if self._stuck(ranked):
+            choices = [each for each in choices if each.action is None]
         columns = [
             self._end(ranked)
             if each.action is None
@@ -286,8 +293,13 @@ class Chooser:
         """Whether what one more try may win is worth an action."""
         if choice.action is None:
             return True
-        works = 1 - self.ahead.skill(choice.action).failure
-        return works * self.ahead.failure >= self._costs.action
+        skill = self.ahead.skill(choice.action)
+        worth = (1 - skill.failure) * self.ahead.failure >= self._costs.action
+        return worth and skill.dead < GIVEN_UP
+
+    def _stuck(self, ranked: Sequence[tuple[int, float]]) -> bool:
+        """Whether all ways that are known lead through something that does not work any more."""
+        return sum(weight for number, weight in ranked if self.ahead.blocked(number)) > 0.5
 
     def _in(self, choice: Choice, plan: Sequence[Action]) -> bool:
         same, action = self._model.same_skill, choice.action

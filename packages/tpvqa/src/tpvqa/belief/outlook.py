@@ -6,7 +6,7 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import NAMED, SkillState
+from tpvqa.belief.skills import GIVEN_UP, NAMED, SkillState
 from tpvqa.pddl import Action, State
 
 CHECKS = 2.0
@@ -104,6 +104,20 @@ class Outlook:
             return None
         return found[1].actions[found[0]]
 
+    def blocked(self, number: int) -> bool:
+        """Whether the way from a joint state leads through a skill that is given up."""
+        found = self.best(number)
+        if found is None:
+            return False
+        place, plan = found
+        known = self._blocks.get(id(plan))
+        if known is None:
+            dead = [self.skill(action).dead >= GIVEN_UP for action in plan.actions]
+            known = self._blocks[id(plan)] = max(
+                (n + 1 for n, d in enumerate(dead) if d), default=0
+            )
+        return place < known
+
     def is_goal(self, number: int) -> bool:
         """Whether the goal holds in a joint state."""
         if number not in self._goals:
@@ -199,6 +213,7 @@ class Outlook:
         self._best: dict[int, tuple[int, AnnotatedPlan] | None] = {}
         self._rests: dict[int, list[float]] = {}
         self._steps: dict[Action, float] = {}
+        self._blocks: dict[int, int] = {}
         self._to_go: dict[int, float] = {}
         self._lost = None
 

@@ -13,12 +13,16 @@ import numpy as np
 from tpvqa.belief.information import Floats
 from tpvqa.pddl import Action
 
-ALIKE = 8.0
+ALIKE = 12.0
 """How many tries of a skill the rates of the others are worth."""
-DEAD = 0.01
-"""Chance that a skill never works, and as much that it never does with certain objects."""
-NAMED = 0.75
+DEAD = 0.015
+"""Chance that a skill never works."""
+DEAD_WITH = 0.005
+"""Chance that a skill that works never does with certain objects."""
+NAMED = 0.6
 """A skill that is dead with this probability is named, and a way without it is looked for."""
+GIVEN_UP = 0.85
+"""One that is dead with this probability is not tried any more."""
 
 _RATES: Floats = np.array([*np.linspace(0.01, 0.99, 50), 1.0])
 _EDGE = 1e-9
@@ -80,6 +84,18 @@ class Skills:
         """How often an action was tried; None where it never was."""
         return self._tried.get(action.name, {}).get(action)
 
+    def times(self, action: Action) -> tuple[float, float]:
+        """How often a skill was tried, whatever with, and failed; with what it fails at alone
+        where it works with others."""
+        own = self._tried.get(action.name, {})
+        if any(other.failed < other.times - 0.5 for other in own.values()):
+            own = {each: tried for each, tried in own.items() if each == action}
+        return sum(each.times for each in own.values()), sum(each.failed for each in own.values())
+
+    def all(self) -> list[Action]:
+        """The actions that were tried."""
+        return [action for own in self._tried.values() for action in own]
+
     def learn(self, action: Action, shares: Mapping[str, float], predicted: float) -> None:
         """Learn from how an action came out, see `Belief.outcome_shares`.
 
@@ -108,9 +124,9 @@ def _state(action: Action, own: Mapping[Action, Tried], mean: float, strength: f
     weights = _prior(mean, strength)
     for other, tried in own.items():
         if other != action:
-            weights *= (1 - DEAD) * tried.likelihood + DEAD * tried.likelihood[-1]
+            weights *= (1 - DEAD_WITH) * tried.likelihood + DEAD_WITH * tried.likelihood[-1]
     weights /= weights.sum()
-    dead = weights[-1] + (1 - weights[-1]) * DEAD
+    dead = weights[-1] + (1 - weights[-1]) * DEAD_WITH
     weights[-1] = 0.0
     weights *= (1 - dead) / max(weights.sum(), _EDGE)
     weights[-1] = dead
