@@ -90,9 +90,9 @@ def test_a_bench_abroad_goes_on_where_it_was_stopped(tmp_path: Path) -> None:
     assert (tmp_path / "episodes.jsonl").read_text() == before
     told = {line.monitor: line for line in lines(found)}
     assert list(told) == ["tp", "blind:5", SEEING]
-    assert told[SEEING].actions == 1
+    assert told[SEEING].quotient == 1
     assert told[SEEING].completion.rate == 1
-    blind = told["blind:5"].actions
+    blind = told["blind:5"].quotient
     assert blind is not None
     assert blind > 1
     assert "| build_tower |" in (tmp_path / "abroad.md").read_text()
@@ -103,3 +103,23 @@ def test_a_part_without_tasks_says_what_to_name(tmp_path: Path) -> None:
         run_abroad_bench(AbroadBench(parts=(Part.OTHERS,)), tmp_path / "out")
     with pytest.raises(BenchError, match="holds no folder"):
         tasks_in(tmp_path)
+
+
+def test_a_dead_skill_is_counted_and_has_no_limit_beside_it(tmp_path: Path) -> None:
+    extent = Extent(tasks=("clean_dishes",), monitors=("blind:5", "tpvqa"), episodes=2)
+    found = run_abroad_bench(AbroadBench(parts=(Part.DEAD,), extent=extent), tmp_path)[Part.DEAD]
+    told = {(line.condition, line.monitor): line for line in lines(found)}
+    assert {monitor for _, monitor in told} == {"blind:5", "tpvqa"}
+    assert told["limits=none,dead=wash", "blind:5"].patient == 1
+    assert told["limits=none,dead=wash", "blind:5"].completion.rate == 0
+    rows = [row for own in found.values() for row in own]
+    assert {row.dead for row in rows if row.monitor == "blind:5"} == {5}
+    assert "dead skill tried 8 times at most" in (tmp_path / "abroad.md").read_text()
+
+
+def test_who_sees_all_knows_where_things_are_at_first(tmp_path: Path) -> None:
+    extent = Extent(tasks=("eat_apple",), monitors=("tp",), episodes=6)
+    found = run_abroad_bench(AbroadBench(parts=(Part.ELSEWHERE,), extent=extent), tmp_path)
+    told = {line.monitor: line for line in lines(found[Part.ELSEWHERE])}
+    assert told[SEEING].completion.rate == 1
+    assert told["tp"].completion.rate < 1

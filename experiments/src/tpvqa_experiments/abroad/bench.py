@@ -18,6 +18,7 @@ from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.abroad.tables import write_results
 from tpvqa_experiments.belief import calibrations as learnt
 
+SENSED = "world-sensed.yaml"
 AT_ONCE = 20
 """Episodes of the limit that are written together."""
 
@@ -49,11 +50,16 @@ class AbroadBench:
         return found
 
     def limits(self) -> dict[Cell, int]:
-        """How many episodes of who sees all, in every task and condition that is run."""
+        """How many episodes of who sees all, in every task and condition that is run.
+
+        Where a skill is dead there are none: it plans as if every skill worked.
+        """
         found: dict[Cell, int] = {}
-        for cell, episodes in self.wanted().items():
-            if self.limit:
-                found[replace(cell, monitor=SEEING)] = episodes
+        for part in self.parts if self.limit else ():
+            if part is not Part.DEAD:
+                for cell, episodes in self.extent.cells(part):
+                    limit = replace(cell, monitor=SEEING)
+                    found[limit] = max(episodes, found.get(limit, 0))
         return found
 
     def declared(self, folder: Path, calibrating: Progress) -> Bench:
@@ -155,10 +161,18 @@ def _rows(
 def tasks_in(folder: Path) -> dict[str, OwnTask]:
     """The tasks that lie in a folder, a folder each, by the names of their problems.
 
+    One that has a `world-sensed.yaml`, too, is two tasks: with that world file it is called
+    NAME-sensed.
+
     Raises:
         BenchError: There are none, or a file cannot be read.
     """
     folders = sorted(each.parent for each in folder.glob("*/domain.pddl"))
     if not folders:
         raise BenchError(f"{folder} holds no folder with a domain.pddl and a problem")
-    return own_tasks(folders)
+    found = own_tasks(folders)
+    for name, task in list(found.items()):
+        sensed = task.origin.domain.parent / SENSED
+        if sensed.exists():
+            found[f"{name}-sensed"] = OwnTask.read(replace(task.origin, world=sensed))
+    return found

@@ -15,6 +15,14 @@ VLM = "oracle:0.8"
 SYMBOLIC = "symbolic"
 UNBOUND = "limits=none"
 SHIPPED = (*TASKS, "build_tower")
+DEAD = {
+    "clean_dishes": ("dead=wash", "dead=pick_up _ _ left"),
+    "serve_breakfast": ("dead=turn_on", "dead=pick_up bread", "dead=pick_up _ _ left"),
+    "eat_apple": ("dead=open", "dead=pick_up _ _ left"),
+    "build_tower": ("dead=moveblock red",),
+}
+"""Skills of shipped tasks that never work; without the left hand there is another way."""
+ELSEWHERE = "elsewhere=1"
 RATES = ("failure=0.6", "failure=0.8")
 
 
@@ -23,6 +31,8 @@ class Part(StrEnum):
 
     OTHERS = "others"
     OWN = "own"
+    ELSEWHERE = "elsewhere"
+    DEAD = "dead"
     FAILURE = "failure"
     SHIPPED = "shipped"
 
@@ -60,6 +70,14 @@ class Extent:
             case Part.OWN:
                 for cell in self._cross(self.own, ("",)):
                     yield cell, self.episodes
+            case Part.ELSEWHERE:
+                household = [task for task in self.tasks if task in TASKS]
+                for cell in self._cross((*household, *self.own), (ELSEWHERE,)):
+                    yield cell, self.episodes
+            case Part.DEAD:
+                for task in self.tasks:
+                    for cell in self._cross((task,), DEAD.get(task, ())):
+                        yield cell, self.episodes
             case Part.FAILURE:
                 for cell in self._cross(self.tasks, RATES):
                     yield cell, self.episodes

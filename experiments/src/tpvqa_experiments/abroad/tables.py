@@ -1,10 +1,11 @@
 """The tables of the bench abroad."""
 
 import json
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import median
+from statistics import fmean, median
 from typing import Any
 
 from tpvqa.bench.cell import Cell
@@ -15,23 +16,28 @@ from tpvqa.files import write_whole
 from tpvqa_experiments.abroad.parts import SEEING, Part
 from tpvqa_experiments.belief.markdown import rate, table
 
+PATIENCE = 8
+"""Tries after which a skill that never works should have been seen to be dead."""
 Rows = Mapping[Cell, Sequence[EpisodeRow]]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Line:
     """One monitor over the tasks of a part under one condition.
 
     Attributes:
         completion: Over the trials of all tasks.
-        worst: The least completion rate of a task.
-        actions: Actions beside those of who sees all, a mean over tasks of the quotient of means;
-            None where that was not measured.
+        least: The least completion rate of a task.
+        least_in: That task.
+        quotient: Actions beside those of who sees all, in episodes that both completed: a mean over
+            tasks of the quotient of means; None where that was not measured.
+        difference: The same as a difference.
         typical: Questions an action, in the task that has the median of it.
         most: The same in the task that has most.
         most_in: That task.
+        patient: Share of trials in which dead skills were tried `PATIENCE` times at most.
         seconds: Of an episode.
-        errors: Episodes that could not be run to their end.
+        endings: How trials ended, the most frequent first.
     """
 
     vlm: str
@@ -40,14 +46,16 @@ class Line:
     tasks: int
     trials: int
     completion: Interval
-    worst: float
-    worst_in: str
-    actions: float | None
+    least: float
+    least_in: str
+    quotient: float | None
+    difference: float | None
     typical: float
     most: float
     most_in: str
+    patient: float
     seconds: float
-    errors: int
+    endings: str
 
     def flat(self) -> dict[str, Any]:
         """As one row of plain values."""
@@ -69,55 +77,63 @@ def lines(rows: Rows) -> list[Line]:
 
 
 def _line(rows: Rows, vlm: str, condition: str, monitor: str) -> Line:
-    own = {
-        cell.task: found
-        for cell, found in rows.items()
-        if (cell.vlm, cell.condition, cell.monitor) == (vlm, condition, monitor)
-    }
+    own = _of(rows, vlm, condition, monitor)
     trials = [row for found in own.values() for row in found]
     asked = {
         task: _sum(found, "questions") / max(_sum(found, "actions"), 1)
         for task, found in own.items()
     }
     done = {task: _sum(found, "completed") / len(found) for task, found in own.items()}
-    most_in, worst_in = max(asked, key=asked.__getitem__), min(done, key=done.__getitem__)
+    most_in, least_in = max(asked, key=asked.__getitem__), min(done, key=done.__getitem__)
+    quotient, difference = _beside(own, _of(rows, vlm, condition, SEEING))
+    endings = Counter(row.ending for row in trials).most_common()
     return Line(
-        vlm,
-        condition,
-        monitor,
-        len(own),
-        len(trials),
-        wilson(int(_sum(trials, "completed")), len(trials)),
-        done[worst_in],
-        worst_in,
-        _beside(rows, own),
-        median(asked.values()),
-        asked[most_in],
-        most_in,
-        _sum(trials, "seconds") / len(trials),
-        sum(bool(row.error) for row in trials),
+        vlm=vlm,
+        condition=condition,
+        monitor=monitor,
+        tasks=len(own),
+        trials=len(trials),
+        completion=wilson(int(_sum(trials, "completed")), len(trials)),
+        least=done[least_in],
+        least_in=least_in,
+        quotient=quotient,
+        difference=difference,
+        typical=median(asked.values()),
+        most=asked[most_in],
+        most_in=most_in,
+        patient=sum(row.dead <= PATIENCE for row in trials) / len(trials),
+        seconds=_sum(trials, "seconds") / len(trials),
+        endings=", ".join(f"{name} {count}" for name, count in endings),
     )
 
 
-def _beside(rows: Rows, own: Mapping[str, Sequence[EpisodeRow]]) -> float | None:
-    """Actions as a multiple of those of who sees all, in episodes that both completed."""
-    seen = {
-        (cell.task, cell.vlm, cell.condition): found
+def _of(rows: Rows, vlm: str, condition: str, monitor: str) -> dict[str, Sequence[EpisodeRow]]:
+    """The episodes of a monitor by task."""
+    wanted = (vlm, condition, monitor)
+    return {
+        cell.task: found
         for cell, found in rows.items()
-        if cell.monitor == SEEING
+        if (cell.vlm, cell.condition, cell.monitor) == wanted
     }
-    ratios = []
-    for found in own.values():
-        cell = found[0].cell
-        limit = {row.episode: row for row in seen.get((cell.task, cell.vlm, cell.condition), ())}
+
+
+def _beside(
+    own: Mapping[str, Sequence[EpisodeRow]], limits: Mapping[str, Sequence[EpisodeRow]]
+) -> tuple[float | None, float | None]:
+    """Quotient and difference of actions, in episodes that both completed: means over tasks."""
+    quotients, differences = [], []
+    for task, found in own.items():
+        limit = {row.episode: row for row in limits.get(task, ()) if row.completed}
         pairs = [
             (row.actions, limit[row.episode].actions)
             for row in found
-            if row.completed and row.episode in limit and limit[row.episode].completed
+            if row.completed and row.episode in limit
         ]
-        if pairs and sum(least for _, least in pairs):
-            ratios.append(sum(n for n, _ in pairs) / sum(least for _, least in pairs))
-    return sum(ratios) / len(ratios) if ratios else None
+        least = sum(there for _, there in pairs)
+        if least:
+            quotients.append(sum(here for here, _ in pairs) / least)
+            differences.append(fmean(here - there for here, there in pairs))
+    return (fmean(quotients), fmean(differences)) if quotients else (None, None)
 
 
 def _sum(rows: Sequence[EpisodeRow], name: str) -> float:
@@ -130,43 +146,40 @@ def markdown(settings: Mapping[str, Any], parts: Mapping[Part, Rows]) -> str:
     sections = [f"# Abroad, measured\n\nSettings: {told}.\n"]
     for part, rows in parts.items():
         if rows:
-            sections.append(f"## {part}\n\n{_over_tasks(rows)}\n{_by_task(rows)}")
+            sections.append(f"## {part}\n\n{_over_tasks(part, rows)}\n{_by_task(rows)}")
     return "\n".join(sections)
 
 
-def _over_tasks(rows: Rows) -> str:
-    names = (
+def _over_tasks(part: Part, rows: Rows) -> str:
+    names = [
         *("VLM", "condition", "monitor", "tasks", "trials", "completed", "95% interval"),
-        *(
-            "least in a task",
-            "actions / seeing",
-            "questions an action",
-            "most",
-            "seconds",
-            "errors",
-        ),
-    )
-    return table(
-        names,
+        *("least in a task", "actions / seeing", "actions − seeing"),
+        *("questions an action", "most", "seconds", "how they ended"),
+    ]
+    found = [
         [
-            (
-                each.vlm,
-                each.condition,
-                each.monitor,
-                str(each.tasks),
-                str(each.trials),
-                rate(each.completion.rate),
-                f"{rate(each.completion.low)}–{rate(each.completion.high)}",
-                f"{rate(each.worst)} ({each.worst_in})",
-                "" if each.actions is None else f"{each.actions:.2f}",
-                f"{each.typical:.1f}",
-                f"{each.most:.1f} ({each.most_in})",
-                f"{each.seconds:.2f}",
-                str(each.errors),
-            )
-            for each in lines(rows)
-        ],
-    )
+            each.vlm,
+            each.condition,
+            each.monitor,
+            str(each.tasks),
+            str(each.trials),
+            rate(each.completion.rate),
+            f"{rate(each.completion.low)}–{rate(each.completion.high)}",
+            f"{rate(each.least)} ({each.least_in})",
+            "" if each.quotient is None else f"{each.quotient:.2f}",
+            "" if each.difference is None else f"{each.difference:+.1f}",
+            f"{each.typical:.1f}",
+            f"{each.most:.1f} ({each.most_in})",
+            f"{each.seconds:.2f}",
+            each.endings,
+        ]
+        for each in lines(rows)
+    ]
+    if part is Part.DEAD:
+        names.append(f"dead skill tried {PATIENCE} times at most")
+        for told, each in zip(found, lines(rows), strict=True):
+            told.append(rate(each.patient))
+    return table(names, found)
 
 
 def _by_task(rows: Rows) -> str:

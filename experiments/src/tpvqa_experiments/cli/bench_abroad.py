@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from tpvqa.bench.own_task import OwnTask
     from tpvqa_experiments.abroad import Part
 
-PARTS = "others,own,failure,shipped"
+PARTS = "others,own,elsewhere,dead,failure,shipped"
 
 
 def abroad(
