@@ -24,38 +24,27 @@ class AnnotatedPlan:
 
     def __init__(self, task: Task, actions: Sequence[Action], needs: Sequence[Needs]):
         self.task, self.actions, self.needs = task, tuple(actions), tuple(needs)
-        self._places: dict[State, int | None] = {}
         self._atoms = frozenset(each.atom for need in needs for each in need)
-        self._wanted = [
-            (
-                frozenset(each.atom for each in need if each.positive),
-                frozenset(each.atom for each in need if not each.positive),
-            )
-            for need in needs
-        ]
+        self._bits = {atom: 1 << number for number, atom in enumerate(sorted(self._atoms))}
+        self._wanted = [(self._mask(need, True), self._mask(need, False)) for need in needs]
+
+    def _mask(self, need: Needs, positive: bool) -> int:
+        return sum(self._bits[each.atom] for each in need if each.positive is positive)
 
     def place(self, state: State) -> int | None:
         """The latest step from which on the plan reaches the goal; its length for the goal.
 
         None where the plan cannot be gone on with from the state.
         """
-        if state in self._places:
-            return self._places[state]
-        full = self.task.extend(state)
-        found = (
-            len(self.actions)
-            if self.task.goal_holds(state)
-            else next(
-                (
-                    index
-                    for index in range(len(self._wanted) - 1, -1, -1)
-                    if self._wanted[index][0] <= full and full.isdisjoint(self._wanted[index][1])
-                ),
-                None,
-            )
-        )
-        self._places[state] = found
-        return found
+        if self.task.goal_holds(state):
+            return len(self.actions)
+        bits = self._bits
+        full = sum(bits[atom] for atom in self.task.extend(state) if atom in bits)
+        for index in range(len(self._wanted) - 1, -1, -1):
+            holding, not_holding = self._wanted[index]
+            if not (holding & ~full or not_holding & full):
+                return index
+        return None
 
     def remaining(self, state: State) -> int | None:
         """How many actions are left from a state; None where the plan does not help."""

@@ -96,6 +96,9 @@ class Chooser:
         self.ahead = Outlook(model, costs, self._sight)
         self._commitments = Commitments(model, self.ahead, self._sight)
         self._going: dict[int, float] = {}
+        self._led: dict[tuple[Action, int, bool], list[tuple[float, int, float]]] = {}
+        self._cost: dict[tuple[Action, int, bool], float] = {}
+        self._worked_out_for: tuple[int, Rates] | None = None
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._postponed: set[State] = set()
@@ -168,7 +171,10 @@ class Chooser:
             current: The plan that is being followed; other actions cost a change of plan.
             barred: An action that the trial does not allow now: it was repeated too often.
         """
-        self._going.clear()
+        if (self.ahead.version, rates) != self._worked_out_for:
+            self._worked_out_for = self.ahead.version, rates
+            for known in (self._going, self._led, self._cost):
+                known.clear()
         ranked = belief.ranked()
         choices = [
             each
@@ -201,41 +207,61 @@ class Chooser:
 
     def _column(self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates) -> Floats:
         """The expected costs of an action in the joint states."""
-        skill = self.ahead.skill(action)
-        led = [self._successors(action, *each, skill.failure, rates) for each in ranked]
-        together = self._commitments.made(
-            (other, weight * share)
-            for (_, weight), successors in zip(ranked, led, strict=True)
-            for share, other, _ in successors
-        )
-        to_go = self.ahead.to_go
-        return np.array(
-            [
-                self._step
-                + sum(
-                    share * (together.get(other, to_go(other)) + more)
-                    for share, other, more in successors
-                )
-                for successors in led
-            ]
-        )
+        together = {}
+        if not self._sight.complete:
+            together = self._commitments.made(
+                (other, weight * share)
+                for number, weight in ranked
+                for share, other, _ in self._successors(action, number, weight, rates)
+            )
+        return np.array([self._paid(action, *each, rates, together) for each in ranked])
+
+    def _paid(
+        self,
+        action: Action,
+        number: int,
+        weight: float,
+        rates: Rates,
+        together: Mapping[int, float],
+    ) -> float:
+        """What an action costs in a joint state, with all that lies ahead."""
+        key = (action, number, weight >= DISTURBED)
+        known = None if together else self._cost.get(key)
+        if known is None:
+            to_go = self.ahead.to_go
+            known = self._step + sum(
+                share * ((together[other] if other in together else to_go(other)) + more)
+                for share, other, more in self._successors(action, number, weight, rates)
+            )
+            if not together:
+                self._cost[key] = known
+        return known
 
     def _successors(
-        self, action: Action, number: int, weight: float, failure: float, rates: Rates
+        self, action: Action, number: int, weight: float, rates: Rates
     ) -> list[tuple[float, int, float]]:
         """What an action leads to from a joint state: shares, joint states, and what each costs
         besides."""
+        key = (action, number, weight >= DISTURBED)
+        found = self._led.get(key)
+        if found is None:
+            found = self._led[key] = self._followed(action, number, rates, near=key[2])
+        return found
+
+    def _followed(
+        self, action: Action, number: int, rates: Rates, *, near: bool
+    ) -> list[tuple[float, int, float]]:
         outcomes = self._model.outcomes(action)[number]
         if outcomes.achieved:
             return [(1.0, number, self._idling(number, rates))]
-        possible = outcomes.intended is not None
+        possible, failure = outcomes.intended is not None, self.ahead.skill(action).failure
         failed = failure if possible else 1.0
         more = 0.0 if possible else self._idling(number, rates)
         found: list[tuple[float, int, float]] = []
         if outcomes.intended is not None:
-            after = outcomes.undone_after
+            after = outcomes.undone_after if near else ()
             found += _fallen(1 - failure, outcomes.intended, after, rates.spontaneous)
-        if weight >= DISTURBED:
+        if near:
             found += _fallen(failed, number, outcomes.undone, rates.disturbance, more)
         else:
             found.append((failed, number, more + rates.disturbance * self._step))
@@ -253,13 +279,7 @@ class Chooser:
             if action is not None:
                 outcomes = self._model.outcomes(action)[number]
                 if outcomes.intended is not None and not outcomes.achieved:
-                    skill = self.ahead.skill(action)
-                    cost = self._step + sum(
-                        share * self.ahead.to_go(other)
-                        for share, other, _ in self._successors(
-                            action, number, 1.0, skill.failure, rates
-                        )
-                    )
+                    cost = self._paid(action, number, 1.0, rates, {})
                     known = max(0.0, cost - self.ahead.to_go(number))
             self._going[number] = known
         return known
