@@ -5,7 +5,7 @@ its latest step whose needs hold, however the state came about. Needs are regres
 rest of the plan (Fritz and McIlraith 2007).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from tpvqa.pddl import Action, Atom, Literal, State, Task, literals
 
@@ -25,11 +25,16 @@ class AnnotatedPlan:
     def __init__(self, task: Task, actions: Sequence[Action], needs: Sequence[Needs]):
         self.task, self.actions, self.needs = task, tuple(actions), tuple(needs)
         self._atoms = frozenset(each.atom for need in needs for each in need)
-        self._bits = {atom: 1 << number for number, atom in enumerate(sorted(self._atoms))}
-        self._wanted = [(self._mask(need, True), self._mask(need, False)) for need in needs]
 
-    def _mask(self, need: Needs, positive: bool) -> int:
-        return sum(self._bits[each.atom] for each in need if each.positive is positive)
+    def wanted(self, bits: Callable[[Iterable[Atom]], int]) -> list[tuple[int, int]]:
+        """What every step and the goal need, and what must not hold there, as bits of facts."""
+        return [
+            (
+                bits(each.atom for each in need if each.positive),
+                bits(each.atom for each in need if not each.positive),
+            )
+            for need in self.needs
+        ]
 
     def place(self, state: State) -> int | None:
         """The latest step from which on the plan reaches the goal; its length for the goal.
@@ -38,11 +43,9 @@ class AnnotatedPlan:
         """
         if self.task.goal_holds(state):
             return len(self.actions)
-        bits = self._bits
-        full = sum(bits[atom] for atom in self.task.extend(state) if atom in bits)
-        for index in range(len(self._wanted) - 1, -1, -1):
-            holding, not_holding = self._wanted[index]
-            if not (holding & ~full or not_holding & full):
+        full = self.task.extend(state)
+        for index in range(len(self.needs) - 1, -1, -1):
+            if all((each.atom in full) is each.positive for each in self.needs[index]):
                 return index
         return None
 

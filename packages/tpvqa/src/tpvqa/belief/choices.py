@@ -95,7 +95,7 @@ class Chooser:
         self._sight = sight or Sight(model)
         self.ahead = Outlook(model, costs, self._sight)
         self._commitments = Commitments(model, self.ahead, self._sight)
-        self._going: dict[int, float] = {}
+        self._going: dict[tuple[int, bool], float] = {}
         self._led: dict[tuple[Action, int, bool], list[tuple[float, int, float]]] = {}
         self._cost: dict[tuple[Action, int, bool], float] = {}
         self._worked_out_for: tuple[int, Rates] | None = None
@@ -253,10 +253,10 @@ class Chooser:
     ) -> list[tuple[float, int, float]]:
         outcomes = self._model.outcomes(action)[number]
         if outcomes.achieved:
-            return [(1.0, number, self._idling(number, rates))]
+            return [(1.0, number, self._idling(number, rates, near=near))]
         possible, failure = outcomes.intended is not None, self.ahead.skill(action).failure
         failed = failure if possible else 1.0
-        more = 0.0 if possible else self._idling(number, rates)
+        more = 0.0 if possible else self._idling(number, rates, near=near)
         found: list[tuple[float, int, float]] = []
         if outcomes.intended is not None:
             after = outcomes.undone_after if near else ()
@@ -267,21 +267,21 @@ class Chooser:
             found.append((failed, number, more + rates.disturbance * self._step))
         return found
 
-    def _idling(self, number: int, rates: Rates) -> float:
+    def _idling(self, number: int, rates: Rates, *, near: bool) -> float:
         """What it costs besides to have done nothing: the risks of the next action remain.
 
         The way ahead knows no disturbances. If it were taken here, an action that changes nothing
         would look better than one that may go wrong.
         """
-        known = self._going.get(number)
+        known = self._going.get((number, near))
         if known is None:
             known, action = 0.0, self.ahead.next(number)
             if action is not None:
                 outcomes = self._model.outcomes(action)[number]
                 if outcomes.intended is not None and not outcomes.achieved:
-                    cost = self._paid(action, number, 1.0, rates, {})
+                    cost = self._paid(action, number, float(near), rates, {})
                     known = max(0.0, cost - self.ahead.to_go(number))
-            self._going[number] = known
+            self._going[number, near] = known
         return known
 
     def _weary(self, action: Action, ranked: Sequence[tuple[int, float]]) -> float:

@@ -163,6 +163,8 @@ class FaultModel:
         self._keep = _Keep(self._undo, task)
         self.joint_states: list[JointState] = []
         self._keys: dict[int, bytes] = {}
+        self._bits: dict[Atom, int] = {}
+        self._holding: dict[int, int] = {}
         self.facts = 0
         self._numbers: dict[JointState, int] = {}
         self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
@@ -198,6 +200,24 @@ class FaultModel:
     def state(self, number: int) -> State:
         """The atoms that hold in a joint state."""
         return self.joint_states[number].state
+
+    def bits(self, atoms: Iterable[Atom]) -> int:
+        """Facts as bits of a number, one for each fact that was ever asked for."""
+        known, found = self._bits, 0
+        for atom in atoms:
+            bit = known.get(atom)
+            if bit is None:
+                bit = known[atom] = 1 << len(known)
+            found |= bit
+        return found
+
+    def holding(self, number: int) -> int:
+        """What holds in a joint state, as `bits`; derived facts too, static ones not."""
+        known = self._holding.get(number)
+        if known is None:
+            full = self.task.extend(self.state(number)) - self.task.static
+            known = self._holding[number] = self.bits(full)
+        return known
 
     def truth(self, atoms: tuple[Atom, ...]) -> Truth:
         """In which joint states any of some facts holds, by number."""
@@ -252,7 +272,10 @@ class FaultModel:
         """The joint state after a change of its atoms."""
         before = self.joint_states[number]
         ended = self._keep(before.ended, before.state - after)
-        return self.number(JointState(after, ended))
+        there = self.number(JointState(after, ended))
+        if there not in self._holding and not self.task.derived:
+            self._holding[there] = self.holding(number) ^ self.bits(before.state ^ after)
+        return there
 
     def undone(self, number: int) -> tuple[tuple[float, int], ...]:
         """What a disturbance leads to: an achieved fact is undone, each as probable."""
