@@ -55,6 +55,21 @@ class Belief:
         self._marginals: dict[tuple[Atom, ...], float] = {}
         self._ranked: list[tuple[int, float]] | None = None
 
+    def renew(self) -> dict[int, int]:
+        """Forget the joint states that are not possible any more, before an action.
+
+        Returns:
+            The new numbers of those that are, by their old ones.
+        """
+        old, self.model = self.model, self.model.renewed()
+        numbers = {number: self.model.number(old.joint_states[number]) for number in self.weights}
+        self.weights = {numbers[number]: weight for number, weight in self.weights.items()}
+        self.outcome_weights = None
+        self._predicted = {}
+        self._marginals.clear()
+        self._ranked = None
+        return numbers
+
     def states(self) -> list[tuple[State, float]]:
         """The joint states with their probabilities, the most probable first."""
         return [(self.model.state(number), weight) for number, weight in self.ranked()]

@@ -161,6 +161,16 @@ class FaultModel:
         )
         self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
         self._keep = _Keep(self._undo, task)
+        self._clear()
+
+    def renewed(self) -> "FaultModel":
+        """The same without the joint states that were met."""
+        new = FaultModel.__new__(FaultModel)
+        new.__dict__.update(self.__dict__)
+        new._clear()
+        return new
+
+    def _clear(self) -> None:
         self.joint_states: list[JointState] = []
         self._keys: dict[int, bytes] = {}
         self._bits: dict[Atom, int] = {}
