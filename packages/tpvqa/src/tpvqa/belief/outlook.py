@@ -189,7 +189,9 @@ class Outlook:
             if self._model.state(number) in self.hopeless:
                 return self.failure
             steps = self._longest() + 2
-            cost = steps * self._usual_step()
+            works = 1 - self._rates.failure
+            unchecked = steps * self._costs.action + (1 - works**steps) * self.failure
+            cost = min(steps * self._usual_step(), unchecked)
         else:
             place, plan = found
             steps = len(plan.actions) - place
