@@ -1,6 +1,6 @@
 """What P(yes) is worth: Platt scaling with partial pooling over ways of asking and predicates."""
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -73,14 +73,16 @@ def fit_curves(answers: Sequence[LabelledAnswer]) -> Curves:
             break
         without = {key: without.get(key, set()) | astray.get(key, set()) for key in groups}
     curves = {key: fitted[key].curve for key in groups}
-    count: Counter[Key] = Counter((row.way, row.predicate) for row in answers)
+    count: defaultdict[Key, float] = defaultdict(float)
+    for row in answers:
+        count[row.way, row.predicate] += row.weight
     for wider in (*ways, WHOLE):
         within = {key: count[key] for key in groups if wider[0] in (None, key[0])}
         curves[wider] = _mean(curves, within)
     return Curves(curves, tuple(notices))
 
 
-def _mean(curves: Mapping[Key, Curve], rows: Mapping[Key, int]) -> Curve:
+def _mean(curves: Mapping[Key, Curve], rows: Mapping[Key, float]) -> Curve:
     """What an answer of a group that is not known is worth: as much as in those that are."""
     total = sum(rows.values())
     slope, intercept, sign = (
@@ -191,12 +193,14 @@ def _balance(answers: Sequence[LabelledAnswer]) -> list[float]:
     The sum of a group is that of its answers where they are in balance already, and about four
     times the rarer kind where they are not: more than that the rarer kind cannot tell.
     """
-    count = Counter((row.way, row.predicate, row.truth) for row in answers)
+    count: defaultdict[tuple[Way, str, bool], float] = defaultdict(float)
+    for row in answers:
+        count[row.way, row.predicate, row.truth] += row.weight
     weights = []
     for row in answers:
         own = count[row.way, row.predicate, row.truth]
         other = count[row.way, row.predicate, not row.truth]
-        weights.append(2 * other / (own + other))
+        weights.append(2 * other / (own + other) * row.weight)
     return weights
 
 
