@@ -131,7 +131,7 @@ class Calibration(_Model):
         version: Of the file.
         vlm: What it was learnt of.
         rows: Labelled answers that it was learnt from, each as often as it counts.
-        by_hand: How many of them a person has labelled.
+        by_hand: Labels that a person gave for them; one may hold for many answers.
         inferred: Answers that nobody has labelled, and of which later steps told what was probably
             right; they count for less (`labelling.inferring`).
         groups: By way and predicate.

@@ -38,7 +38,7 @@ class Labelled:
         vlm: Whose answers they are.
         rows: The answers. One whose truth was inferred stands there twice: as far as yes was
             right, and as far as no.
-        by_hand: Answers that a person has labelled.
+        by_hand: Labels that a person gave; each holds for all answers of its moment.
         inferred: Answers of which later steps told what was probably right.
         unused: Episodes without truth and without labels, where there are labels elsewhere.
     """
@@ -112,10 +112,10 @@ def label_episodes(
             asked = any(said_in_trial(each) for each in recorded.askings)
             (labelled if asked else untold).append(recorded)
         done()
-    by_hand = labelled_rows(labelled)
+    by_hand, labels = labelled_rows(labelled)
     rows += by_hand
     if rows or not untold:
-        return Labelled(vlm or "", rows, by_hand=len(by_hand), unused=len(untold))
+        return Labelled(vlm or "", rows, by_hand=labels, unused=len(untold))
     inferred = inferred_rows(untold, vlm or "")
     return Labelled(vlm or "", inferred, inferred=len(inferred) // 2)
 

@@ -9,8 +9,8 @@ from tpvqa.labelling.recorded import Asking, RecordedEpisode
 from tpvqa.vlm import Reply
 
 
-def labelled_rows(episodes: Sequence[RecordedEpisode]) -> list[LabelledAnswer]:
-    """The answers that a person has told the truth about.
+def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAnswer], int]:
+    """The answers that a person has told the truth about, and how many labels told it.
 
     A label holds for every answer to the same words between two actions. Where there is none, what
     a person answered in the trial itself counts as one.
@@ -20,19 +20,21 @@ def labelled_rows(episodes: Sequence[RecordedEpisode]) -> list[LabelledAnswer]:
     """
     known: dict[int, Said] = {}
     for episode in episodes:
-        labels = read_labels(episode)
+        told = read_labels(episode)
         for asking in episode.askings:
-            said = labels.get(asking.key) or said_in_trial(asking)
+            said = told.get(asking.key) or said_in_trial(asking)
             if said is not None:
                 known[id(asking)] = said
     order = Order([asking for episode in episodes for asking in episode.askings])
     weights = order.weights(lambda asking: known.get(id(asking)))
     rows: list[LabelledAnswer] = []
+    labels = 0
     for asking in order.askings:
         said = known.get(id(asking))
         if said in ("yes", "no"):
+            labels += 1
             rows += rows_of(asking, truth=said == "yes", weight=weights[id(asking)])
-    return rows
+    return rows, labels
 
 
 def said_in_trial(asking: Asking) -> Said | None:
