@@ -68,8 +68,10 @@ class Labelled:
         if self.unused:
             said = "1 episode has" if self.unused == 1 else f"{self.unused} episodes have"
             notices.append(f"{said} neither labels nor the truth, and taught nothing.")
-        told = {"by_hand": self.by_hand, "inferred": self.inferred, "notices": tuple(notices)}
-        return found.model_copy(update=told)
+        # A label holds for many answers of a moment, which say little more than the first.
+        rows = found.whole.rows if self.by_hand or self.inferred else found.rows
+        told = {"rows": rows, "by_hand": self.by_hand, "inferred": self.inferred}
+        return found.model_copy(update={**told, "notices": tuple(notices)})
 
 
 def label_episodes(
