@@ -8,8 +8,9 @@ from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from importlib.resources import files
 from threading import Thread
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, Self
 
+from tpvqa.cli.label_words import press, progress_line, when
 from tpvqa.errors import PictureError, TpvqaError
 from tpvqa.pictures import picture_type, read_picture
 
@@ -92,8 +93,6 @@ class LabelPage:
 
     def state(self) -> dict[str, Any]:
         """What the page shows now."""
-        from tpvqa.cli.label import progress_line, when
-
         session, progress = self._session, self._session.progress
         asking = session.now
         return {
@@ -111,8 +110,6 @@ class LabelPage:
 
     def press(self, key: str) -> bool:
         """Do what a key says; whether to go on."""
-        from tpvqa.cli.label import press
-
         try:
             going = press(self._session, key)
         except TpvqaError as error:
@@ -150,9 +147,8 @@ class _Handler(BaseHTTPRequestHandler):
     """Seconds after which a browser that only keeps a connection open is let go."""
     server_version = "tpvqa"
     sys_version = ""
-    protocol: ClassVar[str] = "HTTP/1.0"
 
-    def do_GET(self) -> None:  # noqa: N802 — as the library calls it
+    def do_GET(self) -> None:
         page, what = self.server.page, self._what()
         if what == "":
             self._send(page.html, "text/html; charset=utf-8")
@@ -168,7 +164,7 @@ class _Handler(BaseHTTPRequestHandler):
         else:
             self._refuse(HTTPStatus.NOT_FOUND, "nothing is here")
 
-    def do_POST(self) -> None:  # noqa: N802 — as the library calls it
+    def do_POST(self) -> None:
         page = self.server.page
         if self._what() != "key":
             self._refuse(HTTPStatus.NOT_FOUND, "nothing is here")

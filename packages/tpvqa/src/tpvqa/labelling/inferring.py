@@ -165,9 +165,7 @@ def _chained(episode: RecordedEpisode) -> _Episode | None:
             by_text.setdefault(asking.text, {})[asking.stretch] = asking
     chains = []
     for askings in by_text.values():
-        atoms = frozenset(
-            Atom.parse(text) for text in next(iter(askings.values())).atoms
-        )
+        atoms = frozenset(Atom.parse(text) for text in next(iter(askings.values())).atoms)
         said = SAID if atoms & initial else 1 - SAID
         moves = [
             _move(task, action, atoms, chance)
