@@ -24,8 +24,8 @@ from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 _INFERRED = (
-    "nobody has labelled these answers: what was right is inferred from what came before and after, "
-    "and counts for a quarter. `tpvqa label` on some of these episodes tells it better."
+    "nobody has labelled these answers: what was right is inferred from what came before and "
+    "after, and counts for a quarter. `tpvqa label` on some of these episodes tells it better."
 )
 
 
