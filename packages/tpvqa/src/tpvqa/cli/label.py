@@ -108,8 +108,6 @@ def _key() -> str:
         return line if line else "q"
     with _one_by_one():
         key = sys.stdin.read(1)
-    if key == "\x03":
-        raise KeyboardInterrupt
     return "q" if key in ("", "\x04") else key
 
 
