@@ -14,12 +14,14 @@ from tpvqa.cli.label_words import press, progress_line, question_lines
 from tpvqa.cli.saying import tell
 
 if TYPE_CHECKING:
-    from tpvqa.labelling import Session
+    from tpvqa.labelling import Asking, Session
 
 _EXIT = (
     "Exit codes: 0 ended, 2 bad input, 6 a label could not be written (those before it are kept), "
     "130 interrupted (nothing is lost)."
 )
+
+_PICTURES = (".jpg", ".jpeg", ".png", ".webp")
 
 
 def register(app: typer.Typer) -> None:
@@ -90,13 +92,28 @@ def _go_through(session: "Session", *, opened: bool) -> None:
         asking = session.now
         tell(question_lines(session), error=True)
         if opened:
-            for picture in asking.pictures[:1]:
-                webbrowser.open((asking.episode / picture).resolve().as_uri())
+            _open_picture(asking)
         if not press(session, _key()):
             return
         if not told and session.progress.standing.enough:
             told = True
             tell(f"enough: {progress_line(session.progress)}", error=True)
+
+
+def _open_picture(asking: "Asking") -> None:
+    """Open the first picture, where it is one: an episode may be a stranger's, and a browser goes
+    by the name of a file."""
+    from tpvqa.errors import PictureError
+    from tpvqa.pictures import read_picture
+
+    for picture in asking.pictures[:1]:
+        try:
+            read_picture(picture, inside=asking.episode)
+        except PictureError as error:
+            tell(f"not opened: {error}", error=True)
+            return
+        if Path(picture).suffix.lower() in _PICTURES:
+            webbrowser.open((asking.episode / picture).resolve().as_uri())
 
 
 def _key() -> str:
