@@ -85,7 +85,8 @@ class Order:
         asked: defaultdict[Group, int] = defaultdict(int)
         for asking in self.askings:
             same = str(asking.episode), asking.text
-            key = blake2b(repr((*same, asking.stretch)).encode(), digest_size=8).digest()
+            chance = asking.episode.name, asking.text, asking.stretch
+            key = blake2b(repr(chance).encode(), digest_size=8).digest()
             placed[asking.group][_stratum(asking)].append((ranks[same], key, asking))
             ranks[same] += 1
             for answer in asking.of_vlm:
