@@ -64,7 +64,7 @@ def probability_of_yes(picture, text):
 class Fingers(StringIO):
     """Somebody who says what most answers say, to every question."""
 
-    def readline(self, _size: int = -1, /) -> str:
+    def readline(self, _size: int | None = -1, /) -> str:  # type: ignore[override]
         with Session(["episodes/1"]) as session:
             now = session.now
         if now is None:

@@ -39,7 +39,8 @@ ASKINGS = st.lists(
     min_size=1,
     max_size=25,
 ).map(lambda rows: [asking(number, *row) for number, row in enumerate(rows)])
-SAID = st.sampled_from(["yes", "no", "cannot see"])
+ANSWERS: list[Said] = ["yes", "no", "cannot see"]
+SAID = st.sampled_from(ANSWERS)
 
 
 @settings(max_examples=50, deadline=None)
