@@ -5,14 +5,18 @@ from statistics import fmean
 
 import pytest
 
-from tests.labelling.robot import Truths, record
+from tests.doubles import ScriptedVLM, configured
+from tests.labelling.robot import Truths, forget_truth, record
+from tpvqa.assembly import Trial
 from tpvqa.belief import LabelledAnswer
 from tpvqa.belief.fitting import fit
 from tpvqa.bench.labelled_episodes import label_episodes
+from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import CalibrationError
 from tpvqa.labelling import Labels, read_recorded
 from tpvqa.labelling.inferring import WEIGHT
+from tpvqa.labelling.recorded import said_in_trial
 from tpvqa.labelling.session import Session
 from tpvqa.vlm import Reply
 
@@ -148,3 +152,21 @@ def _counting(row: LabelledAnswer, weight: float, trial: str | None = None) -> L
     from dataclasses import replace
 
     return replace(row, weight=weight, trial=row.trial if trial is None else trial)
+
+
+def test_what_a_person_answered_in_the_trial_is_a_label(tmp_path: Path) -> None:
+    config = configured(task="build_tower", monitor="belief:person=0.1", vlm="oracle:0.7")
+    config = config.but(world={"spec": "symbolic"})
+    writer = EpisodeWriter(tmp_path / "e", durable=False)
+    with Trial(config, person=ScriptedVLM(lambda _: Reply.YES)) as trial:
+        trial.run(writer)
+    writer.close()
+    forget_truth(tmp_path / "e")
+    found = label_episodes([tmp_path / "e"])
+    asked = [each for each in read_recorded(tmp_path / "e").askings if said_in_trial(each)]
+    assert found.by_hand == len(asked) > 0
+    assert found.inferred == 0
+    assert {row.truth for row in found.rows} == {True}
+    with Session([tmp_path / "e"]) as session:
+        assert session.progress.labels == found.by_hand
+        assert session.now not in asked

@@ -16,7 +16,8 @@ from tpvqa.events import Ended, Event, Started
 from tpvqa.events.events import Acted
 from tpvqa.labelling import LABELS, RecordedEpisode, read_recorded
 from tpvqa.labelling.inferring import inferred_rows, likelier
-from tpvqa.labelling.rows import labelled_rows, said_in_trial
+from tpvqa.labelling.recorded import said_in_trial
+from tpvqa.labelling.rows import labelled_rows
 from tpvqa.labelling.session import check_vlm
 from tpvqa.pddl import Atom, Task, task_from_text
 from tpvqa.worlds import Report

@@ -25,8 +25,8 @@ from tpvqa.belief import Apart, Calibration, LabelledAnswer
 from tpvqa.belief.fitting import fit
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.errors import TpvqaError
-from tpvqa.labelling.recorded import Asking, RecordedEpisode
-from tpvqa.labelling.rows import rows_of, said_in_trial
+from tpvqa.labelling.recorded import Asking, RecordedEpisode, said_in_trial
+from tpvqa.labelling.rows import rows_of
 from tpvqa.pddl import Action, Atom, Task
 from tpvqa.pddl.conditions import literals
 from tpvqa.vlm import Reply

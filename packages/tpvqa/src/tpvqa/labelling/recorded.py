@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
+from typing import Literal
 
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import LOG, episode_folder, whole_lines
@@ -117,6 +118,15 @@ def read_recorded(folder: Path | str) -> RecordedEpisode:
         tuple(gathering.askings()),
         tuple(gathering.done),
     )
+
+
+def said_in_trial(asking: Asking) -> Literal["yes", "no"] | None:
+    """What a person answered to the question while the trial ran, the last time; None for
+    nothing."""
+    for answer in reversed(asking.answers):
+        if answer.person and answer.reply in (Reply.YES, Reply.NO):
+            return "yes" if answer.reply is Reply.YES else "no"
+    return None
 
 
 def subject_of(question: QuestionRecord) -> str:

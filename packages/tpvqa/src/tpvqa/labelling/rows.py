@@ -5,8 +5,7 @@ from collections.abc import Iterator, Sequence
 from tpvqa.belief import LabelledAnswer
 from tpvqa.labelling.labels import Said, read_labels
 from tpvqa.labelling.order import Order
-from tpvqa.labelling.recorded import Asking, RecordedEpisode
-from tpvqa.vlm import Reply
+from tpvqa.labelling.recorded import Asking, RecordedEpisode, said_in_trial
 
 
 def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAnswer], int]:
@@ -35,15 +34,6 @@ def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAns
             labels += 1
             rows += rows_of(asking, truth=said == "yes", weight=weights[id(asking)])
     return rows, labels
-
-
-def said_in_trial(asking: Asking) -> Said | None:
-    """What a person answered to the question while the trial ran, the last time; None for
-    nothing."""
-    for answer in reversed(asking.answers):
-        if answer.person and answer.reply in (Reply.YES, Reply.NO):
-            return "yes" if answer.reply is Reply.YES else "no"
-    return None
 
 
 def rows_of(

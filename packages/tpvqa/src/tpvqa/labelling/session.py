@@ -10,7 +10,7 @@ from tpvqa.episodes.log import episode_folder
 from tpvqa.errors import CalibrationError
 from tpvqa.labelling.labels import Labels, Said
 from tpvqa.labelling.order import Order, Standing
-from tpvqa.labelling.recorded import Asking, read_recorded
+from tpvqa.labelling.recorded import Asking, read_recorded, said_in_trial
 
 KEYS: dict[str, Said] = {"y": "yes", "n": "no", "c": "cannot see"}
 """Keys that label. The others are s (skip), b (back) and q (quit)."""
@@ -72,8 +72,8 @@ class Session:
         self.now = self.order.next(self.label_of)
 
     def label_of(self, asking: Asking) -> Said | None:
-        """The label of a question; None where there is none."""
-        return self._labels[asking.episode].known.get(asking.key)
+        """The label of a question, or what a person answered in the trial; None for neither."""
+        return self._labels[asking.episode].known.get(asking.key) or said_in_trial(asking)
 
     @property
     def progress(self) -> Progress:
