@@ -5,9 +5,9 @@ import json
 import secrets
 from functools import cached_property
 from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, HTTPServer
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
-from threading import Thread
+from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any, Self
 
 from tpvqa.cli.label_words import press, progress_line, when
@@ -48,6 +48,7 @@ class LabelPage:
     def __init__(self, session: "Session", *, port: int = 0):
         self._session, self._token = session, secrets.token_urlsafe(16)
         self.broken: TpvqaError | None = None
+        self._one, self._over = Lock(), False
         try:
             self._server = _Server((HERE, port), _Handler)
         except OSError as error:
@@ -93,6 +94,10 @@ class LabelPage:
 
     def state(self) -> dict[str, Any]:
         """What the page shows now."""
+        with self._one:
+            return self._state()
+
+    def _state(self) -> dict[str, Any]:
         session, progress = self._session, self._session.progress
         asking = session.now
         return {
@@ -110,11 +115,12 @@ class LabelPage:
 
     def press(self, key: str) -> bool:
         """Do what a key says; whether to go on."""
-        try:
-            going = press(self._session, key)
-        except TpvqaError as error:
-            self.broken, going = error, False
-        return going
+        with self._one:
+            try:
+                return not self._over and press(self._session, key)
+            except TpvqaError as error:
+                self.broken = error
+                return False
 
     def picture(self, number: int) -> bytes:
         """A picture of the question that is shown now.
@@ -131,13 +137,16 @@ class LabelPage:
         return self
 
     def __exit__(self, *_: object) -> None:
+        with self._one:  # a label that is being written is written
+            self._over = True
         self._server.server_close()
 
 
-class _Server(HTTPServer):
-    """One request at a time: a session is not made for several."""
+class _Server(ThreadingHTTPServer):
+    """A thread for every connection, as browsers open some that they do not use."""
 
     page: LabelPage
+    daemon_threads = True
     allow_reuse_address = True
 
 
