@@ -179,6 +179,7 @@ def test_an_interrupt_loses_nothing(folders: list[str]) -> None:
         path, until = Path(folders[0], LABELS), time.monotonic() + 20
         while time.monotonic() < until and not (path.exists() and path.read_text()):
             time.sleep(0.02)
+        time.sleep(0.2)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=20)
     assert process.returncode == 130, err

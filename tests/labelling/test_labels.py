@@ -121,6 +121,23 @@ def test_what_cannot_be_written_is_told_and_what_was_is_kept(
     assert read_labels(episode) == {episode.askings[0].key: "yes"}
 
 
+def test_an_interrupt_takes_no_label_back(
+    folders: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    episode = read_recorded(folders[0])
+    labels = Labels(episode)
+
+    def interrupted(_descriptor: int) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            labels.append(episode.askings[0], "yes")
+    labels.close()
+    assert labels.known == read_labels(episode) == {episode.askings[0].key: "yes"}
+
+
 def test_one_label_holds_for_one_truth(folders: list[Path], truths: Truths) -> None:
     """All that is asked in the same words between two actions has one right answer."""
     answers = 0

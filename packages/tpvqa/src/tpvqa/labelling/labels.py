@@ -124,17 +124,16 @@ class Labels:
             at=datetime.now(UTC).isoformat(timespec="seconds"),
         )
         line = label.model_dump_json(by_alias=True).encode() + b"\n"
-        size = os.fstat(self._file).st_size
+        size, before = os.fstat(self._file).st_size, dict(self.known)
         try:
             write_all(self._file, line)
+            self.known[asking.key] = said  # by now Ctrl-C takes nothing back
             os.fsync(self._file)
-        except BaseException as error:  # Ctrl-C, too
+        except OSError as error:
+            self.known = before
             with suppress(OSError):
                 os.ftruncate(self._file, size)
-            if isinstance(error, OSError):
-                raise self._unwritten(error) from error
-            raise
-        self.known[asking.key] = said
+            raise self._unwritten(error) from error
 
     def _open(self) -> None:
         """Open the file when there is something to write: to look at questions leaves no trace."""
