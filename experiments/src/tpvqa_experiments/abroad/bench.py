@@ -18,7 +18,7 @@ from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.abroad.tables import write_results
 from tpvqa_experiments.belief import calibrations as learnt
 
-SENSED = "world-sensed.yaml"
+WORLD = "world-sensed.yaml"
 AT_ONCE = 20
 """Episodes of the limit that are written together."""
 
@@ -78,7 +78,7 @@ class AbroadBench:
                 self.common,
                 self.calibration_episodes,
                 done=calibrating,
-                own=extent.own,
+                own={**extent.own, **extent.sensed},
             )
             return {cell: known[learnt.source_of(cell)] for cell in believing}
 
@@ -161,18 +161,24 @@ def _rows(
 def tasks_in(folder: Path) -> dict[str, OwnTask]:
     """The tasks that lie in a folder, a folder each, by the names of their problems.
 
-    One that has a `world-sensed.yaml`, too, is two tasks: with that world file it is called
-    NAME-sensed.
-
     Raises:
         BenchError: There are none, or a file cannot be read.
     """
     folders = sorted(each.parent for each in folder.glob("*/domain.pddl"))
     if not folders:
         raise BenchError(f"{folder} holds no folder with a domain.pddl and a problem")
-    found = own_tasks(folders)
-    for name, task in list(found.items()):
-        sensed = task.origin.domain.parent / SENSED
-        if sensed.exists():
-            found[f"{name}-sensed"] = OwnTask.read(replace(task.origin, world=sensed))
+    return own_tasks(folders)
+
+
+def sensed(tasks: Mapping[str, OwnTask]) -> dict[str, OwnTask]:
+    """Those of some tasks that have a `world-sensed.yaml`, with that, as NAME-sensed.
+
+    Raises:
+        BenchError: A file cannot be read.
+    """
+    found = {}
+    for name, task in tasks.items():
+        world = task.origin.domain.parent / WORLD
+        if world.exists():
+            found[f"{name}-sensed"] = OwnTask.read(replace(task.origin, world=world))
     return found

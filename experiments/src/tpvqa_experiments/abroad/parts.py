@@ -31,6 +31,7 @@ class Part(StrEnum):
 
     OTHERS = "others"
     OWN = "own"
+    SENSED = "sensed"
     ELSEWHERE = "elsewhere"
     DEAD = "dead"
     FAILURE = "failure"
@@ -44,6 +45,7 @@ class Extent:
     Attributes:
         others: Domains of others, by name; the monitors are told nothing of the VLM there.
         own: Domains of one's own, by name.
+        sensed: The same with what the robot's own sensors tell.
         tasks: Shipped tasks.
         monitors: Specifications of monitors.
         vlms: Specifications of noise models.
@@ -54,6 +56,7 @@ class Extent:
 
     others: Mapping[str, OwnTask] = field(default_factory=dict)
     own: Mapping[str, OwnTask] = field(default_factory=dict)
+    sensed: Mapping[str, OwnTask] = field(default_factory=dict)
     tasks: Sequence[str] = SHIPPED
     monitors: Sequence[str] = MONITORS
     vlms: Sequence[str] = (VLM,)
@@ -69,6 +72,9 @@ class Extent:
                     yield cell, self.others_episodes
             case Part.OWN:
                 for cell in self._cross(self.own, ("",)):
+                    yield cell, self.episodes
+            case Part.SENSED:
+                for cell in self._cross(self.sensed, ("",)):
                     yield cell, self.episodes
             case Part.ELSEWHERE:
                 household = [task for task in self.tasks if task in TASKS]
@@ -88,7 +94,7 @@ class Extent:
     @property
     def tasks_of_files(self) -> dict[str, OwnTask]:
         """All tasks that are not shipped, by name."""
-        return {**self.others, **self.own}
+        return {**self.others, **self.own, **self.sensed}
 
     def _cross(
         self, tasks: Mapping[str, OwnTask] | Sequence[str], conditions: Sequence[str]

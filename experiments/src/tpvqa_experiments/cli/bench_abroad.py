@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from tpvqa.bench.own_task import OwnTask
     from tpvqa_experiments.abroad import Part
 
-PARTS = "others,own,elsewhere,dead,failure,shipped"
+PARTS = "others,own,sensed,elsewhere,dead,failure,shipped"
+EXAMPLES = Path(__file__).parents[4] / "examples"
 
 
 def abroad(
@@ -23,7 +24,8 @@ def abroad(
         typer.Option(help="Folder of domains of others, see experiments/tools/others_domains.py."),
     ] = None,
     own: Annotated[
-        Path | None, typer.Option(help="Folder of domains of one's own, a folder each.")
+        Path | None,
+        typer.Option(help="Folder of domains of one's own, a folder each. Default: examples."),
     ] = None,
     tasks: Annotated[
         str, typer.Option(help="Shipped tasks, or some of the folders', with commas. Default: all.")
@@ -59,16 +61,18 @@ def abroad(
     from tpvqa.bench.condition import normalised
     from tpvqa.config import TrialConfig
     from tpvqa_experiments.abroad import AbroadBench, run_abroad_bench
-    from tpvqa_experiments.abroad.bench import tasks_in
+    from tpvqa_experiments.abroad.bench import sensed
     from tpvqa_experiments.abroad.parts import MONITORS, SHIPPED, Extent
     from tpvqa_experiments.abroad.tables import lines
 
     chosen = listed(tasks)
+    ours = _chosen(_ours(own), chosen)
     bench = AbroadBench(
         parts=[_part(name) for name in listed(parts)],
         extent=Extent(
-            others=_chosen({} if others is None else tasks_in(others), chosen),
-            own=_chosen({} if own is None else tasks_in(own), chosen),
+            others=_chosen(_tasks(others), chosen),
+            own=ours,
+            sensed=sensed(ours),
             tasks=[name for name in SHIPPED if not chosen or name in chosen],
             monitors=listed(monitors) or MONITORS,
             vlms=listed(vlms),
@@ -107,6 +111,18 @@ def abroad(
         print(f"tables: {out}/abroad.md, {out}/abroad.json")
     if any(row.error for rows in found.values() for own_rows in rows.values() for row in own_rows):
         raise typer.Exit(1)
+
+
+def _ours(folder: Path | None) -> "dict[str, OwnTask]":
+    if folder is not None:
+        return _tasks(folder)
+    return _tasks(EXAMPLES) if EXAMPLES.is_dir() else {}
+
+
+def _tasks(folder: Path | None) -> "dict[str, OwnTask]":
+    from tpvqa_experiments.abroad.bench import tasks_in
+
+    return {} if folder is None else tasks_in(folder)
 
 
 def _chosen(tasks: "dict[str, OwnTask]", names: tuple[str, ...]) -> "dict[str, OwnTask]":
