@@ -83,7 +83,7 @@ def test_whatever_is_undone_in_an_example_who_sees_all_completes_it(name: str) -
     (own,) = own_tasks([EXAMPLES / name]).items()
     here = stage(*own)
     cell = Cell(own[0], "seeing", "oracle", "symbolic", "limits=none,failure=0.4,disturbance=0.8")
-    assert all(seeing(here, cell, TrialConfig(), n).completed for n in range(15))
+    assert all(seeing(here, cell, TrialConfig(), n).completed for n in range(5))
 
 
 def test_what_is_sensed_in_the_examples_is_what_is_never_asked() -> None:
