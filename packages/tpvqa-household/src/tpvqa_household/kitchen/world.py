@@ -97,6 +97,7 @@ class KitchenWorld(Simulated, PlainArguments):
             time=self._time,
             frames={view: frame},
             detail={"kitchen": self.scene.seed, "split": self.scene.split},
+            facts=self.simulation.sensed(),
         )
 
     def execute(

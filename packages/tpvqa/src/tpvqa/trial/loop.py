@@ -70,7 +70,8 @@ class _Loop:
                     return Conclusion("world refused", execution.message)
                 if execution.report is not Report.DONE:
                     step = replace(step, trouble=execution.message or execution.report.value)
-                step = replace(step, actions_left=self.state.actions_left)
+                left = self.state.actions_left
+                step = replace(step, sensed=tuple(execution.facts), actions_left=left)
                 verdict = yield from self._check(self.monitor.after, step, "after")
             match verdict.decision:
                 case Decision.DONE:
@@ -234,6 +235,8 @@ class _Loop:
                 Acted(report=execution.report, seconds=0.0, message=execution.message)
             )
             yield from self._persist(self._look)
+            if self._seen is not None:
+                execution = replace(execution, facts=self._seen.facts)
         return execution
 
     def _replan(self, known: Plan | None) -> Generator[Any, Any, Conclusion | None]:

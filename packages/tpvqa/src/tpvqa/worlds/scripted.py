@@ -20,15 +20,21 @@ class _ScriptedSimulation(Simulation):
     """The true state, changed as the script says instead of by chance."""
 
     def __init__(self, simulation: Simulation, script: Script):
-        super().__init__(simulation.task, simulation.rules, failure=0.0, disturbance=0.0)
+        super().__init__(
+            simulation.task,
+            simulation.rules,
+            failure=0.0,
+            disturbance=0.0,
+            seed=simulation.seed,
+            episode=simulation.episode,
+        )
         self._script = script
 
-    def execute(self, action: Action) -> Outcome:
-        """Try an action on the true state."""
+    def _tried(self, action: Action) -> Outcome:
         fault = self._script.get((action.pddl(), self.attempts[action.pddl()] + 1))
         before = self.state
         if fault is None or not fault.fails:
-            outcome = super().execute(action)
+            outcome = super()._tried(action)
         else:
             self.attempts[action.pddl()] += 1
             outcome = Outcome(Failure.SCRIPT, None, "", before, before)
