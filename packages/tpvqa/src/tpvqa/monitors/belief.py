@@ -18,12 +18,12 @@ from tpvqa.errors import PlannerError
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.monitors.capabilities import Learning
-from tpvqa.monitors.inspection import Inspection, Replies
+from tpvqa.monitors.inspection import REPORTED, SENSED, Inspection, Replies
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.observation import Observation
+from tpvqa.observation import Observation, SensedFact
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import regress
@@ -85,7 +85,7 @@ class BeliefMonitor(Learning, PlainArguments):
             learned = None if experience is None else experience.trusting()
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
-        self.evidence = Evidence(self.belief, calibration, self.trust)
+        self.evidence = Evidence(self.belief, calibration, self.trust, skill=settings.skill)
         self._chooser = Chooser(self.belief.model, self.costs)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
@@ -181,9 +181,22 @@ class BeliefMonitor(Learning, PlainArguments):
         if self._learns:
             self.chances.learn(self.belief.outcome_shares())
         self.belief.act(step.action, self.chances.rates)
-        self.evidence.acted(troubled=bool(step.trouble))
         self._chooser.acted()
         self._now = self._begin(step.action)
+        before = {atom: self.belief.probability(atom) for atom in self._now.effects}
+        self.evidence.acted(step.action.name, failed=step.reported)
+        for atom, was in before.items():
+            if _told_apart(was, self.belief.probability(atom)):
+                self._now.notice(atom, was, REPORTED)
+        self._sense(step.sensed)
+
+    def _sense(self, facts: Sequence[SensedFact]) -> None:
+        """Take in what the robot itself has measured."""
+        for fact in facts:
+            was = self.belief.probability(fact.atom)
+            self.evidence.take_sensed(fact.atom, fact.probability)
+            if _told_apart(was, self.belief.probability(fact.atom)):
+                self._now.notice(fact.atom, was, SENSED)
 
     def _begin(self, action: Action | None) -> Inspection:
         return Inspection(action, self._views[0] if self._views else None)
@@ -285,6 +298,7 @@ class BeliefMonitor(Learning, PlainArguments):
                     return
                 now.view = open_views[0]
                 observation: Observation = yield Look(now.view)
+                self._sense(observation.facts)
                 now.picture = observation.look if self._blind else _picture(observation)
                 self._looks += 1
                 now.looks += 1
@@ -328,6 +342,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self._words,
             self.belief,
             self._now.replies,
+            self._now.noticed,
             self._annotated(step),
             acted,
             unseen=self.evidence.unseen,
@@ -345,6 +360,11 @@ class BeliefMonitor(Learning, PlainArguments):
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
         return {atom: self.belief.probability(atom) for atom in sorted(atoms)}
+
+
+def _told_apart(before: float, after: float) -> bool:
+    """Whether two probabilities differ as they are said."""
+    return abs(before - after) >= 0.005
 
 
 def _picture(observation: Observation) -> Picture:

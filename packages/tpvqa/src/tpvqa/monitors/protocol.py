@@ -27,6 +27,8 @@ class Step:
         state: What is believed to be true, before the action.
         attempt: How often this step's action has been repeated so far.
         trouble: After the action, what the robot's own skill says went wrong; never the truth.
+        reported: After the action, whether the skill reports that it failed; None where it reports
+            nothing, as the program was killed in its middle.
         sensed: After the action, what the robot's own sensors tell; never the truth either.
         actions_left: Actions that the trial still allows; None for any number.
         replans_left: Replans that it still allows; None for any number.
@@ -40,6 +42,7 @@ class Step:
     state: State
     attempt: int = 0
     trouble: str = ""
+    reported: bool | None = None
     sensed: tuple[SensedFact, ...] = ()
     actions_left: int | None = None
     replans_left: int | None = None
