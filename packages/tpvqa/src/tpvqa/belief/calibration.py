@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from tpvqa.belief.bounds import BOUND, EDGE
-from tpvqa.belief.own_words import SensorWorth, SkillWorth
+from tpvqa.belief.own_words import OwnWords, SensorWorth, SkillWorth, fit_sensors, fit_skills
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError, PlacedError
 from tpvqa.questions.question import Question, Way
@@ -194,6 +194,11 @@ class Calibration(_Model):
             repeat_same_view=0.5,
             repeat_other_view=0.25,
         )
+
+    def hearing(self, own: OwnWords) -> "Calibration":
+        """The same with what was learnt of the robot's own sensors and skills."""
+        sensors, skills = fit_sensors(own.readings), fit_skills(own.reports)
+        return self.model_copy(update={"sensors": sensors, "skills": skills})
 
     def group(self, question: Question) -> Group:
         """The narrowest group that tells something about a question."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -96,6 +96,24 @@ class LabelledReport:
     action: str
     reported: bool
     failed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class OwnWords:
+    """What a robot said itself in some trials, beside the truth.
+
+    Attributes:
+        readings: Of its sensors.
+        reports: Of its skills.
+    """
+
+    readings: list[LabelledReading] = field(default_factory=list)
+    reports: list[LabelledReport] = field(default_factory=list)
+
+    def add(self, more: "OwnWords") -> None:
+        """Take in those of another trial."""
+        self.readings.extend(more.readings)
+        self.reports.extend(more.reports)
 
 
 def fit_sensors(readings: Iterable[LabelledReading]) -> tuple[SensorWorth, ...]:
