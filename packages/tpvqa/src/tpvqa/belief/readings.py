@@ -100,13 +100,17 @@ class Readings:
         if ratio == 0.0:
             return None
         right = 1 / (1 + exp(-ratio))
-        last = self._last.get(atom)
-        if last is not None and last.settled:
-            last = last.before
+        last, now = self._last.get(atom), self.probability(atom)
+        if last is not None and last.settled:  # it would take that one's place
+            if_true, if_false = last.weighed
+            true, false = now / if_true, (1 - now) / if_false
+            last, now = last.before, true / (true + false)
         if last is None:
             return right, 1 - right
         same = float(last.holds == (ratio > 0))
-        again_true, again_false = AGAIN * last.true, AGAIN * (1 - last.true)
+        # As little has changed as can have: what was as probable then is what it was.
+        again_true = AGAIN * min(last.true / max(now, 1e-9), 1.0)
+        again_false = AGAIN * min((1 - last.true) / max(1 - now, 1e-9), 1.0)
         return (
             again_true * same + (1 - again_true) * right,
             again_false * same + (1 - again_false) * (1 - right),
