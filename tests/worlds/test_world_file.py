@@ -42,6 +42,11 @@ def test_the_file_of_the_documentation_is_read(task: Task, tmp_path: Path) -> No
         "(opened ?c)",
     ]
     assert [each.action for each in rules.rebind] == ["find"]
+    assert [str(rule.fact) for rule in rules.sensed] == ["(in_hand ?x ?h)", "(opened ?c)"]
+    assert [each.action for each in rules.reports] == ["pick_up"]
+    for key in ("right", "at", "notices", "false_alarms"):
+        assert f"{key}:" in path.read_text()
+        assert f"| `{key}` |" in page
     for key in ("fact", "outcomes", "say", "last", "when", "unless", "add", "delete"):
         assert f"{key}:" in path.read_text()
         assert f"| `{key}` |" in page
