@@ -86,6 +86,29 @@ def test_what_the_robot_never_hears_of_it_does_not_tell(planner: Planner, tmp_pa
         assert not any("sensed" in e.reason for e in events if isinstance(e, Decided))
 
 
+@pytest.mark.parametrize("at", ["look", "effect", "action"])
+def test_where_everything_is_sensed_no_question_is_needed(tpvqa: Run, at: str) -> None:
+    """Nor any look, but where looks are what senses."""
+    Path("felt.yaml").write_text(
+        f"sensed:\n  - {{fact: '(contaminated ?d)', at: {at}}}\n  - {{fact: '(open ?d)', at: {at}}}"
+    )
+    Path("mute.yaml").write_text("never_asked: [{fact: '(contaminated ?d)'}, {fact: '(open ?d)'}]")
+    given = ["--world-file", "felt.yaml", "--questions", "mute.yaml", "--vlm", "oracle:1"]
+    for seed in (2, 3):
+        code, _, err = tpvqa("run", *TRIAL, *given, "--seed", seed, "--out", f"e{seed}")
+        assert code == 0, err
+        events = read_episode(f"e{seed}")
+        ended = events[-1]
+        assert isinstance(ended, Ended)
+        failed = sum(not e.truth.succeeded for e in events if isinstance(e, Acted) and e.truth)
+        assert ended.questions == 0
+        if at == "effect":  # what a failure may have undone besides, nothing tells
+            assert ended.actions <= 6 + failed + 2
+        else:
+            assert ended.actions == 6 + failed
+        assert ended.looks <= (ended.actions if at == "look" else 0)
+
+
 @pytest.mark.parametrize("failure", [0.0, 0.25])
 def test_a_skill_that_is_said_to_notice_its_failures_is_heard(
     planner: Planner, tmp_path: Path, failure: float

@@ -95,6 +95,13 @@ def test_a_world_that_says_strange_things(method: str, result: object, tmp_path:
     _fails(trial, tmp_path)
 
 
+@pytest.mark.parametrize("told", [None, ["onn"], [3]])
+def test_a_world_that_senses_what_is_no_predicate(told: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("tpvqa.worlds.symbolic.SymbolicWorld.senses", lambda world: told)
+    with pytest.raises(PluginError, match=r"SymbolicWorld\.senses (has to )?return"):
+        _trial()
+
+
 def test_a_fact_that_no_task_has_is_named_with_the_nearest(tmp_path: Path) -> None:
     trial = _trial()
     facts = [SensedFact(Atom("on", ("aple", "table")), 0.9)]

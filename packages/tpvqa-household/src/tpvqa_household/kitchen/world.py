@@ -100,6 +100,10 @@ class KitchenWorld(Simulated, PlainArguments):
             facts=self.simulation.sensed(),
         )
 
+    def senses(self) -> frozenset[str]:
+        """The predicates that the world file says are sensed at looks."""
+        return self.simulation.senses()
+
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
     ) -> Execution:

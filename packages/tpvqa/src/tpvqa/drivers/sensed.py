@@ -1,11 +1,33 @@
 """What a robot says it has sensed, held against the task before anybody believes it."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from typing import cast
 
-from tpvqa.drivers.plugged import malformed
-from tpvqa.errors import PDDLError
+from tpvqa.drivers.plugged import called, malformed
+from tpvqa.errors import PDDLError, suggestion_or_list
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Atom, Task
+from tpvqa.worlds.capabilities import Sensing
+
+_NAMES = cast("type[Collection[str]]", Collection)
+
+
+def senses_of(world: object, task: Task) -> frozenset[str]:
+    """The predicates that looks at a world tell of without any question.
+
+    Raises:
+        PluginError: The world broke, or names what is no predicate of the task.
+    """
+    if not isinstance(world, Sensing):
+        return frozenset()
+    told: Collection[str] = called(world, "senses", _NAMES)
+    for name in told:
+        if name not in task.predicates:
+            said = f"there is no predicate {name!r}" + suggestion_or_list(
+                str(name), task.predicates
+            )
+            raise malformed(world, "senses", ValueError(said))
+    return frozenset(told)
 
 
 def checked(

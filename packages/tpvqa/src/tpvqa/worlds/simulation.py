@@ -16,7 +16,7 @@ from tpvqa.chance import chance
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.worlds.outcome import Failure, Outcome
-from tpvqa.worlds.sensing import Sensors
+from tpvqa.worlds.sensing import Occasion, Sensors
 from tpvqa.worlds.world_file import WorldRules
 
 FAILURE = 0.25
@@ -99,6 +99,10 @@ class Simulation:
         if not self.rules.sensed:
             return ()
         return self._sensors.at_look(self.task.extend(self.state), self._draw_for)
+
+    def senses(self) -> frozenset[str]:
+        """The predicates that are sensed at looks."""
+        return self._sensors.predicates(Occasion.LOOK)
 
     def _draw_for(self, atom: Atom) -> Random:
         """A reading stays what it is until something is done: its error is not drawn again."""

@@ -38,6 +38,10 @@ class SymbolicWorld(Simulated, Pictureless):
         looks, self._looks = self._looks, self._looks + 1
         return Observation(time=float(looks), facts=self.simulation.sensed())
 
+    def senses(self) -> frozenset[str]:
+        """The predicates that the world file says are sensed at looks."""
+        return self.simulation.senses()
+
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
     ) -> Execution:

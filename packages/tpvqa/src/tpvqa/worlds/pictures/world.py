@@ -106,6 +106,10 @@ class DrawnWorld(Simulated, Generic[P]):
             facts=self.simulation.sensed(),
         )
 
+    def senses(self) -> frozenset[str]:
+        """The predicates that the world file says are sensed at looks."""
+        return self.simulation.senses()
+
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
     ) -> Execution:
