@@ -10,6 +10,7 @@ from tests.doubles import configured
 from tpvqa.assembly import Trial
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.condition import normalised
+from tpvqa.bench.own_task import own_tasks
 from tpvqa.bench.settings import common_settings
 from tpvqa.bench.stage import stage
 from tpvqa.config import SimulationConfig, TrialConfig
@@ -31,6 +32,7 @@ from tpvqa.worlds.world_file import load_world_file
 
 TASK = load_task("eat_apple")
 PLANNER = make_planner("fast-downward")
+EXAMPLES = Path(__file__).parents[2] / "examples"
 LAMPS = Path(__file__).parents[1] / "fixtures/lamps"
 
 
@@ -169,6 +171,14 @@ def test_a_world_file_may_say_that_nothing_is_undone(tmp_path: Path) -> None:
     with Trial(config) as trial:
         assert trial.simulation is not None
         assert not trial.simulation.undoing
+
+
+def test_a_bench_judges_actions_that_only_a_fault_opens_up() -> None:
+    (own,) = own_tasks([EXAMPLES / "hospital"]).items()
+    cell = Cell(own[0], "tpvqa", "oracle", "symbolic", "limits=none,disturbance=1,failure=0.4")
+    rows = [stage(*own).run(cell, TrialConfig(), episode) for episode in range(4)]
+    assert not any(row.error for row in rows)
+    assert stage(*own).actions["(pick_up drops floor_one bay_one)"].name == "pick_up"
 
 
 def test_conditions_of_a_bench_name_dead_skills_and_things_elsewhere() -> None:

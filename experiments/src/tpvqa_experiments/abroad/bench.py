@@ -79,6 +79,7 @@ class AbroadBench:
                 self.calibration_episodes,
                 done=calibrating,
                 own={**extent.own, **extent.sensed},
+                hearing=True,
             )
             return {cell: known[learnt.source_of(cell)] for cell in believing}
 

@@ -1,13 +1,15 @@
 """Answers beside the truth, from recorded episodes in a simulated world."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tpvqa.belief import LabelledAnswer
+from tpvqa.belief.own_words import OwnWords
 from tpvqa.bench.labelled import Labeller
+from tpvqa.bench.named_actions import NamedActions
 from tpvqa.episodes import read_episode
 from tpvqa.errors import CalibrationError
 from tpvqa.events import Ended, Event, Started
@@ -25,10 +27,12 @@ class Labelled:
     Attributes:
         vlm: Whose answers they are.
         rows: The answers.
+        own: What the robot itself said.
     """
 
     vlm: str
     rows: list[LabelledAnswer]
+    own: OwnWords = field(default_factory=OwnWords)
 
 
 def label_episodes(
@@ -49,6 +53,7 @@ def label_episodes(
         EpisodeError: There is no episode, or it is damaged.
     """
     rows: list[LabelledAnswer] = []
+    heard = OwnWords()
     for folder in folders:
         events = read_episode(folder)
         started = events[0]
@@ -59,23 +64,25 @@ def label_episodes(
                 f"{folder}: {started.vlm} answered in it, not {vlm}. A calibration is of one VLM: "
                 "give the episodes of each apart"
             )
-        rows += _label(events, started, str(folder))
+        labeller = _label(events, started, str(folder))
+        rows += labeller.rows
+        heard.add(labeller.own)
         done()
-    return Labelled(vlm or "", rows)
+    return Labelled(vlm or "", rows, heard)
 
 
-def _label(events: list[Event], started: Started, name: str) -> list[LabelledAnswer]:
+def _label(events: list[Event], started: Started, name: str) -> Labeller:
     """Play the truth of an episode back beside its answers."""
     if not any(map(_tells_truth, events)):
         raise _untold(name)
     task, rules = _stage(started.domain, started.problem, started.rules)
     simulation = Simulation(task, rules)
-    simulation.state = frozenset(map(Atom.parse, started.initial))
-    actions = {action.pddl(): action for action in task.ground_actions()}
+    simulation.state = frozenset(map(Atom.parse, started.start or started.initial))
+    actions = NamedActions(task)
     labeller = Labeller(simulation, actions, name)
     for event in events:
-        labeller(event)
         if not isinstance(event, Acted):
+            labeller(event)
             continue
         if event.truth is not None:
             gone, new = (
@@ -85,7 +92,8 @@ def _label(events: list[Event], started: Started, name: str) -> list[LabelledAns
             simulation.state = (simulation.state - gone) | new
         elif event.report in (Report.DONE, Report.FAILED):
             raise _untold(name)
-    return labeller.rows
+        labeller(event)
+    return labeller
 
 
 def _tells_truth(event: Event) -> bool:

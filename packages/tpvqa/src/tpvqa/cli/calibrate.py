@@ -17,6 +17,7 @@ from tpvqa.config.layers import Key, Layer, combined
 
 if TYPE_CHECKING:
     from tpvqa.belief import LabelledAnswer
+    from tpvqa.belief.own_words import OwnWords
     from tpvqa.cli.progress import CountBar
     from tpvqa.questions import QuestionBook
 
@@ -123,6 +124,7 @@ def calibrate(
     """
     from tpvqa.belief.fitting import fit
     from tpvqa.belief.held_out import held_out
+    from tpvqa.belief.own_words import OwnWords
     from tpvqa.bench.labelled_trials import label_trials
     from tpvqa.bench.own_task import own_tasks
     from tpvqa.bench.recorded_faults import experience_from
@@ -145,8 +147,9 @@ def calibrate(
     _check(out, image)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
+    heard = OwnWords()
     if episodes:
-        name, rows = _from_episodes(episodes, vlm)
+        name, rows, heard = _from_episodes(episodes, vlm)
         if experience is not None:
             experience_from(episodes).save(experience)
     elif pictures is not None:
@@ -169,9 +172,10 @@ def calibrate(
                 world=world,
                 monitor=monitor,
                 common=combined(layers),
+                heard=heard,
                 progress=bar,
             )
-    calibration = fit(rows, name, chosen_looks=chosen_looks)
+    calibration = fit(rows, name, chosen_looks=chosen_looks).hearing(heard)
     judged = held_out(rows, name, chosen_looks=chosen_looks)
     calibration.save(out)
     draw(image, judged, name)
@@ -196,12 +200,14 @@ def _check(out: Path, image: Path) -> None:
             raise CalibrationError(f"{path} is a folder; name a file with {option}")
 
 
-def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list[LabelledAnswer]"]:
+def _from_episodes(
+    folders: Sequence[Path], vlm: str | None
+) -> "tuple[str, list[LabelledAnswer], OwnWords]":
     from tpvqa.bench.labelled_episodes import label_episodes
 
     with _counting("episodes", len(folders)) as done:
         found = label_episodes(folders, vlm=vlm, done=done)
-    return found.vlm, found.rows
+    return found.vlm, found.rows, found.own
 
 
 def _from_pictures(

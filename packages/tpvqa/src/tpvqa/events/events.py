@@ -137,8 +137,16 @@ class FrameRecord(_Record):
     depth: str | None = None
 
 
+class SensedRecord(_Record):
+    """A fact that the robot measured itself, and how probable the reading makes it."""
+
+    atom: str
+    probability: float = Field(ge=0, le=1)
+
+
 class Observed(_Event):
-    """A look at the world. One `during` an action was taken while the action ran."""
+    """A look at the world. One `during` an action was taken while the action ran; `facts` are what
+    the robot sensed itself."""
 
     kind: Literal["observed"] = "observed"
     look: int
@@ -146,6 +154,7 @@ class Observed(_Event):
     world_time: float
     frames: tuple[FrameRecord, ...] = ()
     detail: dict[str, Any] = Field(default_factory=dict)
+    facts: tuple[SensedRecord, ...] = ()
     during: bool = False
     snapshot: dict[str, Any] | None = None
 
@@ -262,12 +271,14 @@ class OutcomeRecord(_Record):
 
 
 class Acted(_Event):
-    """What the robot's skill reports. `truth` is what a simulated world knows, for judging."""
+    """What the robot's skill reports, and what the robot sensed then (`facts`). `truth` is what a
+    simulated world knows, for judging."""
 
     kind: Literal["acted"] = "acted"
     report: Report
     seconds: float
     message: str = ""
+    facts: tuple[SensedRecord, ...] = ()
     truth: OutcomeRecord | None = None
     snapshot: dict[str, Any] | None = None
 

@@ -1,6 +1,6 @@
 """The monitor that believes: probabilities instead of votes, costs instead of thresholds."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Collection, Generator, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -12,18 +12,18 @@ from tpvqa.belief.choices import Choice, Chooser, Table
 from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
-from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
+from tpvqa.belief.inquiry import DOUBT, Budget, Inquirer, Inquiry
 from tpvqa.belief.trust import Trust
 from tpvqa.errors import PlannerError
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.monitors.capabilities import Learning
-from tpvqa.monitors.inspection import Inspection, Replies
+from tpvqa.monitors.inspection import REPORTED, SENSED, Inspection, Replies
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.observation import Observation
+from tpvqa.observation import Observation, SensedFact
 from tpvqa.pddl import Action, Atom, Literal, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import regress
@@ -48,6 +48,7 @@ class BeliefMonitor(Learning, PlainArguments):
         rules: What the world file says about faults.
         calibration: What the VLM's answers are worth.
         views: The views that the world can be looked at from, the default one first.
+        senses: The predicates of facts that looks tell of without any question.
         experience: What was learned in earlier trials; goes before the rates of `settings`.
         noise_model: Whether answers do not depend on the picture, but on the look.
         model: The action model, where trials one after the other share it.
@@ -66,6 +67,7 @@ class BeliefMonitor(Learning, PlainArguments):
         rules: FaultRules | None = None,
         calibration: Calibration | None = None,
         views: Sequence[str] = (),
+        senses: Collection[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
         model: FaultModel | None = None,
@@ -85,10 +87,11 @@ class BeliefMonitor(Learning, PlainArguments):
             learned = None if experience is None else experience.trusting()
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
-        self.evidence = Evidence(self.belief, calibration, self.trust)
+        self.evidence = Evidence(self.belief, calibration, self.trust, skill=settings.skill)
         self._chooser = Chooser(self.belief.model, self.costs)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
+        self._senses = frozenset(senses)
         self._looks = self._questions = 0
         self._words: FactWords | None = None
         self._person = self.costs.person is not None
@@ -107,6 +110,7 @@ class BeliefMonitor(Learning, PlainArguments):
         rules: FaultRules | None = None,
         calibration: Calibration | None = None,
         views: Sequence[str] = (),
+        senses: Collection[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
         model: FaultModel | None = None,
@@ -122,6 +126,7 @@ class BeliefMonitor(Learning, PlainArguments):
             rules=rules,
             calibration=calibration,
             views=views,
+            senses=senses,
             experience=experience,
             noise_model=noise_model,
             model=model,
@@ -181,9 +186,22 @@ class BeliefMonitor(Learning, PlainArguments):
         if self._learns:
             self.chances.learn(self.belief.outcome_shares())
         self.belief.act(step.action, self.chances.rates)
-        self.evidence.acted(troubled=bool(step.trouble))
         self._chooser.acted()
         self._now = self._begin(step.action)
+        before = {atom: self.belief.probability(atom) for atom in self._now.effects}
+        self.evidence.acted(step.action.name, failed=step.reported)
+        for atom, was in before.items():
+            if _told_apart(was, self.belief.probability(atom)):
+                self._now.notice(atom, was, REPORTED)
+        self._sense(step.sensed)
+
+    def _sense(self, facts: Sequence[SensedFact]) -> None:
+        """Take in what the robot itself has measured."""
+        for fact in facts:
+            was = self.belief.probability(fact.atom)
+            self.evidence.take_sensed(fact.atom, fact.probability)
+            if _told_apart(was, self.belief.probability(fact.atom)):
+                self._now.notice(fact.atom, was, SENSED)
 
     def _begin(self, action: Action | None) -> Inspection:
         return Inspection(action, self._views[0] if self._views else None)
@@ -199,6 +217,8 @@ class BeliefMonitor(Learning, PlainArguments):
                     self._chooser.give_up_on(state)
                 else:
                     self._chooser.postpone(state)
+            if self._may_feel():
+                yield from self._look(self._now.view)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
             inquiry = self._inquire(step, table)
             if inquiry is None:
@@ -283,11 +303,7 @@ class BeliefMonitor(Learning, PlainArguments):
                 open_views = self._open_views(question)
                 if not open_views:
                     return
-                now.view = open_views[0]
-                observation: Observation = yield Look(now.view)
-                now.picture = observation.look if self._blind else _picture(observation)
-                self._looks += 1
-                now.looks += 1
+                yield from self._look(open_views[0])
                 looks += 1
             answers: list[Answer] = yield Ask((question,))
             answer = answers[0]
@@ -297,6 +313,24 @@ class BeliefMonitor(Learning, PlainArguments):
         if answer.reply in (Reply.YES, Reply.NO):
             told = Replies(question.atoms, before)
             now.replies.setdefault(question.text, told).replies.append(answer.reply)
+
+    def _look(self, view: str | None) -> Generator[Request, Any, None]:
+        now = self._now
+        now.view = view
+        observation: Observation = yield Look(view)
+        self._sense(observation.facts)
+        now.picture = observation.look if self._blind else _picture(observation)
+        self._looks += 1
+        now.looks += 1
+
+    def _may_feel(self) -> bool:
+        """Whether a look, the first since the last action, senses what a plan needs and is in
+        doubt: it costs next to nothing."""
+        if not self._senses or self._now.looks or self._budget().looks <= 0:
+            return False
+        needed = {atom for plan in self._chooser.plans for atom in plan.atoms()}
+        likely = (self.belief.probability(a) for a in needed if a.predicate in self._senses)
+        return any(DOUBT < p < 1 - DOUBT for p in likely)
 
     def _shows_something_new(self, question: FactQuestion) -> bool:
         """Whether the latest picture may tell more than what a question was answered before."""
@@ -328,6 +362,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self._words,
             self.belief,
             self._now.replies,
+            self._now.noticed,
             self._annotated(step),
             acted,
             unseen=self.evidence.unseen,
@@ -345,6 +380,11 @@ class BeliefMonitor(Learning, PlainArguments):
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
         return {atom: self.belief.probability(atom) for atom in sorted(atoms)}
+
+
+def _told_apart(before: float, after: float) -> bool:
+    """Whether two probabilities differ as they are said."""
+    return abs(before - after) >= 0.005
 
 
 def _picture(observation: Observation) -> Picture:
