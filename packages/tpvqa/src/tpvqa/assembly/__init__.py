@@ -233,7 +233,7 @@ class Trial:
             questions=_text(self.questions),
             rules=_text(self.world_file),
             initial=atoms(self.task.init),
-            start=self._true_start,
+            true_start=self._true_start,
             goal=", ".join(goal),
             calibration=_plain(self.calibration),
             experience=_plain(self.known),

@@ -77,7 +77,7 @@ def _label(events: list[Event], started: Started, name: str) -> Labeller:
         raise _untold(name)
     task, rules = _stage(started.domain, started.problem, started.rules)
     simulation = Simulation(task, rules)
-    simulation.state = frozenset(map(Atom.parse, started.start or started.initial))
+    simulation.state = frozenset(map(Atom.parse, started.true_start or started.initial))
     actions = NamedActions(task)
     labeller = Labeller(simulation, actions, name)
     for event in events:

@@ -216,8 +216,8 @@ class SimulationConfig(_Part):
         "for them (_ for any); several with +: 'pick_up apple + wash'.",
         min_length=1,
     )
-    start: str | None = setting(
-        "--start",
+    true_start: str | None = setting(
+        "--true-start",
         "File of the state in which the world truly begins, as `tpvqa plan --from-state` reads it. "
         "The monitor is told what the problem says.",
         file=True,
@@ -231,7 +231,7 @@ class SimulationConfig(_Part):
 
     @model_validator(mode="after")
     def _one_start(self) -> Self:
-        if self.start is not None and self.elsewhere:
+        if self.true_start is not None and self.elsewhere:
             raise ValueError("name a state that the world begins in, or how many things to move")
         return self
 
