@@ -100,6 +100,7 @@ def run_abroad_bench(
     scheduler: str | None = None,
     calibrating: Progress = lambda done, total: None,
     progress: Progress = lambda done, total: None,
+    only_tables: bool = False,
 ) -> dict[Part, dict[Cell, Sequence[EpisodeRow]]]:
     """Run what is missing, and write tables of the parts that were named.
 
@@ -110,6 +111,7 @@ def run_abroad_bench(
         scheduler: Address of a Dask scheduler to use instead.
         calibrating: Told how many calibrations are there and how many there will be.
         progress: Told how many episodes are done and how many there are.
+        only_tables: Run nothing.
 
     Returns:
         The episodes of every cell, by part; those of who sees all are among them.
@@ -123,9 +125,15 @@ def run_abroad_bench(
             "There is nothing to run: none of these parts has a task. Name domains of others with "
             "--others FOLDER, see experiments/tools/others_domains.py"
         )
-    ledger = run_bench(declared, folder, workers=workers, scheduler=scheduler, progress=progress)
+    ledger = run_bench(
+        replace(declared, wanted={}) if only_tables else declared,
+        folder,
+        workers=workers,
+        scheduler=scheduler,
+        progress=progress,
+    )
     limits = bench.limits()
-    if any(ledger.missing(cell, count) for cell, count in limits.items()):
+    if not only_tables and any(ledger.missing(cell, count) for cell, count in limits.items()):
         ledger = Ledger(folder, declared.settings)
         try:
             for rows in _limits(bench, ledger, limits):

@@ -53,6 +53,9 @@ def abroad(
     out: Annotated[Path, typer.Option(help="Folder; a bench that was stopped goes on.")] = Path(
         "bench-abroad"
     ),
+    only_tables: Annotated[
+        bool, typer.Option("--only-tables", help="Run nothing; write tables of what is finished.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
     """Measure monitors on domains of others, and in worlds that are not as the problem says."""
@@ -98,6 +101,7 @@ def abroad(
             scheduler=scheduler,
             calibrating=bar,
             progress=progress,
+            only_tables=only_tables,
         )
     if as_json:
         told = [

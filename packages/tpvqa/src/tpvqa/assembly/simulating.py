@@ -39,9 +39,8 @@ def simulate(
     """
     faults = config.simulation or SimulationConfig()
     if begun_as is not None:
-        start = (
-            None if begun_as.true_start is None else frozenset(map(Atom.parse, begun_as.true_start))
-        )
+        told = begun_as.true_start
+        start = None if told is None else frozenset(map(Atom.parse, told))
     else:
         start = _start(task, config, faults, planner)
     return Simulation(

@@ -46,7 +46,7 @@ class Started(_Event):
         noise_model: Whether the VLM answers from the truth, for experiments; it is no VLM then.
         domain: Text of the file, as are `problem`, `questions` and `rules` (the world file).
         initial: The facts that hold at first, as the problem says.
-        true_start: Those that truly hold where a simulated world begins otherwise; for judges alone.
+        true_start: Those that truly hold where a simulated world begins otherwise; for judges.
         goal: The goal in words.
         calibration: What the monitor was told of the VLM's answers, where it weighs them.
         experience: What it was told of earlier trials.
