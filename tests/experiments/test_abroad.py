@@ -15,7 +15,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.pddl import load_task
 from tpvqa_experiments.abroad import AbroadBench, Part, run_abroad_bench
-from tpvqa_experiments.abroad.bench import tasks_in
+from tpvqa_experiments.abroad.bench import blocks_in, sensed, tasks_in
 from tpvqa_experiments.abroad.parts import SEEING, Extent
 from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.abroad.tables import lines
@@ -123,3 +123,41 @@ def test_who_sees_all_knows_where_things_are_at_first(tmp_path: Path) -> None:
     told = {line.monitor: line for line in lines(found[Part.ELSEWHERE])}
     assert told[SEEING].completion.rate == 1
     assert told["tp"].completion.rate < 1
+
+
+def test_every_part_has_its_cells() -> None:
+    ours = tasks_in(ROOT / "examples")
+    blocks = blocks_in(ROOT / "experiments/problems")
+    extent = Extent(
+        others=ours, own=ours, sensed=sensed(ours), blocks=blocks, monitors=("belief",), episodes=7
+    )
+    assert list(blocks) == ["blocks_5", "blocks_8"]
+    told = {part: [cell for cell, _ in extent.cells(part)] for part in Part}
+    assert {part: len(cells) for part, cells in told.items()} == {
+        Part.OTHERS: 3,
+        Part.OWN: 3,
+        Part.SENSED: 3,
+        Part.ELSEWHERE: 6,
+        Part.NOTHING: 5,
+        Part.DEAD: 8,
+        Part.FAILURE: 8,
+        Part.SHIPPED: 4,
+    }
+    assert all(
+        cell.condition.startswith("limits=none") for cells in told.values() for cell in cells
+    )
+    assert {count for _, count in extent.cells(Part.OTHERS)} == {100}
+
+
+def test_only_others_domains_are_run_uncalibrated(tmp_path: Path) -> None:
+    (name, task), *_ = tasks_in(ROOT / "examples").items()
+    for extent, calibrated in (
+        (Extent(others={name: task}, monitors=("belief",), others_episodes=1), 0),
+        (Extent(own={name: task}, monitors=("belief",), episodes=1), 1),
+    ):
+        bench = AbroadBench(extent=extent, calibration_episodes=2, limit=False)
+        cells = list(bench.extent.cells(Part.OTHERS)) + list(bench.extent.cells(Part.OWN))
+        told = bench.declared(tmp_path, lambda done, total: None).calibrations(
+            [cell for cell, _ in cells]
+        )
+        assert len(told) == calibrated

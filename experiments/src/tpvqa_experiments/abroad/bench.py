@@ -13,6 +13,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
+from tpvqa.tasks import find_task
 from tpvqa_experiments.abroad.parts import SEEING, Extent, Part, believes
 from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.abroad.tables import write_results
@@ -78,7 +79,7 @@ class AbroadBench:
                 self.common,
                 self.calibration_episodes,
                 done=calibrating,
-                own={**extent.own, **extent.sensed},
+                own=extent.tasks_of_files,
                 hearing=True,
             )
             return {cell: known[learnt.source_of(cell)] for cell in believing}
@@ -177,6 +178,18 @@ def tasks_in(folder: Path) -> dict[str, OwnTask]:
     if not folders:
         raise BenchError(f"{folder} holds no folder with a domain.pddl and a problem")
     return own_tasks(folders)
+
+
+def blocks_in(folder: Path) -> dict[str, OwnTask]:
+    """The problems of the shipped blocksworld that lie in a folder.
+
+    Raises:
+        BenchError: There are none, or a file cannot be read.
+    """
+    shipped = find_task("build_tower")
+    return own_tasks(
+        [folder], domain=shipped.domain, questions=shipped.questions, world_file=shipped.world
+    )
 
 
 def sensed(tasks: Mapping[str, OwnTask]) -> dict[str, OwnTask]:

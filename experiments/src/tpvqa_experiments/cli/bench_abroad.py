@@ -13,12 +13,13 @@ if TYPE_CHECKING:
     from tpvqa_experiments.abroad import Part
 
 PARTS = "others,own,sensed,elsewhere,dead,failure,shipped"
-EXAMPLES = Path(__file__).parents[4] / "examples"
+CHECKOUT = Path(__file__).parents[4]
+EXAMPLES, PROBLEMS = CHECKOUT / "examples", CHECKOUT / "experiments/problems"
 
 
 def abroad(
     *,
-    parts: Annotated[str, typer.Option(help=f"Parts, with commas: {PARTS}.")] = PARTS,
+    parts: Annotated[str, typer.Option(help=f"Parts, with commas: {PARTS}, nothing.")] = PARTS,
     others: Annotated[
         Path | None,
         typer.Option(help="Folder of domains of others, see experiments/tools/others_domains.py."),
@@ -64,7 +65,7 @@ def abroad(
     from tpvqa.bench.condition import normalised
     from tpvqa.config import TrialConfig
     from tpvqa_experiments.abroad import AbroadBench, run_abroad_bench
-    from tpvqa_experiments.abroad.bench import sensed
+    from tpvqa_experiments.abroad.bench import blocks_in, sensed
     from tpvqa_experiments.abroad.parts import MONITORS, SHIPPED, Extent
     from tpvqa_experiments.abroad.tables import lines
 
@@ -76,6 +77,7 @@ def abroad(
             others=_chosen(_tasks(others), chosen),
             own=ours,
             sensed=sensed(ours),
+            blocks=_chosen(blocks_in(PROBLEMS) if PROBLEMS.is_dir() else {}, chosen),
             tasks=[name for name in SHIPPED if not chosen or name in chosen],
             monitors=listed(monitors) or MONITORS,
             vlms=listed(vlms),
