@@ -27,6 +27,8 @@ class _ScriptedSimulation(Simulation):
             disturbance=0.0,
             seed=simulation.seed,
             episode=simulation.episode,
+            dead=simulation.dead,
+            start=simulation.start,
         )
         self._script = script
 

@@ -52,16 +52,18 @@ class WorldRules:
         rebind: Arguments that skills do not take.
         sensed: What the robot measures itself.
         reports: What skills notice of their failures; the first that is of an action counts.
+        nothing_undone: Whether it says that nothing can be undone, by an empty list.
     """
 
     undo: tuple[UndoRule, ...] = ()
     rebind: tuple[Rebinding, ...] = ()
     sensed: tuple[SensedRule, ...] = ()
     reports: tuple[ReportRule, ...] = ()
+    nothing_undone: bool = False
 
 
 def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
-    """Read a world file; without one nothing can be undone.
+    """Read a world file; without one there are no rules.
 
     Raises:
         WorldFileError: The file is missing or broken, or does not fit the task; with file and
@@ -74,6 +76,7 @@ def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
         rebind=tuple(_rebinding(entry, task) for entry in _items(sections, "rebind")),
         sensed=tuple(_sensed_rule(entry, task) for entry in _items(sections, "sensed")),
         reports=tuple(_report_rule(entry, task) for entry in _items(sections, "reports")),
+        nothing_undone="undo" in sections and not _items(sections, "undo"),
     )
 
 
