@@ -189,9 +189,12 @@ class Chooser:
         skill = self.ahead.skill(action)
         led = [self._successors(action, *each, skill.failure, rates) for each in ranked]
         together = self._commitments.made(
-            (other, weight * share)
-            for (_, weight), successors in zip(ranked, led, strict=True)
-            for share, other, _ in successors
+            action,
+            (
+                (other, weight * share)
+                for (_, weight), successors in zip(ranked, led, strict=True)
+                for share, other, _ in successors
+            ),
         )
         to_go = self.ahead.to_go
         return np.array(

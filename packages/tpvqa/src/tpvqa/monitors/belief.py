@@ -94,6 +94,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
         self._senses = frozenset(senses)
+        self._sensed, self._felt = {*senses}, {*self.evidence.noticed(task)}
         self._looks = self._questions = 0
         self._words: FactWords | None = None
         self._book: QuestionBook | None = None
@@ -166,7 +167,7 @@ class BeliefMonitor(Learning, PlainArguments):
         """Annotate the plan that is being followed, and know what the trial still allows."""
         if self._book is not step.book:
             self._book = step.book
-            self._sight.by(lambda atom: step.book.asked(Literal(atom)))
+            self._see_by(step.book)
         self._chooser.ahead.allow(step.actions_left)
         self._chooser.changes_left = step.replans_left
         self._ways.follow(step)
@@ -179,17 +180,30 @@ class BeliefMonitor(Learning, PlainArguments):
         before = {atom: self.belief.probability(atom) for atom in self._now.effects}
         self.evidence.acted(step.action.name, failed=step.reported)
         for atom, was in before.items():
-            if _told_apart(was, self.belief.probability(atom)):
-                self._now.notice(atom, was, REPORTED)
+            self._now.notice(atom, was, self.belief.probability(atom), REPORTED)
         self._sense(step.sensed)
+
+    def _see_by(self, book: QuestionBook) -> None:
+        """Note what shows facts: questions, and what the robot notices itself."""
+        sensed, felt = frozenset(self._sensed), frozenset(self._felt)
+        self._sight.by(
+            lambda atom: book.asked(Literal(atom)) or atom.predicate in sensed,
+            lambda atom: atom.predicate in felt,
+        )
+        self._chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
     def _sense(self, facts: Sequence[SensedFact]) -> None:
         """Take in what the robot itself has measured."""
+        told, effects = len(self._sensed) + len(self._felt), self._now.effects
+        for fact in facts:  # what an action did is perhaps felt then and never after
+            kind = self._felt if fact.atom in effects else self._sensed
+            kind.add(fact.atom.predicate)
+        if self._book is not None and len(self._sensed) + len(self._felt) > told:
+            self._see_by(self._book)
         for fact in facts:
             was = self.belief.probability(fact.atom)
             self.evidence.take_sensed(fact.atom, fact.probability)
-            if _told_apart(was, self.belief.probability(fact.atom)):
-                self._now.notice(fact.atom, was, SENSED)
+            self._now.notice(fact.atom, was, self.belief.probability(fact.atom), SENSED)
 
     def _learn(self, action: Action | None) -> None:
         """Learn from how the last action came out, after all that was seen of it."""
@@ -376,11 +390,6 @@ class BeliefMonitor(Learning, PlainArguments):
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
         return {atom: self.belief.probability(atom) for atom in sorted(atoms)}
-
-
-def _told_apart(before: float, after: float) -> bool:
-    """Whether two probabilities differ as they are said."""
-    return abs(before - after) >= 0.005
 
 
 def _picture(observation: Observation) -> Picture:
