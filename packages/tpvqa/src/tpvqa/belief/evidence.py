@@ -12,7 +12,7 @@ from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
 from tpvqa.belief.readings import Readings
 from tpvqa.belief.trust import Trust
-from tpvqa.pddl import Atom
+from tpvqa.pddl import Atom, Task
 from tpvqa.questions.question import FactQuestion
 from tpvqa.vlm import Answer, Reply
 
@@ -24,6 +24,8 @@ PERSON = 0.99
 """How often a person's answer is right."""
 PERSONS_VIEW = "a person's"
 """Stands for the view from which a person could not tell; no world's view is called so."""
+NOTICED = 0.8
+"""A skill that reports so many of its failures shows what it does."""
 PAIRS = 4.0
 """Pairs of answers that ρ counts for without any data."""
 
@@ -81,6 +83,7 @@ class Evidence:
         self._belief, self._calibration, self._trust = belief, calibration, trust
         self._unexplained = unexplained
         self._skills = calibration.skills if skill is None else (skill,)
+        self._sensors = calibration.sensors
         self._readings = Readings(belief, calibration.sensors)
         self._repeats = {
             apart: _cases(calibration.repeat(apart), PAIRS + calibration.pairs(apart))
@@ -118,6 +121,16 @@ class Evidence:
         # A skill that finds nothing to do may call that a failure, or not.
         idle = (worked + not_worked) / 2 if failed else worked
         self._belief.weigh_outcome(succeeded=worked, failed=not_worked, achieved=idle)
+
+    def noticed(self, task: Task) -> frozenset[str]:
+        """The predicates of facts that the robot is known to notice itself: those whose sensors
+        were calibrated, and those that skills change which report their failures."""
+        sensed = {each.predicate for each in self._sensors}
+        for schema in task.schemas:
+            known = of_action(self._skills, schema.name)
+            if known is not None and known.notices >= NOTICED:
+                sensed |= {effect.literal.predicate for effect in schema.effects}
+        return frozenset(sensed)
 
     def take_sensed(self, atom: Atom, probability: float) -> None:
         """Weigh the belief by what the robot itself has measured.

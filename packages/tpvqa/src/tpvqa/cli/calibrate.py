@@ -86,7 +86,9 @@ def calibrate(
     ] = None,
     world_file: Annotated[
         Path | None,
-        typer.Option(help="With --trials and --domain: what disturbances undo in your domain."),
+        typer.Option(
+            help="With --trials and --domain: what disturbances undo, and what is sensed."
+        ),
     ] = None,
     tasks: Annotated[
         str | None,

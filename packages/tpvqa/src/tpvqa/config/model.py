@@ -66,7 +66,8 @@ class TaskConfig(_Part):
     )
     world_file: str | None = setting(
         "--world-file",
-        "What disturbances undo in your domain. Default: the world.yaml beside it.",
+        "What disturbances undo in your domain, and what is sensed. Default: the world.yaml "
+        "beside it.",
         file=True,
     )
 

@@ -105,7 +105,8 @@ class PlanMade(_Event):
     """A planner's result: a plan, or why there is none.
 
     A plan that is only `considered` is not followed: a monitor wanted to know what it would be.
-    `limit` is that of the time, in seconds, where it passed.
+    `limit` is that of the time, in seconds, where it passed. `without` are actions that it was not
+    to have, as PDDL writes them.
     """
 
     kind: Literal["plan made"] = "plan made"
@@ -118,6 +119,7 @@ class PlanMade(_Event):
     limit: float | None = None
     reason: str = ""
     considered: bool = False
+    without: tuple[str, ...] = ()
 
 
 class FrameRecord(_Record):

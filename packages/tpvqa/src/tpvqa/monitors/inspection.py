@@ -63,8 +63,10 @@ class Inspection:
     noticed: dict[Atom, Noticed] = field(default_factory=dict)
     about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)
 
-    def notice(self, atom: Atom, before: float, by: str) -> None:
-        """Note that skill or sensors told something of a fact."""
+    def notice(self, atom: Atom, before: float, after: float, by: str) -> None:
+        """Note that skill or sensors told something of a fact, where that shows in two digits."""
+        if abs(before - after) < 0.005:
+            return
         first = (told.before for told in self.replies.values() if told.atoms == (atom,))
         noticed = self.noticed.setdefault(atom, Noticed(next(first, before)))
         if by not in noticed.by:

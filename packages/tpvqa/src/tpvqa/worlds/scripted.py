@@ -25,10 +25,10 @@ class _ScriptedSimulation(Simulation):
             simulation.rules,
             failure=0.0,
             disturbance=0.0,
-            dead=simulation.dead,
-            start=simulation.start,
             seed=simulation.seed,
             episode=simulation.episode,
+            dead=simulation.dead,
+            start=simulation.start,
         )
         self._script = script
 

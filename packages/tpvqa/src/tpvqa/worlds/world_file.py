@@ -50,16 +50,16 @@ class WorldRules:
     Attributes:
         undo: What disturbances can undo.
         rebind: Arguments that skills do not take.
-        nothing_undone: Whether it says that nothing can be undone, by an empty list.
         sensed: What the robot measures itself.
         reports: What skills notice of their failures; the first that is of an action counts.
+        nothing_undone: Whether it says that nothing can be undone, by an empty list.
     """
 
     undo: tuple[UndoRule, ...] = ()
     rebind: tuple[Rebinding, ...] = ()
-    nothing_undone: bool = False
     sensed: tuple[SensedRule, ...] = ()
     reports: tuple[ReportRule, ...] = ()
+    nothing_undone: bool = False
 
 
 def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
@@ -74,9 +74,9 @@ def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
     return WorldRules(
         undo=tuple(_undo_rule(entry, task) for entry in _items(sections, "undo")),
         rebind=tuple(_rebinding(entry, task) for entry in _items(sections, "rebind")),
-        nothing_undone="undo" in sections and not _items(sections, "undo"),
         sensed=tuple(_sensed_rule(entry, task) for entry in _items(sections, "sensed")),
         reports=tuple(_report_rule(entry, task) for entry in _items(sections, "reports")),
+        nothing_undone="undo" in sections and not _items(sections, "undo"),
     )
 
 
