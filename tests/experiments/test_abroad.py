@@ -106,15 +106,19 @@ def test_a_part_without_tasks_says_what_to_name(tmp_path: Path) -> None:
 
 
 def test_a_dead_skill_is_counted_and_has_no_limit_beside_it(tmp_path: Path) -> None:
-    extent = Extent(tasks=("clean_dishes",), monitors=("blind:5", "tpvqa"), episodes=2)
+    extent = Extent(tasks=("clean_dishes",), monitors=("blind:5", "belief"), episodes=2)
     found = run_abroad_bench(AbroadBench(parts=(Part.DEAD,), extent=extent), tmp_path)[Part.DEAD]
     told = {(line.condition, line.monitor): line for line in lines(found)}
-    assert {monitor for _, monitor in told} == {"blind:5", "tpvqa"}
-    assert told["limits=none,dead=wash", "blind:5"].patient == 1
+    assert {monitor for _, monitor in told} == {"blind:5", "belief"}
+    assert told["limits=none,dead=wash", "blind:5"].named == 0  # it never says so
+    washing = [row for cell, own in found.items() for row in own if "wash" in cell.condition]
+    assert all(row.named is None for row in washing if row.monitor == "blind:5")
+    assert all(row.named for row in washing if row.monitor == "belief")
+    assert not any(row.misnamed for row in washing)
     assert told["limits=none,dead=wash", "blind:5"].completion.rate == 0
     rows = [row for own in found.values() for row in own]
     assert {row.dead for row in rows if row.monitor == "blind:5"} == {5}
-    assert "dead skill tried 8 times at most" in (tmp_path / "abroad.md").read_text()
+    assert "dead skill named within 8 tries" in (tmp_path / "abroad.md").read_text()
 
 
 def test_who_sees_all_knows_where_things_are_at_first(tmp_path: Path) -> None:

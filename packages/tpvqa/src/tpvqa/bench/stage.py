@@ -192,6 +192,8 @@ class Stage:
             "failures": judge.failures,
             "wasted": judge.wasted,
             "dead": judge.dead,
+            "named": judge.named,
+            "misnamed": len(judge.misnamed),
             "first_plan": judge.first_plan,
             "answers": dict(judge.answers),
             "decisions": dict(judge.decisions),
