@@ -100,10 +100,11 @@ class Watched(Belief):
         )
         return 1.0
 
-    def weigh_outcome(self, *, succeeded: float, failed: float) -> None:
+    def weigh_outcome(self, *, succeeded: float, failed: float, achieved: float) -> None:
+        rates = {"succeeded": succeeded, "failed": failed, "achieved": achieved}
         self._pass(
-            lambda belief: belief.weigh_outcome(succeeded=succeeded, failed=failed),
-            lambda: Belief.weigh_outcome(self, succeeded=succeeded, failed=failed),
+            lambda belief: belief.weigh_outcome(**rates),
+            lambda: Belief.weigh_outcome(self, **rates),
         )
 
     def open(self, atoms: tuple[Atom, ...], chance: float) -> int:

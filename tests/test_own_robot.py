@@ -12,7 +12,7 @@ import pytest
 from tpvqa import Trial, TrialConfig
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.errors import PluginError
-from tpvqa.events.events import Acting, Decided, Started
+from tpvqa.events.events import Acted, Acting, Decided, Started
 from tpvqa.resuming import resume
 
 PAGE = Path(__file__).parents[1] / "docs/your-own-domain.md"
@@ -27,6 +27,10 @@ def take_picture():
 def run_skill(name, arguments):
     done.append((name, *arguments))
     return True
+
+def gripper_gap():
+    tries = [each for each in done if each[0] == "pick_up"]
+    return 0.0 if len(tries) == 1 else 0.02  # the first time it closes on nothing
 
 def probability_of_yes(picture, text):
     return 0.95 if picture == b"a JPEG" else None
@@ -74,10 +78,10 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Edit]:
 CONFIG = TrialConfig(task="clean_dishes", world="my-robot", vlm="my-vlm")
 
 
-def run(folder: Path) -> None:
+def run(folder: Path, config: TrialConfig = CONFIG) -> None:
     writer = EpisodeWriter(folder)
     try:
-        with Trial(CONFIG) as trial:
+        with Trial(config) as trial:
             trial.run(writer, folder=folder)
     finally:
         writer.close()
@@ -98,6 +102,20 @@ def test_they_act_and_are_asked(package: Edit, tmp_path: Path) -> None:
     assert started.config.simulation is None  # nobody says how often a robot fails
     assert "failure" not in (tmp_path / "here/episode.jsonl").read_text().partition("\n")[0]
     assert {path.read_bytes() for path in (tmp_path / "here/frames").iterdir()} == {b"a JPEG"}
+
+
+def test_what_it_feels_is_logged_and_decides(package: Edit, tmp_path: Path) -> None:
+    """The camera always says yes; the gripper closed on nothing."""
+    run(tmp_path / "here", CONFIG.but(world={"spec": "feeling-robot"}))
+    events = read_episode(tmp_path / "here")
+    felt = [
+        (fact.atom, fact.probability) for e in events if isinstance(e, Acted) for fact in e.facts
+    ]
+    assert felt[:2] == [("(in_hand plate left)", 0.03), ("(in_hand plate left)", 0.97)]
+    decided = [e for e in events if isinstance(e, Decided) and "pick_up plate" in e.action]
+    assert any("as sensed" in e.reason for e in decided)
+    done = [each[:2] for each in sys.modules["my_lab"].done]
+    assert done.count(("pick_up", "plate")) == 2
 
 
 @pytest.mark.parametrize("way", ["watching", "stepping"])

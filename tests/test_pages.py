@@ -9,6 +9,7 @@ PAGES = [
     *ROOT.glob("docs/*.md"),
     *ROOT.glob("packages/*/*.md"),
     *ROOT.glob("experiments/*.md"),
+    *ROOT.glob("examples/**/*.md"),
 ]
 TEXTS = [
     *PAGES,

@@ -9,11 +9,13 @@ from tpvqa.config import TrialConfig
 from tpvqa.drivers import Parts
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.events import Ended, Event, Resumed
+from tpvqa.events.events import Acting
 from tpvqa.monitors import Monitor
 from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.monitors.none import NoMonitor
+from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.tpvqa import TPVQA
-from tpvqa.observation import Frame, Observation
+from tpvqa.observation import Frame, Observation, SensedFact
 from tpvqa.pddl import Action, Task, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
@@ -41,7 +43,8 @@ class Robot:
         data = f"{self.name}, look {self.looks}".encode()
         frame = Frame("camera", "front", data)
         self.looks += 1
-        return Observation(frames={"front": frame})
+        held = [atom for atom in self.room.state if atom.predicate == "in_hand"]
+        return Observation(frames={"front": frame}, facts=[SensedFact(a, 0.9) for a in held])
 
     def execute(self, action: Action, **_: object) -> Execution:
         self.room.execute(action)
@@ -124,6 +127,36 @@ def test_killed_twice_it_still_goes_on(task: Task, planner: Planner, tmp_path: P
             assert isinstance(ended, Ended)
             assert ended.completed, (cut, later)
             assert sum(isinstance(event, Resumed) for event in events) <= 2
+
+
+class Hearing(NoMonitor):
+    """Notes what it is told of every action."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.heard: list[tuple[str, bool | None, tuple[SensedFact, ...]]] = []
+
+    def after(self, step: Step) -> Check:
+        self.heard.append((step.action.name, step.reported, step.sensed))
+        return super().after(step)
+
+
+def test_killed_in_the_middle_of_a_skill_nothing_is_reported_and_the_new_look_senses(
+    task: Task, planner: Planner, tmp_path: Path
+) -> None:
+    monitor = Hearing()
+    whole = go_on(tmp_path / "whole", Simulation(task, failure=0), planner, monitor, kill_at=None)
+    assert {reported for _, reported, _ in monitor.heard} == {False}
+    pick = next(k for k, e in enumerate(whole) if isinstance(e, Acting) and "pick" in e.action.name)
+    room, folder = Simulation(task, failure=0), tmp_path / "e"
+    go_on(folder, room, planner, Hearing(), kill_at=pick)
+    (before,) = [e for e in read_episode(folder)[-1:] if isinstance(e, Acting)]
+    room.execute(task.action(before.action.name, before.action.arguments))  # it went on alone
+    monitor = Hearing()
+    go_on(folder, room, planner, monitor, kill_at=None)
+    (_, reported, sensed), *_ = [each for each in monitor.heard if each[0] == before.action.name]
+    assert reported is None
+    assert [(fact.atom.predicate, fact.probability) for fact in sensed] == [("in_hand", 0.9)]
 
 
 def test_an_action_that_never_began_is_not_taken_for_a_failed_one(

@@ -150,7 +150,7 @@ def test_a_surprising_answer_opens_what_the_model_does_not_explain() -> None:
 
 def test_a_skill_that_reports_trouble_is_believed() -> None:
     belief, evidence = found(0.0)
-    evidence.acted(troubled=True)
+    evidence.acted("find", failed=True)
     assert belief.probability(NEAR) == pytest.approx(0.75 * 0.1 / (0.75 * 0.1 + 0.25 * 0.9))
 
 

@@ -22,7 +22,10 @@ undo:
     [
         (("--disturbance", 0.5, "--failure", 0), "--disturbance has no effect: only a failed"),
         (("--world", "scripted", "--redo", "risky"), "--redo has no effect: a script says"),
-        (("--start", "start.txt"), "--start has no effect: the state is that of the problem"),
+        (
+            ("--true-start", "start.txt"),
+            "--true-start has no effect: the state is that of the problem",
+        ),
         (("--spontaneous", 0.1, "--world-file", "none.yaml"), "says that nothing can be undone"),
         (("--spontaneous", 0.1, "--world-file", "wires.yaml"), "the plan achieves can be undone"),
     ],

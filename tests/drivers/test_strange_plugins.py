@@ -13,10 +13,13 @@ from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.errors import PluginError
-from tpvqa.observation import Observation
+from tpvqa.observation import Observation, SensedFact
+from tpvqa.pddl import Atom
 from tpvqa.questions import Question
 from tpvqa.vlm import Answer, Reply
 from tpvqa.worlds import Execution, Report
+
+ON = Atom("on", ("apple", "table"))
 
 
 def _answer(question: Question) -> Answer:
@@ -74,6 +77,14 @@ def test_a_vlm_that_answers_strangely(ask: Any, tmp_path: Path) -> None:
         ("execute", Execution(Report.DONE, math.nan)),
         ("execute", Execution(Report.DONE, 0.0, "\ud800")),
         ("execute", Execution("done", 0.0)),  # type: ignore[arg-type]
+        ("execute", Execution(Report.DONE, 0.0, facts=(SensedFact(ON, math.nan),))),
+        ("execute", Execution(Report.DONE, 0.0, facts=(SensedFact(ON, 1.5),))),
+        ("execute", Execution(Report.DONE, 0.0, facts=(SensedFact(ON, "1"),))),  # type: ignore[arg-type]
+        ("execute", Execution(Report.DONE, 0.0, facts=(SensedFact("(on apple table)"),))),  # type: ignore[arg-type]
+        ("execute", Execution(Report.DONE, 0.0, facts=(ON,))),  # type: ignore[arg-type]
+        ("execute", Execution(Report.DONE, 0.0, facts=None)),  # type: ignore[arg-type]
+        ("observe", Observation(facts="(on apple table)")),  # type: ignore[arg-type]
+        ("observe", Observation(facts=[SensedFact(Atom("on", ("aple", "table")))])),
         ("observe", Observation(time=math.inf, frames={})),
         ("observe", Observation(frames={}, detail={"a": object()})),
     ],
@@ -82,6 +93,22 @@ def test_a_world_that_says_strange_things(method: str, result: object, tmp_path:
     trial = _trial()
     setattr(trial.world, method, lambda *given, **named: result)
     _fails(trial, tmp_path)
+
+
+@pytest.mark.parametrize("told", [None, ["onn"], [3]])
+def test_a_world_that_senses_what_is_no_predicate(told: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("tpvqa.worlds.symbolic.SymbolicWorld.senses", lambda world: told)
+    with pytest.raises(PluginError, match=r"SymbolicWorld\.senses (has to )?return"):
+        _trial()
+
+
+def test_a_fact_that_no_task_has_is_named_with_the_nearest(tmp_path: Path) -> None:
+    trial = _trial()
+    facts = [SensedFact(Atom("on", ("aple", "table")), 0.9)]
+    setattr(trial.world, "execute", lambda *given, **named: Execution(Report.DONE, 0.0, "", facts))  # noqa: B010
+    said = r"SymbolicWorld\.execute returned .*no object 'aple'\. Did you mean 'apple'\?"
+    with trial, pytest.raises(PluginError, match=said):
+        trial.run(EpisodeWriter(tmp_path, durable=False))
 
 
 def _without_verdict(step: object) -> Any:

@@ -57,6 +57,8 @@ def swapped(lines: list[Line]) -> None:
     ("change", "says"),
     [
         (without("asked"), "it answers what was not asked"),
+        (with_("observed", facts=[{"atom": "()", "probability": 1}]), "is no fact"),
+        (with_("acted", facts=[{"atom": "", "probability": 1}]), "is no fact"),
         (without("answered"), "stands where the answers are expected"),
         (without("acting"), "stands where none is executed"),
         (without("acted"), "stands where an action is executed"),

@@ -15,7 +15,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.pddl import load_task
 from tpvqa_experiments.abroad import AbroadBench, Part, run_abroad_bench
-from tpvqa_experiments.abroad.bench import tasks_in
+from tpvqa_experiments.abroad.bench import blocks_in, sensed, tasks_in
 from tpvqa_experiments.abroad.parts import SEEING, Extent
 from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.abroad.tables import lines
@@ -106,15 +106,19 @@ def test_a_part_without_tasks_says_what_to_name(tmp_path: Path) -> None:
 
 
 def test_a_dead_skill_is_counted_and_has_no_limit_beside_it(tmp_path: Path) -> None:
-    extent = Extent(tasks=("clean_dishes",), monitors=("blind:5", "tpvqa"), episodes=2)
+    extent = Extent(tasks=("clean_dishes",), monitors=("blind:5", "belief"), episodes=2)
     found = run_abroad_bench(AbroadBench(parts=(Part.DEAD,), extent=extent), tmp_path)[Part.DEAD]
     told = {(line.condition, line.monitor): line for line in lines(found)}
-    assert {monitor for _, monitor in told} == {"blind:5", "tpvqa"}
-    assert told["limits=none,dead=wash", "blind:5"].patient == 1
+    assert {monitor for _, monitor in told} == {"blind:5", "belief"}
+    assert told["limits=none,dead=wash", "blind:5"].named == 0  # it never says so
+    washing = [row for cell, own in found.items() for row in own if "wash" in cell.condition]
+    assert all(row.named is None for row in washing if row.monitor == "blind:5")
+    assert all(row.named for row in washing if row.monitor == "belief")
+    assert not any(row.misnamed for row in washing)
     assert told["limits=none,dead=wash", "blind:5"].completion.rate == 0
     rows = [row for own in found.values() for row in own]
     assert {row.dead for row in rows if row.monitor == "blind:5"} == {5}
-    assert "dead skill tried 8 times at most" in (tmp_path / "abroad.md").read_text()
+    assert "dead skill named within 8 tries" in (tmp_path / "abroad.md").read_text()
 
 
 def test_who_sees_all_knows_where_things_are_at_first(tmp_path: Path) -> None:
@@ -123,3 +127,41 @@ def test_who_sees_all_knows_where_things_are_at_first(tmp_path: Path) -> None:
     told = {line.monitor: line for line in lines(found[Part.ELSEWHERE])}
     assert told[SEEING].completion.rate == 1
     assert told["tp"].completion.rate < 1
+
+
+def test_every_part_has_its_cells() -> None:
+    ours = tasks_in(ROOT / "examples")
+    blocks = blocks_in(ROOT / "experiments/problems")
+    extent = Extent(
+        others=ours, own=ours, sensed=sensed(ours), blocks=blocks, monitors=("belief",), episodes=7
+    )
+    assert list(blocks) == ["blocks_5", "blocks_8"]
+    told = {part: [cell for cell, _ in extent.cells(part)] for part in Part}
+    assert {part: len(cells) for part, cells in told.items()} == {
+        Part.OTHERS: 3,
+        Part.OWN: 3,
+        Part.SENSED: 3,
+        Part.ELSEWHERE: 6,
+        Part.NOTHING: 5,
+        Part.DEAD: 8,
+        Part.FAILURE: 8,
+        Part.SHIPPED: 4,
+    }
+    assert all(
+        cell.condition.startswith("limits=none") for cells in told.values() for cell in cells
+    )
+    assert {count for _, count in extent.cells(Part.OTHERS)} == {100}
+
+
+def test_only_others_domains_are_run_uncalibrated(tmp_path: Path) -> None:
+    (name, task), *_ = tasks_in(ROOT / "examples").items()
+    for extent, calibrated in (
+        (Extent(others={name: task}, monitors=("belief",), others_episodes=1), 0),
+        (Extent(own={name: task}, monitors=("belief",), episodes=1), 1),
+    ):
+        bench = AbroadBench(extent=extent, calibration_episodes=2, limit=False)
+        cells = list(bench.extent.cells(Part.OTHERS)) + list(bench.extent.cells(Part.OWN))
+        told = bench.declared(tmp_path, lambda done, total: None).calibrations(
+            [cell for cell, _ in cells]
+        )
+        assert len(told) == calibrated

@@ -181,9 +181,9 @@ def test_calibrations_are_learnt_under_another_seed(
 ) -> None:
     seeds = []
 
-    def noted(cell: Cell, common: TrialConfig, episodes: Any) -> Any:
+    def noted(cell: Cell, common: TrialConfig, episodes: Any, **more: Any) -> Any:
         seeds.append(common.seed)
-        return gather(cell, common, episodes)
+        return gather(cell, common, episodes, **more)
 
     monkeypatch.setattr("tpvqa_experiments.belief.calibrations.gather", noted)
     source = Source("clean_dishes", "oracle:0.7", "symbolic")

@@ -10,6 +10,7 @@ from tests.doubles import configured
 from tpvqa.assembly import Trial
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.condition import normalised
+from tpvqa.bench.own_task import own_tasks
 from tpvqa.bench.settings import common_settings
 from tpvqa.bench.stage import stage
 from tpvqa.config import SimulationConfig, TrialConfig
@@ -31,6 +32,7 @@ from tpvqa.worlds.world_file import load_world_file
 
 TASK = load_task("eat_apple")
 PLANNER = make_planner("fast-downward")
+EXAMPLES = Path(__file__).parents[2] / "examples"
 LAMPS = Path(__file__).parents[1] / "fixtures/lamps"
 
 
@@ -98,7 +100,7 @@ def test_some_things_are_behind_a_closed_door() -> None:
 
 
 def test_so_many_things_cannot_be_elsewhere() -> None:
-    with pytest.raises(WorldError, match="name fewer, or a state with --start"):
+    with pytest.raises(WorldError, match="name fewer, or a state with --true-start"):
         elsewhere(TASK, 9, plan=_plan)
 
 
@@ -107,7 +109,7 @@ def test_the_monitor_is_told_what_the_problem_says_and_the_log_what_is_true(tmp_
     moved = (TASK.init - {Atom("on", ("knife", "counter"))}) | {Atom("on", ("knife", "fridge"))}
     start.write_text("\n".join(atom.pddl() for atom in sorted(moved - TASK.static)))
     config = configured(task="eat_apple", monitor="tp", vlm="oracle", world="symbolic").but(
-        simulation={"start": str(start)}
+        simulation={"true_start": str(start)}
     )
     writer = EpisodeWriter(tmp_path / "episode")
     with Trial(config) as trial:
@@ -118,8 +120,8 @@ def test_the_monitor_is_told_what_the_problem_says_and_the_log_what_is_true(tmp_
     started = read_episode(tmp_path / "episode")[0]
     assert isinstance(started, Started)
     assert "(on knife counter)" in started.initial
-    assert started.start is not None
-    assert "(on knife fridge)" in started.start
+    assert started.true_start is not None
+    assert "(on knife fridge)" in started.true_start
     start.unlink()  # whoever goes on needs no file that the log names
     with trial_of(started) as again:
         assert again.simulation is not None
@@ -130,7 +132,7 @@ def test_a_start_that_does_not_fit_is_told_with_its_line(tmp_path: Path) -> None
     start = tmp_path / "start.txt"
     start.write_text("(on knife fridge)\n(on knief table)\n")
     config = configured(task="eat_apple", monitor="tp", vlm="oracle", world="symbolic").but(
-        simulation={"start": str(start)}
+        simulation={"true_start": str(start)}
     )
     with pytest.raises(TpvqaError, match=r"start\.txt:2.*knife"):
         Trial(config)
@@ -171,6 +173,14 @@ def test_a_world_file_may_say_that_nothing_is_undone(tmp_path: Path) -> None:
         assert not trial.simulation.undoing
 
 
+def test_a_bench_judges_actions_that_only_a_fault_opens_up() -> None:
+    (own,) = own_tasks([EXAMPLES / "hospital"]).items()
+    cell = Cell(own[0], "tpvqa", "oracle", "symbolic", "limits=none,disturbance=1,failure=0.4")
+    rows = [stage(*own).run(cell, TrialConfig(), episode) for episode in range(4)]
+    assert not any(row.error for row in rows)
+    assert stage(*own).actions["(pick_up drops floor_one bay_one)"].name == "pick_up"
+
+
 def test_conditions_of_a_bench_name_dead_skills_and_things_elsewhere() -> None:
     text = normalised(" dead = pick_up  apple + wash , elsewhere=1 ,failure=0 ")
     assert text == "dead=pick_up apple+wash,elsewhere=1,failure=0"
@@ -185,20 +195,22 @@ def test_conditions_of_a_bench_name_dead_skills_and_things_elsewhere() -> None:
 
 def test_a_start_and_things_elsewhere_do_not_go_together() -> None:
     with pytest.raises(ValueError, match="or how many things to move"):
-        SimulationConfig(start="file", elsewhere=1)
+        SimulationConfig(true_start="file", elsewhere=1)
 
 
 def test_settings_of_a_bench_are_as_before_where_the_world_behaves(tmp_path: Path) -> None:
     usual = common_settings(TrialConfig())
     assert usual.keys() >= {"failure", "disturbance", "spontaneous"}
-    assert not usual.keys() & {"redo", "dead", "start", "elsewhere"}
+    assert not usual.keys() & {"redo", "dead", "true_start", "elsewhere"}
     start = tmp_path / "start.txt"
     start.write_text("(on knife fridge)")
-    told = common_settings(TrialConfig().but(simulation={"start": str(start), "dead": "find"}))
+    told = common_settings(TrialConfig().but(simulation={"true_start": str(start), "dead": "find"}))
     assert told["dead"] == "find"
     start.write_text("(on knife table)")
-    again = common_settings(TrialConfig().but(simulation={"start": str(start), "dead": "find"}))
-    assert again["start"] != told["start"]
+    again = common_settings(
+        TrialConfig().but(simulation={"true_start": str(start), "dead": "find"})
+    )
+    assert again["true_start"] != told["true_start"]
 
 
 def test_a_dead_skill_is_no_failure_of_what_is_done_already() -> None:

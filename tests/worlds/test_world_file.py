@@ -11,6 +11,7 @@ from tpvqa.pddl import Task, load_task, task_from_text
 from tpvqa.worlds.world_file import load_world_file
 
 UNDO = "undo:\n  - fact: (in_hand ?x ?h)\n    outcomes:\n      - "
+SENSED = "sensed:\n  - fact: (in_hand ?x ?h)\n    "
 REBIND = "rebind:\n  - action: find\n    argument: ?from\n    to: (near ?from)"
 
 
@@ -41,6 +42,11 @@ def test_the_file_of_the_documentation_is_read(task: Task, tmp_path: Path) -> No
         "(opened ?c)",
     ]
     assert [each.action for each in rules.rebind] == ["find"]
+    assert [str(rule.fact) for rule in rules.sensed] == ["(in_hand ?x ?h)", "(opened ?c)"]
+    assert [each.action for each in rules.reports] == ["pick_up"]
+    for key in ("right", "at", "notices", "false_alarms"):
+        assert f"{key}:" in path.read_text()
+        assert f"| `{key}` |" in page
     for key in ("fact", "outcomes", "say", "last", "when", "unless", "add", "delete"):
         assert f"{key}:" in path.read_text()
         assert f"| `{key}` |" in page
@@ -77,6 +83,17 @@ def test_the_file_of_the_documentation_is_read(task: Task, tmp_path: Path) -> No
         ("undo:\n\t- 3", 2, "broken YAML"),
         (UNDO + "say: " + "x" * 5000 + "\n        ad: 3", 5, "'ad' is not known"),
         ("# k\xfcche\nundo: []".encode("latin-1"), 1, "the byte 0xfc is not UTF-8"),
+        ("sensed:\n  - right: 1", 2, "an entry needs 'fact'"),
+        ("sensed:\n  - fact: (onn ?x ?y)", 2, "no predicate 'onn'. Did you mean 'on'?"),
+        (SENSED + "right: 1.5", 3, "expected a number from 0 to 1, found '1.5'"),
+        (SENSED + "right: nan", 3, "expected a number from 0 to 1"),
+        (SENSED + "right: [1]", 3, "expected a number from 0 to 1, found a list"),
+        (SENSED + "claims: 0.2", 3, "says the opposite; give 0.5 to 1"),
+        (SENSED + "at: lok", 3, "'lok' is no occasion. Did you mean 'look'?"),
+        (SENSED + "at: []", 3, "name an occasion: effect, action, look"),
+        (SENSED + "rigth: 1", 3, "'rigth' is not known here. Did you mean 'right'?"),
+        ("reports:\n  - action: fnd", 2, "no action 'fnd'. Did you mean 'find'?"),
+        ("reports:\n  - notices: often", 2, "expected a number from 0 to 1, found 'often'"),
     ],
 )  # fmt: skip
 def test_a_broken_file_is_a_clear_error_with_its_line(

@@ -13,12 +13,13 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
+from tpvqa.tasks import find_task
 from tpvqa_experiments.abroad.parts import SEEING, Extent, Part, believes
 from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.abroad.tables import write_results
 from tpvqa_experiments.belief import calibrations as learnt
 
-SENSED = "world-sensed.yaml"
+WORLD = "world-sensed.yaml"
 AT_ONCE = 20
 """Episodes of the limit that are written together."""
 
@@ -78,7 +79,8 @@ class AbroadBench:
                 self.common,
                 self.calibration_episodes,
                 done=calibrating,
-                own=extent.own,
+                own=extent.tasks_of_files,
+                hearing=True,
             )
             return {cell: known[learnt.source_of(cell)] for cell in believing}
 
@@ -99,6 +101,7 @@ def run_abroad_bench(
     scheduler: str | None = None,
     calibrating: Progress = lambda done, total: None,
     progress: Progress = lambda done, total: None,
+    only_tables: bool = False,
 ) -> dict[Part, dict[Cell, Sequence[EpisodeRow]]]:
     """Run what is missing, and write tables of the parts that were named.
 
@@ -109,6 +112,7 @@ def run_abroad_bench(
         scheduler: Address of a Dask scheduler to use instead.
         calibrating: Told how many calibrations are there and how many there will be.
         progress: Told how many episodes are done and how many there are.
+        only_tables: Run nothing.
 
     Returns:
         The episodes of every cell, by part; those of who sees all are among them.
@@ -122,9 +126,15 @@ def run_abroad_bench(
             "There is nothing to run: none of these parts has a task. Name domains of others with "
             "--others FOLDER, see experiments/tools/others_domains.py"
         )
-    ledger = run_bench(declared, folder, workers=workers, scheduler=scheduler, progress=progress)
+    ledger = run_bench(
+        replace(declared, wanted={}) if only_tables else declared,
+        folder,
+        workers=workers,
+        scheduler=scheduler,
+        progress=progress,
+    )
     limits = bench.limits()
-    if any(ledger.missing(cell, count) for cell, count in limits.items()):
+    if not only_tables and any(ledger.missing(cell, count) for cell, count in limits.items()):
         ledger = Ledger(folder, declared.settings)
         try:
             for rows in _limits(bench, ledger, limits):
@@ -161,18 +171,36 @@ def _rows(
 def tasks_in(folder: Path) -> dict[str, OwnTask]:
     """The tasks that lie in a folder, a folder each, by the names of their problems.
 
-    One that has a `world-sensed.yaml`, too, is two tasks: with that world file it is called
-    NAME-sensed.
-
     Raises:
         BenchError: There are none, or a file cannot be read.
     """
     folders = sorted(each.parent for each in folder.glob("*/domain.pddl"))
     if not folders:
         raise BenchError(f"{folder} holds no folder with a domain.pddl and a problem")
-    found = own_tasks(folders)
-    for name, task in list(found.items()):
-        sensed = task.origin.domain.parent / SENSED
-        if sensed.exists():
-            found[f"{name}-sensed"] = OwnTask.read(replace(task.origin, world=sensed))
+    return own_tasks(folders)
+
+
+def blocks_in(folder: Path) -> dict[str, OwnTask]:
+    """The problems of the shipped blocksworld that lie in a folder.
+
+    Raises:
+        BenchError: There are none, or a file cannot be read.
+    """
+    shipped = find_task("build_tower")
+    return own_tasks(
+        [folder], domain=shipped.domain, questions=shipped.questions, world_file=shipped.world
+    )
+
+
+def sensed(tasks: Mapping[str, OwnTask]) -> dict[str, OwnTask]:
+    """Those of some tasks that have a `world-sensed.yaml`, with that, as NAME-sensed.
+
+    Raises:
+        BenchError: A file cannot be read.
+    """
+    found = {}
+    for name, task in tasks.items():
+        world = task.origin.domain.parent / WORLD
+        if world.exists():
+            found[f"{name}-sensed"] = OwnTask.read(replace(task.origin, world=world))
     return found

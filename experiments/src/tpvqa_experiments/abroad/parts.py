@@ -23,6 +23,7 @@ DEAD = {
 }
 """Skills of shipped tasks that never work; without the left hand there is another way."""
 ELSEWHERE = "elsewhere=1"
+NOTHING = "start=unknown"
 RATES = ("failure=0.6", "failure=0.8")
 
 
@@ -31,7 +32,9 @@ class Part(StrEnum):
 
     OTHERS = "others"
     OWN = "own"
+    SENSED = "sensed"
     ELSEWHERE = "elsewhere"
+    NOTHING = "nothing"
     DEAD = "dead"
     FAILURE = "failure"
     SHIPPED = "shipped"
@@ -44,6 +47,8 @@ class Extent:
     Attributes:
         others: Domains of others, by name; the monitors are told nothing of the VLM there.
         own: Domains of one's own, by name.
+        sensed: The same with what the robot's own sensors tell.
+        blocks: Problems of the shipped blocksworld.
         tasks: Shipped tasks.
         monitors: Specifications of monitors.
         vlms: Specifications of noise models.
@@ -54,6 +59,8 @@ class Extent:
 
     others: Mapping[str, OwnTask] = field(default_factory=dict)
     own: Mapping[str, OwnTask] = field(default_factory=dict)
+    sensed: Mapping[str, OwnTask] = field(default_factory=dict)
+    blocks: Mapping[str, OwnTask] = field(default_factory=dict)
     tasks: Sequence[str] = SHIPPED
     monitors: Sequence[str] = MONITORS
     vlms: Sequence[str] = (VLM,)
@@ -70,9 +77,14 @@ class Extent:
             case Part.OWN:
                 for cell in self._cross(self.own, ("",)):
                     yield cell, self.episodes
+            case Part.SENSED:
+                for cell in self._cross(self.sensed, ("",)):
+                    yield cell, self.episodes
             case Part.ELSEWHERE:
-                household = [task for task in self.tasks if task in TASKS]
-                for cell in self._cross((*household, *self.own), (ELSEWHERE,)):
+                for cell in self._cross((*self.household, *self.own), (ELSEWHERE,)):
+                    yield cell, self.episodes
+            case Part.NOTHING:
+                for cell in self._cross((*self.blocks, *self.household), (NOTHING,)):
                     yield cell, self.episodes
             case Part.DEAD:
                 for task in self.tasks:
@@ -86,9 +98,14 @@ class Extent:
                     yield cell, self.episodes
 
     @property
+    def household(self) -> list[str]:
+        """The tasks of the paper among those that are run."""
+        return [task for task in self.tasks if task in TASKS]
+
+    @property
     def tasks_of_files(self) -> dict[str, OwnTask]:
         """All tasks that are not shipped, by name."""
-        return {**self.others, **self.own}
+        return {**self.others, **self.own, **self.sensed, **self.blocks}
 
     def _cross(
         self, tasks: Mapping[str, OwnTask] | Sequence[str], conditions: Sequence[str]

@@ -35,7 +35,9 @@ class Line:
         typical: Questions an action, in the task that has the median of it.
         most: The same in the task that has most.
         most_in: That task.
-        patient: Share of trials in which dead skills were tried `PATIENCE` times at most.
+        named: Of the trials in which a skill that never works was tried, the share in which it was
+            called dead within `PATIENCE` tries; None where there are none.
+        misnamed: Share of trials in which a skill that works was called dead.
         seconds: Of an episode.
         endings: How trials ended, the most frequent first.
     """
@@ -53,7 +55,8 @@ class Line:
     typical: float
     most: float
     most_in: str
-    patient: float
+    named: float | None
+    misnamed: float
     seconds: float
     endings: str
 
@@ -101,7 +104,8 @@ def _line(rows: Rows, vlm: str, condition: str, monitor: str) -> Line:
         typical=median(asked.values()),
         most=asked[most_in],
         most_in=most_in,
-        patient=sum(row.dead <= PATIENCE for row in trials) / len(trials),
+        named=_named([row for row in trials if row.dead]),
+        misnamed=sum(bool(row.misnamed) for row in trials) / len(trials),
         seconds=_sum(trials, "seconds") / len(trials),
         endings=", ".join(f"{name} {count}" for name, count in endings),
     )
@@ -136,6 +140,11 @@ def _beside(
     return (fmean(quotients), fmean(differences)) if quotients else (None, None)
 
 
+def _named(rows: Sequence[EpisodeRow]) -> float | None:
+    found = sum(row.named is not None and row.named <= PATIENCE for row in rows)
+    return found / len(rows) if rows else None
+
+
 def _sum(rows: Sequence[EpisodeRow], name: str) -> float:
     return float(sum(getattr(row, name) for row in rows))
 
@@ -154,7 +163,8 @@ def _over_tasks(part: Part, rows: Rows) -> str:
     names = [
         *("VLM", "condition", "monitor", "tasks", "trials", "completed", "95% interval"),
         *("least in a task", "actions / seeing", "actions − seeing"),
-        *("questions an action", "most", "seconds", "how they ended"),
+        *("questions an action", "most", "working skill called dead", "seconds"),
+        "how they ended",
     ]
     found = [
         [
@@ -170,15 +180,16 @@ def _over_tasks(part: Part, rows: Rows) -> str:
             "" if each.difference is None else f"{each.difference:+.1f}",
             f"{each.typical:.1f}",
             f"{each.most:.1f} ({each.most_in})",
+            rate(each.misnamed),
             f"{each.seconds:.2f}",
             each.endings,
         ]
         for each in lines(rows)
     ]
     if part is Part.DEAD:
-        names.append(f"dead skill tried {PATIENCE} times at most")
+        names.append(f"dead skill named within {PATIENCE} tries")
         for told, each in zip(found, lines(rows), strict=True):
-            told.append(rate(each.patient))
+            told.append("" if each.named is None else rate(each.named))
     return table(names, found)
 
 

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from tpvqa.belief.calibration import Calibration, Group
 from tpvqa.belief.fitting import fit
 from tpvqa.belief.labelled_answer import LabelledAnswer
+from tpvqa.belief.own_words import OwnWords
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.labelled_recordings import label_recordings
@@ -64,6 +65,7 @@ def calibrations(
     *,
     done: Callable[[int, int], None] = lambda done, total: None,
     own: Mapping[str, OwnTask] = MappingProxyType({}),
+    hearing: bool = False,
 ) -> dict[Source, Calibration]:
     """Load what lies in a folder already, and learn the rest.
 
@@ -74,6 +76,7 @@ def calibrations(
         episodes: Trials that each is learnt from.
         done: Told how many there are, and of how many.
         own: Tasks of the user's own, by name.
+        hearing: Whether to learn what sensors and reports of skills are worth, too.
 
     Raises:
         TpvqaError: A trial cannot be run, a file is damaged or cannot be written.
@@ -88,10 +91,13 @@ def calibrations(
             continue
         looking = looks(source.vlm)
         cell = Cell(source.task, LOOKING if looking else SURVEY, source.vlm, source.world)
-        rows = gather(cell, away, range(episodes), own=own.get(source.task))
+        heard = OwnWords()
+        rows = gather(cell, away, range(episodes), own=own.get(source.task), heard=heard)
         found[source] = fit(rows, source.vlm, chosen_looks=looking)
         if source.vlm.startswith("recorded:"):
             found[source] = _of_recordings(source, rows, found[source])
+        if hearing:
+            found[source] = found[source].hearing(heard)
         found[source].save(path)
     done(len(found), len(sources))
     return found

@@ -12,18 +12,21 @@ if TYPE_CHECKING:
     from tpvqa.bench.own_task import OwnTask
     from tpvqa_experiments.abroad import Part
 
-PARTS = "others,own,elsewhere,dead,failure,shipped"
+PARTS = "others,own,sensed,elsewhere,dead,failure,shipped"
+CHECKOUT = Path(__file__).parents[4]
+EXAMPLES, PROBLEMS = CHECKOUT / "examples", CHECKOUT / "experiments/problems"
 
 
 def abroad(
     *,
-    parts: Annotated[str, typer.Option(help=f"Parts, with commas: {PARTS}.")] = PARTS,
+    parts: Annotated[str, typer.Option(help=f"Parts, with commas: {PARTS}, nothing.")] = PARTS,
     others: Annotated[
         Path | None,
         typer.Option(help="Folder of domains of others, see experiments/tools/others_domains.py."),
     ] = None,
     own: Annotated[
-        Path | None, typer.Option(help="Folder of domains of one's own, a folder each.")
+        Path | None,
+        typer.Option(help="Folder of domains of one's own, a folder each. Default: examples."),
     ] = None,
     tasks: Annotated[
         str, typer.Option(help="Shipped tasks, or some of the folders', with commas. Default: all.")
@@ -51,6 +54,9 @@ def abroad(
     out: Annotated[Path, typer.Option(help="Folder; a bench that was stopped goes on.")] = Path(
         "bench-abroad"
     ),
+    only_tables: Annotated[
+        bool, typer.Option("--only-tables", help="Run nothing; write tables of what is finished.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
     """Measure monitors on domains of others, and in worlds that are not as the problem says."""
@@ -59,16 +65,19 @@ def abroad(
     from tpvqa.bench.condition import normalised
     from tpvqa.config import TrialConfig
     from tpvqa_experiments.abroad import AbroadBench, run_abroad_bench
-    from tpvqa_experiments.abroad.bench import tasks_in
+    from tpvqa_experiments.abroad.bench import blocks_in, sensed
     from tpvqa_experiments.abroad.parts import MONITORS, SHIPPED, Extent
     from tpvqa_experiments.abroad.tables import lines
 
     chosen = listed(tasks)
+    ours = _chosen(_ours(own), chosen)
     bench = AbroadBench(
         parts=[_part(name) for name in listed(parts)],
         extent=Extent(
-            others=_chosen({} if others is None else tasks_in(others), chosen),
-            own=_chosen({} if own is None else tasks_in(own), chosen),
+            others=_chosen(_tasks(others), chosen),
+            own=ours,
+            sensed=sensed(ours),
+            blocks=_chosen(blocks_in(PROBLEMS) if PROBLEMS.is_dir() else {}, chosen),
             tasks=[name for name in SHIPPED if not chosen or name in chosen],
             monitors=listed(monitors) or MONITORS,
             vlms=listed(vlms),
@@ -94,6 +103,7 @@ def abroad(
             scheduler=scheduler,
             calibrating=bar,
             progress=progress,
+            only_tables=only_tables,
         )
     if as_json:
         told = [
@@ -107,6 +117,18 @@ def abroad(
         print(f"tables: {out}/abroad.md, {out}/abroad.json")
     if any(row.error for rows in found.values() for own_rows in rows.values() for row in own_rows):
         raise typer.Exit(1)
+
+
+def _ours(folder: Path | None) -> "dict[str, OwnTask]":
+    if folder is not None:
+        return _tasks(folder)
+    return _tasks(EXAMPLES) if EXAMPLES.is_dir() else {}
+
+
+def _tasks(folder: Path | None) -> "dict[str, OwnTask]":
+    from tpvqa_experiments.abroad.bench import tasks_in
+
+    return {} if folder is None else tasks_in(folder)
 
 
 def _chosen(tasks: "dict[str, OwnTask]", names: tuple[str, ...]) -> "dict[str, OwnTask]":

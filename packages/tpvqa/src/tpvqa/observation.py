@@ -1,13 +1,14 @@
-"""What a robot sees in one look. Pictures stay encoded until somebody looks at their pixels."""
+"""What a robot sees and senses. Pictures stay encoded until somebody looks at their pixels."""
 
 import mimetypes
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
+from tpvqa.pddl import Atom
 from tpvqa.pictures import decoded
 
 if TYPE_CHECKING:
@@ -148,6 +149,20 @@ class Frame:
         return np.asarray(decoded(self.data).convert("RGB"))
 
 
+@dataclass(frozen=True, slots=True)
+class SensedFact:
+    """A fact that the robot itself has measured: the gripper closed on something, a code was read.
+
+    Attributes:
+        atom: The fact.
+        probability: How probable this reading makes it, where it was as likely as not before: near
+            1 says that it holds, near 0 that it does not, 0.5 nothing.
+    """
+
+    atom: Atom
+    probability: float = 1.0
+
+
 @dataclass(frozen=True)
 class Observation:
     """One look at the world: the same question about it gets the same answer.
@@ -158,12 +173,14 @@ class Observation:
             simulation that is simulated time, on a robot any clock that never goes back.
         frames: The images, by view. Empty in worlds that are not seen but only told.
         detail: What else a world reports about the look, for the log only.
+        facts: What the robot's own sensors tell at the look.
     """
 
     look: int = 0
     time: float = 0.0
     frames: Mapping[str, Frame] = field(default_factory=dict)
     detail: Mapping[str, Any] = field(default_factory=dict)
+    facts: Sequence[SensedFact] = ()
 
 
 _ENDINGS = mimetypes.MimeTypes()  # Python's own: those of the system differ between machines

@@ -126,6 +126,17 @@ class Place:
             raise self.wrong(f"expected a number that counts from 1, found {_kind(self.node)}")
         return int(said)
 
+    def share(self) -> float:
+        """The value as a number from 0 to 1."""
+        said = str(self.node.value) if isinstance(self.node, yaml.ScalarNode) else ""
+        try:
+            share = float(said) if len(said) <= _LONGEST_NUMBER else -1.0
+        except ValueError:
+            share = -1.0
+        if not 0 <= share <= 1:
+            raise self.wrong(f"expected a number from 0 to 1, found {_kind(self.node)}")
+        return share
+
     def is_text(self) -> bool:
         """Whether it is a single value, not a list or a mapping."""
         return isinstance(self.node, yaml.ScalarNode) and not _is_empty(self.node)

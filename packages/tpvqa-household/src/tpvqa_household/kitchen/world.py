@@ -97,7 +97,12 @@ class KitchenWorld(Simulated, PlainArguments):
             time=self._time,
             frames={view: frame},
             detail={"kitchen": self.scene.seed, "split": self.scene.split},
+            facts=self.simulation.sensed(),
         )
+
+    def senses(self) -> frozenset[str]:
+        """The predicates that the world file says are sensed at looks."""
+        return self.simulation.senses()
 
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None

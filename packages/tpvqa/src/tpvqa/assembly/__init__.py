@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from threading import Event as Flag
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import BaseModel
 
@@ -19,8 +19,9 @@ from tpvqa.defaults import default_vlm, default_world
 from tpvqa.drivers import Journal, Listener, Parts, Performer, SteppingTrial
 from tpvqa.drivers import run as run_live
 from tpvqa.drivers.journal import Writer
-from tpvqa.drivers.plugged import called, put_back
+from tpvqa.drivers.plugged import called, put_back, views_of
 from tpvqa.drivers.replaying import Recording
+from tpvqa.drivers.sensed import senses_of
 from tpvqa.errors import PluginError, TpvqaError
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.records import atoms
@@ -45,8 +46,6 @@ from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 if TYPE_CHECKING:
     from tpvqa.drivers.asynchronous import AsynchronousTrial
-
-_VIEWS = cast("type[Sequence[str]]", Sequence)
 
 
 class Trial:
@@ -153,7 +152,8 @@ class Trial:
         see_free(config.options, context)
         world, by_world = make_world(self.world_spec, context)
         self._closing.append(world.close)
-        context |= {"truth": truth_of(world), "views": tuple(called(world, "views", _VIEWS))}
+        senses = senses_of(world, self.task)
+        context |= {"truth": truth_of(world), "views": views_of(world), "senses": senses}
         named = config.vlm.spec or (None if vlm is None else vlm.name)
         self.vlm_spec = named or default_vlm(pictures=has_pictures(world))
         self.known = experience
@@ -233,7 +233,7 @@ class Trial:
             questions=_text(self.questions),
             rules=_text(self.world_file),
             initial=atoms(self.task.init),
-            start=self._true_start,
+            true_start=self._true_start,
             goal=", ".join(goal),
             calibration=_plain(self.calibration),
             experience=_plain(self.known),

@@ -39,13 +39,14 @@ def simulate(
     """
     faults = config.simulation or SimulationConfig()
     if begun_as is not None:
-        start = None if begun_as.start is None else frozenset(map(Atom.parse, begun_as.start))
+        told = begun_as.true_start
+        start = None if told is None else frozenset(map(Atom.parse, told))
     else:
         start = _start(task, config, faults, planner)
     return Simulation(
         task,
         rules,
-        **faults.model_dump(exclude={"dead", "start", "elsewhere"}),
+        **faults.model_dump(exclude={"dead", "true_start", "elsewhere"}),
         dead=Dead.parse(faults.dead, task),
         undoing=() if rules.nothing_undone else rules.undo or (BackToBefore(task),),
         start=start,
@@ -58,8 +59,8 @@ def _start(
     task: Task, config: TrialConfig, faults: SimulationConfig, planner: Planner
 ) -> State | None:
     """The true state at first; None for that of the problem."""
-    if faults.start is not None:
-        return read_state(Path(faults.start), task)
+    if faults.true_start is not None:
+        return read_state(Path(faults.true_start), task)
     if not faults.elsewhere:
         return None
 

@@ -177,19 +177,20 @@ class Belief:
             {n: weight * (if_true if truth[n] else if_false) for n, weight in self.weights.items()}
         )
 
-    def weigh_outcome(self, *, succeeded: float, failed: float) -> None:
-        """Weigh by how probable something is where the last action succeeded, and where not."""
-        if self.outcome_weights is None:
+    def weigh_outcome(self, *, succeeded: float, failed: float, achieved: float) -> None:
+        """Weigh by how probable something is where the last action succeeded, where it failed, and
+        where nothing was left for it to do."""
+        came = self.outcome_weights
+        if came is None:
             return
-        shares = {
-            number: (
-                self.outcome_weights.success.get(number, 0.0)
-                + self.outcome_weights.achieved.get(number, 0.0)
-            )
-            / self._predicted[number]
-            for number in self.weights
-        }
-        self.weigh(lambda n: shares[n] * succeeded + (1 - shares[n]) * failed)
+
+        def likelihood(number: int) -> float:
+            whole = self._predicted[number]
+            success = came.success.get(number, 0.0) / whole
+            idle = came.achieved.get(number, 0.0) / whole
+            return success * succeeded + idle * achieved + (1 - success - idle) * failed
+
+        self.weigh(likelihood)
 
     def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
         """Take in that a fact may have changed without the action model knowing.

@@ -11,17 +11,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from tpvqa.belief.bounds import BOUND, EDGE
+from tpvqa.belief.own_words import OwnWords, SensorWorth, SkillWorth, fit_sensors, fit_skills
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError, PlacedError
 from tpvqa.questions.question import Question, Way
 from tpvqa.text_files import read_bytes
 from tpvqa.vlm.answer import Answer, Reply
-
-BOUND = 6.0
-"""No single answer is worth more than this log likelihood ratio (odds of 403 to 1): a network that
-is sure of itself is still wrong now and then, in ways that no training set of its size shows."""
-EDGE = 1e-4
-"""P(yes) is cut to [EDGE, 1 - EDGE]: what is beyond says how a number was rounded."""
 
 Probability = Annotated[float, Field(ge=0, le=1)]
 Coefficient = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
@@ -142,6 +138,8 @@ class Calibration(_Model):
         pairs_same_view: Pairs of answers that ρ was learnt from; of the same view.
         pairs_other_view: The same of two views.
         notices: What a user should know of it: P(yes) that points the wrong way.
+        sensors: What the robot's own sensors are worth, by predicate.
+        skills: What its skills' own reports are worth; of all and by action.
     """
 
     version: Literal[1] = 1
@@ -157,6 +155,8 @@ class Calibration(_Model):
     pairs_same_view: int = Field(default=0, ge=0)
     pairs_other_view: int = Field(default=0, ge=0)
     notices: tuple[str, ...] = ()
+    sensors: tuple[SensorWorth, ...] = ()
+    skills: tuple[SkillWorth, ...] = ()
 
     @cached_property
     def _nearest(self) -> dict[Way, dict[str, Group]]:
@@ -181,7 +181,8 @@ class Calibration(_Model):
     @property
     def fingerprint(self) -> str:
         """Tells it from other calibrations."""
-        unsaid = {name for name in ("by_hand", "inferred") if not getattr(self, name)}
+        names = ("by_hand", "inferred", "sensors", "skills")
+        unsaid = {name for name in names if not getattr(self, name)}
         return sha256(self.model_dump_json(exclude=unsaid).encode()).hexdigest()[:12]
 
     @classmethod
@@ -199,6 +200,11 @@ class Calibration(_Model):
             repeat_same_view=0.5,
             repeat_other_view=0.25,
         )
+
+    def hearing(self, own: OwnWords) -> "Calibration":
+        """The same with what was learnt of the robot's own sensors and skills."""
+        sensors, skills = fit_sensors(own.readings), fit_skills(own.reports)
+        return self.model_copy(update={"sensors": sensors, "skills": skills})
 
     def group(self, question: Question) -> Group:
         """The narrowest group that tells something about a question."""

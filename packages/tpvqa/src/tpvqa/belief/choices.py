@@ -210,9 +210,12 @@ class Chooser:
         together = {}
         if not self._sight.complete:
             together = self._commitments.made(
-                (other, weight * share)
-                for number, weight in ranked
-                for share, other, _ in self._successors(action, number, weight, rates)
+                action,
+                (
+                    (other, weight * share)
+                    for number, weight in ranked
+                    for share, other, _ in self._successors(action, number, weight, rates)
+                ),
             )
         return np.array([self._paid(action, *each, rates, together) for each in ranked])
 

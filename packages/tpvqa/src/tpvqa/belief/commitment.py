@@ -7,7 +7,7 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.outlook import Outlook
 from tpvqa.belief.sight import Sight
-from tpvqa.pddl import State
+from tpvqa.pddl import Action, State
 
 WAYS = 4
 """Ways that are compared for joint states that look alike, those of the most probable ones."""
@@ -33,10 +33,11 @@ class Commitments:
         """Go on with a model that gives joint states other numbers."""
         self._model = model
 
-    def made(self, predicted: Iterable[tuple[int, float]]) -> dict[int, float]:
+    def made(self, action: Action, predicted: Iterable[tuple[int, float]]) -> dict[int, float]:
         """What is left to pay from each joint state that looks like another one.
 
         Args:
+            action: What was done.
             predicted: Joint states that an action leads to, with their probabilities.
         """
         if self._sight.complete:
@@ -46,7 +47,7 @@ class Commitments:
             masses[number] += mass
         alike: dict[int, list[int]] = defaultdict(list)
         for number in masses:
-            alike[self._sight.look(number)].append(number)
+            alike[self._sight.look(number, action)].append(number)
         costs: dict[int, float] = {}
         for numbers in alike.values():
             if len({self._model.state(number) for number in numbers}) > 1:

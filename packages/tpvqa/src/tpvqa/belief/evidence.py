@@ -9,8 +9,10 @@ from tpvqa.belief.calibration import Apart, Calibration, Group
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.counts import PSEUDO
 from tpvqa.belief.information import Reliability, answers_to_be_sure
+from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
+from tpvqa.belief.readings import Readings
 from tpvqa.belief.trust import Trust
-from tpvqa.pddl import Atom
+from tpvqa.pddl import Atom, Task
 from tpvqa.questions.question import FactQuestion
 from tpvqa.vlm import Answer, Reply
 
@@ -22,8 +24,8 @@ PERSON = 0.99
 """How often a person's answer is right."""
 PERSONS_VIEW = "a person's"
 """Stands for the view from which a person could not tell; no world's view is called so."""
-SKILL = 0.9
-"""How far a skill is believed that says that it failed."""
+NOTICED = 0.8
+"""A skill that reports so many of its failures shows what it does."""
 PAIRS = 4.0
 """Pairs of answers that ρ counts for without any data."""
 
@@ -66,6 +68,7 @@ class Evidence:
         calibration: What answers are worth.
         trust: Whether they are worth that; None to take the calibration at its word.
         unexplained: Chance that a fact changed without the action model knowing.
+        skill: What the report of any skill is worth; by default what the calibration says.
     """
 
     def __init__(
@@ -75,9 +78,13 @@ class Evidence:
         trust: Trust | None,
         *,
         unexplained: float = UNEXPLAINED,
+        skill: SkillWorth | None = None,
     ):
         self._belief, self._calibration, self._trust = belief, calibration, trust
         self._unexplained = unexplained
+        self._skills = calibration.skills if skill is None else (skill,)
+        self._sensors = calibration.sensors
+        self._readings = Readings(belief, calibration.sensors)
         self._repeats = {
             apart: _cases(calibration.repeat(apart), PAIRS + calibration.pairs(apart))
             for apart in Apart
@@ -86,20 +93,62 @@ class Evidence:
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
 
-    def acted(self, *, troubled: bool = False) -> None:
+    def acted(self, action: str = "", *, failed: bool | None = None) -> None:
         """Note that an action was executed: facts may have changed, other things are in view.
 
         Args:
-            troubled: Whether the robot's own skill says that it went wrong.
+            action: Its name.
+            failed: Whether the robot's own skill reports a failure; None where it reports nothing.
         """
-        if troubled:
-            self._belief.weigh_outcome(succeeded=1 - SKILL, failed=SKILL)
+        if failed is not None:
+            self._take_report(action, failed=failed)
+        self._readings.acted()
         for last in self._last.values():
             last.settled = False
             last.pictures.clear()
             last.yes = last.no = 0
         self._opened.clear()
         self._silent.clear()
+
+    def _take_report(self, action: str, *, failed: bool) -> None:
+        known = of_action(self._skills, action)
+        if known is not None:
+            worked, not_worked = known.likelihoods(failed=failed)
+        elif failed:
+            worked, not_worked = FAILED
+        else:
+            return
+        # A skill that finds nothing to do may call that a failure, or not.
+        idle = (worked + not_worked) / 2 if failed else worked
+        self._belief.weigh_outcome(succeeded=worked, failed=not_worked, achieved=idle)
+
+    def noticed(self, task: Task) -> frozenset[str]:
+        """The predicates of facts that the robot is known to notice itself: those whose sensors
+        were calibrated, and those that skills change which report their failures."""
+        sensed = {each.predicate for each in self._sensors}
+        for schema in task.schemas:
+            known = of_action(self._skills, schema.name)
+            if known is not None and known.notices >= NOTICED:
+                sensed |= {effect.literal.predicate for effect in schema.effects}
+        return frozenset(sensed)
+
+    def take_sensed(self, atom: Atom, probability: float) -> None:
+        """Weigh the belief by what the robot itself has measured.
+
+        Args:
+            atom: The fact.
+            probability: How probable the reading makes it.
+        """
+        stated = atom.predicate not in self._belief.model.task.derived
+        if stated and self._readings.expected(atom, probability) < SURPRISING:
+            self._open((atom,))
+        self._readings.take(atom, probability)
+
+    def _open(self, atoms: tuple[Atom, ...]) -> None:
+        """Take in, once between two actions, that a fact may have changed unexplained."""
+        if atoms not in self._opened and self._unexplained:
+            self._opened.add(atoms)
+            self._belief.open(atoms, self._unexplained)
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action: once more is worth
@@ -188,9 +237,8 @@ class Evidence:
             if_true = again_true * same + (1 - again_true) * if_true
             if_false = again_false * same + (1 - again_false) * if_false
         probable = true * if_true + (1 - true) * if_false
-        if probable < SURPRISING and atoms not in self._opened and self._unexplained:
-            self._opened.add(atoms)
-            self._belief.open(atoms, self._unexplained)
+        if probable < SURPRISING:
+            self._open(atoms)
         self._belief.see(atoms, if_true, if_false)
         if self._trust is not None:
             self._trust.learn(

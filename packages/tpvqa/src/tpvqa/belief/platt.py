@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.belief.calibration import EDGE, Calibration, Curve
+from tpvqa.belief.bounds import EDGE
+from tpvqa.belief.calibration import Calibration, Curve
 from tpvqa.belief.counts import PSEUDO
 from tpvqa.belief.labelled_answer import LabelledAnswer
 from tpvqa.errors import MissingExtraError

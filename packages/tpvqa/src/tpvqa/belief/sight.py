@@ -16,16 +16,27 @@ class Sight:
 
     def __init__(self, model: FaultModel, seen: Callable[[Atom], bool] | None = None):
         self._model, self._seen = model, seen
+        self._felt: Callable[[Atom], bool] = lambda atom: False
         self._known: dict[Atom, bool] = {}
-        self._looks: dict[int, int] = {}
+        self._looks: dict[tuple[int, frozenset[Atom]], int] = {}
+        self._felt_by: dict[Action, frozenset[Atom]] = {}
         self._kinds: dict[frozenset[Atom], int] = {}
         self._hidden: dict[Action, bool] = {}
         self._complete: bool | None = None
 
-    def by(self, seen: Callable[[Atom], bool]) -> None:
-        """Note what shows facts."""
-        self._seen = seen
-        for known in (self._known, self._looks, self._kinds, self._hidden):
+    def by(
+        self,
+        seen: Callable[[Atom], bool],
+        felt: Callable[[Atom], bool] = lambda atom: False,
+    ) -> None:
+        """Note what shows facts.
+
+        Args:
+            seen: Whether anything shows a fact.
+            felt: Whether the robot notices a fact as it changes it, and perhaps never after.
+        """
+        self._seen, self._felt = seen, felt
+        for known in (self._known, self._looks, self._kinds, self._hidden, self._felt_by):
             known.clear()
         self._complete = None
 
@@ -52,12 +63,27 @@ class Sight:
             known = self._known[atom] = self._seen(atom)
         return known
 
-    def look(self, number: int) -> int:
-        """How a joint state looks: the same number for those that nothing tells apart."""
-        known = self._looks.get(number)
+    def look(self, number: int, after: Action | None = None) -> int:
+        """How a joint state looks: the same number for those that nothing tells apart.
+
+        Args:
+            number: Of the joint state.
+            after: The action that has led to it, of whose effects more may be felt.
+        """
+        felt = frozenset[Atom]() if after is None else self._felt_of(after)
+        known = self._looks.get((number, felt))
         if known is None:
-            seen = frozenset(filter(self.sees, self._model.state(number)))
-            known = self._looks[number] = self._kinds.setdefault(seen, len(self._kinds))
+            state = self._model.state(number)
+            seen = frozenset(filter(self.sees, state)) | (felt & state)
+            known = self._kinds.setdefault(seen, len(self._kinds))
+            self._looks[number, felt] = known
+        return known
+
+    def _felt_of(self, action: Action) -> frozenset[Atom]:
+        known = self._felt_by.get(action)
+        if known is None:
+            changes = (effect.literal.atom for effect in action.effects)
+            known = self._felt_by[action] = frozenset(filter(self._felt, changes))
         return known
 
     def hidden(self, action: Action) -> bool:
@@ -65,5 +91,6 @@ class Sight:
         known = self._hidden.get(action)
         if known is None:
             changes = [effect.literal.atom for effect in action.effects]
-            known = self._hidden[action] = not any(map(self.sees, changes))
+            shown = any(self.sees(atom) or self._felt(atom) for atom in changes)
+            known = self._hidden[action] = not shown
         return known

@@ -1,5 +1,6 @@
 """Watches an episode beside the truth and counts what a report needs."""
 
+import re
 from collections import Counter
 
 from tpvqa.bench.right_answers import yes_is_right
@@ -10,6 +11,9 @@ from tpvqa.labelling.recorded import subject_of
 from tpvqa.pddl import Action
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import Simulation
+
+_CALLED_DEAD = re.compile(r"[^;]+ failed \d+ times of \d+(;|$)")
+"""How a monitor says first of all that a skill seems never to work."""
 
 
 class Judge:
@@ -31,6 +35,8 @@ class Judge:
         self._truths: list[bool] = []
         self.answers: Counter[str] = Counter()
         self.decisions: Counter[str] = Counter()
+        self.named: int | None = None
+        self.misnamed: set[Action] = set()
         self.longest_repeat = self.failures = self.wasted = self.dead = 0
 
     @property
@@ -67,6 +73,8 @@ class Judge:
                     truth = self._simulation.possible(action)
                 else:
                     truth = self._simulation.achieved(action)
+                if _CALLED_DEAD.match(event.reason):
+                    self._called_dead(action)
                 went_on = event.decision in (Decision.GO_ON, Decision.DONE)
                 self.decisions[f"{event.when}|{truth:d}|{went_on:d}"] += 1
             case Acting():
@@ -78,3 +86,9 @@ class Judge:
                 self.dead += came.failure is Failure.DEAD
                 impossible = came.failure is Failure.PRECONDITION
                 self.wasted += impossible or (came.succeeded and not changed)
+
+    def _called_dead(self, action: Action) -> None:
+        if not self._simulation.dead.holds(action):
+            self.misnamed.add(action)
+        elif self.named is None:
+            self.named = self.dead

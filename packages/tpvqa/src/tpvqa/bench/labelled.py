@@ -1,22 +1,34 @@
 """Answers beside the truth, from trials in a simulated world as they run."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tpvqa.belief import LabelledAnswer
+from tpvqa.belief.own_words import LabelledReading, LabelledReport, OwnWords
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.right_answers import yes_is_right
 from tpvqa.bench.stage import stage, true_simulation
 from tpvqa.config import TrialConfig
 from tpvqa.events import Event, TrialState
-from tpvqa.events.events import Answered, Asked, Observed, QuestionRecord
+from tpvqa.events.events import (
+    Acted,
+    Acting,
+    Answered,
+    Asked,
+    Observed,
+    QuestionRecord,
+    SensedRecord,
+)
 from tpvqa.labelling.recorded import subject_of, view_of
-from tpvqa.pddl import Action
+from tpvqa.pddl import Action, Atom
+from tpvqa.worlds import Report
+from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import Simulation
 
 
 class Labeller:
-    """A listener that keeps every answer of a VLM with what was true when it was asked.
+    """A listener that keeps every answer of a VLM with what was true when it was asked, and what
+    the robot itself said with what was true then.
 
     Args:
         simulation: The true state.
@@ -25,6 +37,7 @@ class Labeller:
 
     Attributes:
         rows: The answers so far.
+        own: What the robot itself said so far; of a fact once between two actions.
     """
 
     def __init__(self, simulation: Simulation, actions: Mapping[str, Action], trial: str):
@@ -32,7 +45,10 @@ class Labeller:
         self._views: dict[int, str | None] = {}
         self._state = TrialState()
         self._truths: list[bool] = []
+        self._acting = ""
         self.rows: list[LabelledAnswer] = []
+        self.own = OwnWords()
+        self._read: set[str] = set()
 
     def __call__(self, event: Event) -> None:
         """Take note of an event."""
@@ -40,6 +56,14 @@ class Labeller:
         match event:
             case Observed():
                 self._views[event.look] = view_of(event)
+                if not event.during:
+                    self._sense(event.facts)
+            case Acting():
+                self._acting = event.action.name
+            case Acted():
+                self._read.clear()
+                self._sense(event.facts)
+                self._report(event)
             case Asked():
                 self._truths = [self._truth(question) for question in event.questions]
             case Answered():
@@ -61,6 +85,27 @@ class Labeller:
                     )
                     self.rows.append(row)
 
+    def _sense(self, facts: Sequence[SensedRecord]) -> None:
+        state = self._simulation.task.extend(self._simulation.state) if facts else frozenset()
+        for each in facts:
+            if each.atom not in self._read:
+                self._read.add(each.atom)
+                atom = Atom.parse(each.atom)
+                truth = atom in state
+                reading = LabelledReading(atom.predicate, each.probability, truth)
+                self.own.readings.append(reading)
+
+    def _report(self, event: Acted) -> None:
+        """A report counts where the action had something to do, and was not refused."""
+        truth = event.truth
+        if truth is None or truth.failure is Failure.REFUSED:
+            return
+        idle = truth.succeeded and not (truth.added or truth.removed)
+        if not idle and event.report in (Report.DONE, Report.FAILED):
+            reported = event.report is Report.FAILED
+            report = LabelledReport(self._acting, reported, failed=not truth.succeeded)
+            self.own.reports.append(report)
+
     def _truth(self, question: QuestionRecord) -> bool:
         return yes_is_right(question, self._simulation, self._actions)
 
@@ -72,6 +117,7 @@ def gather(
     *,
     done: Callable[[], None] = lambda: None,
     own: OwnTask | None = None,
+    heard: OwnWords | None = None,
 ) -> list[LabelledAnswer]:
     """Run trials in a simulated world and label all their answers.
 
@@ -81,6 +127,7 @@ def gather(
         episodes: Their numbers.
         done: Called after each.
         own: The task, where it is the user's own.
+        heard: Takes in what the robot itself said.
 
     Raises:
         TpvqaError: A trial cannot be run.
@@ -93,5 +140,7 @@ def gather(
             )
             here.play(trial, labeller)
         rows += labeller.rows
+        if heard is not None:
+            heard.add(labeller.own)
         done()
     return rows

@@ -1,14 +1,16 @@
 """Answers beside the truth, from recorded episodes: a world's, a person's, or what is probable."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tpvqa.belief import Calibration, LabelledAnswer
 from tpvqa.belief.fitting import fit
+from tpvqa.belief.own_words import OwnWords
 from tpvqa.bench.labelled import Labeller
+from tpvqa.bench.named_actions import NamedActions
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
 from tpvqa.errors import CalibrationError
@@ -38,6 +40,7 @@ class Labelled:
         vlm: Whose answers they are.
         rows: The answers. One whose truth was inferred stands there twice: as far as yes was
             right, and as far as no.
+        own: What the robot itself said.
         by_hand: Labels that a person gave; each holds for all answers of its moment.
         inferred: Answers of which later steps told what was probably right.
         unused: Episodes without truth and without labels, where there are labels elsewhere.
@@ -45,6 +48,7 @@ class Labelled:
 
     vlm: str
     rows: list[LabelledAnswer]
+    own: OwnWords = field(default_factory=OwnWords)
     by_hand: int = 0
     inferred: int = 0
     unused: int = 0
@@ -61,7 +65,7 @@ class Labelled:
             CalibrationError: There is no answer among them.
             MissingExtraError: scikit-learn is needed and not installed.
         """
-        found = fit(self.rows, self.vlm)
+        found = fit(self.rows, self.vlm).hearing(self.own)
         notices = list(found.notices)
         if self.inferred:
             notices.append(_INFERRED)
@@ -97,6 +101,7 @@ def label_episodes(
         EpisodeError: There is no episode, or it is damaged.
     """
     rows: list[LabelledAnswer] = []
+    heard = OwnWords()
     labelled: list[RecordedEpisode] = []
     untold: list[RecordedEpisode] = []
     for folder in map(str, dict.fromkeys(map(episode_folder, folders))):
@@ -109,7 +114,9 @@ def label_episodes(
         if (recorded.folder / LABELS).exists():
             labelled.append(recorded)
         elif any(map(_tells_truth, events)):
-            rows += _label(events, started, folder)
+            labeller = _label(events, started, folder)
+            rows += labeller.rows
+            heard.add(labeller.own)
         else:
             asked = any(said_in_trial(each) for each in recorded.askings)
             (labelled if asked else untold).append(recorded)
@@ -117,21 +124,21 @@ def label_episodes(
     by_hand, labels = labelled_rows(labelled)
     rows += by_hand
     if rows or not untold:
-        return Labelled(vlm or "", rows, by_hand=labels, unused=len(untold))
+        return Labelled(vlm or "", rows, heard, by_hand=labels, unused=len(untold))
     inferred = inferred_rows(untold, vlm or "")
-    return Labelled(vlm or "", inferred, inferred=len(inferred) // 2)
+    return Labelled(vlm or "", inferred, heard, inferred=len(inferred) // 2)
 
 
-def _label(events: list[Event], started: Started, name: str) -> list[LabelledAnswer]:
+def _label(events: list[Event], started: Started, name: str) -> Labeller:
     """Play the truth of an episode back beside its answers."""
     task, rules = _stage(started.domain, started.problem, started.rules)
     simulation = Simulation(task, rules)
-    simulation.state = frozenset(map(Atom.parse, started.initial))
-    actions = {action.pddl(): action for action in task.ground_actions()}
+    simulation.state = frozenset(map(Atom.parse, started.true_start or started.initial))
+    actions = NamedActions(task)
     labeller = Labeller(simulation, actions, name)
     for event in events:
-        labeller(event)
         if not isinstance(event, Acted):
+            labeller(event)
             continue
         if event.truth is not None:
             gone, new = (
@@ -141,7 +148,8 @@ def _label(events: list[Event], started: Started, name: str) -> list[LabelledAns
             simulation.state = (simulation.state - gone) | new
         elif event.report in (Report.DONE, Report.FAILED):
             raise _untold(name)
-    return labeller.rows
+        labeller(event)
+    return labeller
 
 
 def _tells_truth(event: Event) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from tpvqa.belief import LabelledAnswer
+from tpvqa.belief.own_words import OwnWords
 from tpvqa.bench.checking import check
 from tpvqa.bench.grid import Grid
 from tpvqa.bench.labelled import gather
@@ -19,6 +20,7 @@ def label_trials(
     world: str | None = None,
     monitor: str = "tpvqa",
     common: TrialConfig,
+    heard: OwnWords | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> list[LabelledAnswer]:
     """Run trials of every task, and label all answers in them.
@@ -31,6 +33,7 @@ def label_trials(
         world: Specification of the world; None for that of a trial in which none is named.
         monitor: Who asks.
         common: What all trials share: seed, rates of faults, limits, planner.
+        heard: Takes in what the robot itself said.
         progress: Told how many trials are done and how many there are.
 
     Raises:
@@ -55,5 +58,5 @@ def label_trials(
         progress(done, total)
 
     for cell in cells:
-        rows += gather(cell, common, range(trials), own=own.get(cell.task), done=one)
+        rows += gather(cell, common, range(trials), own=own.get(cell.task), done=one, heard=heard)
     return rows

@@ -18,6 +18,9 @@ class EpisodeRow(BaseModel):
         wasted: Actions that could do nothing: their effects held already, or a precondition did
             not.
         dead: Tries of skills that never work.
+        named: Tries of a skill that never works when the monitor first said so; None where it
+            never did.
+        misnamed: Skills that work, of which it said the same.
         first_plan: Actions of the first plan.
         seconds: Wall time.
         trust: The factor by which the VLM's answers are worth more or less than its calibration
@@ -48,6 +51,8 @@ class EpisodeRow(BaseModel):
     failures: int = 0
     wasted: int = 0
     dead: int = 0
+    named: int | None = None
+    misnamed: int = 0
     first_plan: int = 0
     seconds: float = 0.0
     trust: float | None = None

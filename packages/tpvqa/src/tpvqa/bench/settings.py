@@ -45,9 +45,9 @@ def _faults(simulation: SimulationConfig) -> dict[str, Any]:
     for name in usual.keys() - RATES:
         if told[name] == usual[name]:
             del told[name]
-    if simulation.start is not None:
-        text = read_text(Path(simulation.start), PDDLError, what="state file")
-        told["start"] = sha256(text.encode()).hexdigest()[:12]
+    if simulation.true_start is not None:
+        text = read_text(Path(simulation.true_start), PDDLError, what="state file")
+        told["true_start"] = sha256(text.encode()).hexdigest()[:12]
     return told
 
 

@@ -16,6 +16,7 @@ from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
+from tpvqa.bench.named_actions import NamedActions
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.config import TrialConfig
@@ -24,7 +25,7 @@ from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import BenchError, TpvqaError
 from tpvqa.events import Ended, Event
 from tpvqa.events.events import ListenerDropped
-from tpvqa.pddl import Action, Task, load_task
+from tpvqa.pddl import Task, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.making import make_planner
 from tpvqa.planning.remembering import Remembering
@@ -68,9 +69,7 @@ class Stage:
             self.task: Task = load_task(files.domain, files.problem)
             self.book = QuestionBook.load(files.questions, self.task)
             self.rules: WorldRules = load_world_file(files.world, self.task)
-        self.actions: dict[str, Action] = {
-            action.pddl(): action for action in self.task.ground_actions()
-        }
+        self.actions = NamedActions(self.task)
         self._model: FaultModel | None = None
 
     @property
@@ -193,6 +192,8 @@ class Stage:
             "failures": judge.failures,
             "wasted": judge.wasted,
             "dead": judge.dead,
+            "named": judge.named,
+            "misnamed": len(judge.misnamed),
             "first_plan": judge.first_plan,
             "answers": dict(judge.answers),
             "decisions": dict(judge.decisions),

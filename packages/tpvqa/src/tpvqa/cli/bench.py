@@ -66,7 +66,7 @@ def run(
     ] = None,
     questions: Annotated[Path | None, typer.Option(help="Questions for your domain.")] = None,
     world_file: Annotated[
-        Path | None, typer.Option(help="What disturbances undo in your domain.")
+        Path | None, typer.Option(help="What disturbances undo in your domain, and what is sensed.")
     ] = None,
     monitors: Annotated[
         str | None,

@@ -89,7 +89,9 @@ def calibrate(
     ] = None,
     world_file: Annotated[
         Path | None,
-        typer.Option(help="With --trials and --domain: what disturbances undo in your domain."),
+        typer.Option(
+            help="With --trials and --domain: what disturbances undo, and what is sensed."
+        ),
     ] = None,
     tasks: Annotated[
         str | None,
@@ -127,6 +129,7 @@ def calibrate(
     """
     from tpvqa.belief.fitting import fit
     from tpvqa.belief.held_out import held_out
+    from tpvqa.belief.own_words import OwnWords
     from tpvqa.bench.labelled_trials import label_trials
     from tpvqa.bench.own_task import own_tasks
     from tpvqa.bench.recorded_faults import experience_from
@@ -150,6 +153,7 @@ def calibrate(
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
     found: Labelled | None = None
+    heard = OwnWords()
     if episodes:
         found = _from_episodes(episodes, vlm)
         name, rows = found.vlm, found.plain
@@ -175,9 +179,13 @@ def calibrate(
                 world=world,
                 monitor=monitor,
                 common=combined(layers),
+                heard=heard,
                 progress=bar,
             )
-    calibration = found.fit() if found else fit(rows, name, chosen_looks=chosen_looks)
+    if found:
+        calibration = found.fit()
+    else:
+        calibration = fit(rows, name, chosen_looks=chosen_looks).hearing(heard)
     judged = held_out(rows, name, chosen_looks=chosen_looks)
     calibration.save(out)
     draw(image, judged, name)

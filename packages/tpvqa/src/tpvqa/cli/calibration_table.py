@@ -51,6 +51,8 @@ def plain(
         "repeat_same_view": calibration.repeat_same_view,
         "repeat_other_view": calibration.repeat_other_view,
         "notices": calibration.notices,
+        "sensors": [each.model_dump() for each in calibration.sensors],
+        "skills": [each.model_dump() for each in calibration.skills],
         "lines": [asdict(line) for line in table],
     }
 
@@ -82,8 +84,22 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
         f"\nA further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
         f"the same view, {calibration.repeat_other_view:.2f} from another."
     )
+    for each in calibration.sensors:
+        tell(
+            f"sensed: {each.predicate} is said to hold in {each.says_if_true:.3f} where it does "
+            f"and in {each.says_if_false:.3f} where it does not ({_readings(each.rows)})."
+        )
+    for skill in calibration.skills:
+        tell(
+            f"skills: {skill.action or 'all'} reports {skill.notices:.3f} of its failures, and "
+            f"{skill.false_alarms:.3f} of its successes as failures ({skill.rows} actions)."
+        )
     for notice in calibration.notices:
         tell(f"note: {notice}")
+
+
+def _readings(count: int) -> str:
+    return f"{count} reading{'s' * (count != 1)}"
 
 
 def _figure(value: float | None) -> str:

@@ -50,7 +50,7 @@ def _why(trial: "Trial", simulation: "Simulation | None", name: str) -> str:
             return "only a failed action disturbs something, and --failure is 0"
         if not _can_be_undone(trial, simulation):
             return "nothing that the plan achieves can be undone"
-    if name == "start" and simulation.start == trial.task.init:
+    if name == "true_start" and simulation.start == trial.task.init:
         return "the state is that of the problem"
     return ""
 

@@ -15,6 +15,7 @@ from tpvqa.cli.saying import marked, plain, rendered
 from tpvqa.episodes.agreement import Agreement
 from tpvqa.episodes.answers_worth import AnswersWorth, calibration_used
 from tpvqa.episodes.fact_words import words_of
+from tpvqa.episodes.sensed_news import SensedNews
 from tpvqa.events import Decision, Ended, Event, Exchange, TrialState
 from tpvqa.events.events import (
     Acted,
@@ -74,6 +75,7 @@ class EpisodeView:
         self._console, self._truth, self._verbose = console, truth, verbose
         self._words = None if book is None else FactWords(book)
         self._agreement: Agreement | None = None
+        self._sensed = SensedNews(self._say)
         self._bars = BeliefBars(bars=console.is_terminal)
         self._state, self._worth = TrialState(), AnswersWorth()
         self._headed: tuple[PlanMade | None, int, int] | None = None
@@ -128,6 +130,7 @@ class EpisodeView:
                 names = ", ".join(frame.file for frame in event.frames)
                 if names:
                     self._line(f"  [dim]look {event.look}: {marked(names)}[/]")
+                self._show_sensed(event)
             case Asked():
                 self._head(before)
                 self._told = True
@@ -231,6 +234,7 @@ class EpisodeView:
         if event.message or event.report is not Report.DONE:
             why = f": {marked(event.message)}" if event.message else ""
             self._line(f"  [dim]the robot reports {event.report}{why}[/]")
+        self._show_sensed(event)
         if not self._truth or event.truth is None:
             return
         failure, undone = event.truth.failure, event.truth.undone
@@ -239,6 +243,11 @@ class EpisodeView:
             parts.append(f"{self._say(undone)} ended: {event.truth.undoing}")
         if parts:
             self._line(f"  [dim italic]in truth: {marked('; '.join(parts))}[/]")
+
+    def _show_sensed(self, event: Observed | Acted) -> None:
+        told = self._sensed.of(event.facts)
+        if told:
+            self._line(f"  [dim]the robot senses: {marked(told)}[/]")
 
     def _show_end(self, event: Ended) -> None:
         if event.completed:

@@ -66,7 +66,8 @@ class TaskConfig(_Part):
     )
     world_file: str | None = setting(
         "--world-file",
-        "What disturbances undo in your domain. Default: the world.yaml beside it.",
+        "What disturbances undo in your domain, and what is sensed. Default: the world.yaml "
+        "beside it.",
         file=True,
     )
 
@@ -216,8 +217,8 @@ class SimulationConfig(_Part):
         "for them (_ for any); several with +: 'pick_up apple + wash'.",
         min_length=1,
     )
-    start: str | None = setting(
-        "--start",
+    true_start: str | None = setting(
+        "--true-start",
         "File of the state in which the world truly begins, as `tpvqa plan --from-state` reads it. "
         "The monitor is told what the problem says.",
         file=True,
@@ -231,7 +232,7 @@ class SimulationConfig(_Part):
 
     @model_validator(mode="after")
     def _one_start(self) -> Self:
-        if self.start is not None and self.elsewhere:
+        if self.true_start is not None and self.elsewhere:
             raise ValueError("name a state that the world begins in, or how many things to move")
         return self
 

@@ -7,9 +7,16 @@ from typing import Any
 
 from tpvqa.drivers.freshness import Freshness
 from tpvqa.drivers.plugged import MALFORMED, called, malformed
+from tpvqa.drivers.sensed import checked
 from tpvqa.errors import PluginError
 from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade
-from tpvqa.events.records import answered_record, frame_record, outcome_record, plan_record
+from tpvqa.events.records import (
+    answered_record,
+    frame_record,
+    outcome_record,
+    plan_record,
+    sensed_records,
+)
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Task
@@ -110,14 +117,16 @@ class Performer:
         """
         world = self.parts.world
         seen = called(world, "observe", Observation, view)
+        facts = checked(seen.facts, self.parts.task, world, "observe")
         try:
-            seen = replace(seen, look=number, frames=_named(seen.frames, number))
+            seen = replace(seen, look=number, frames=_named(seen.frames, number), facts=facts)
             observed = Observed(
                 look=number,
                 view=view,
                 world_time=seen.time,
                 frames=tuple(map(self._frame, seen.frames.values())),
                 detail=dict(seen.detail),
+                facts=sensed_records(facts),
                 during=during,
                 snapshot=None if during else self._snapshot(world),
             )
@@ -188,18 +197,20 @@ class Performer:
         )
         if not isinstance(execution.report, Report):
             raise malformed(world, "execute", ValueError(f"no Report: {execution.report!r:.80}"))
+        facts = checked(execution.facts, self.parts.task, world, "execute")
         try:
             outcome = self._last_outcome()
             acted = Acted(
                 report=execution.report,
                 seconds=execution.seconds,
                 message=execution.message,
+                facts=sensed_records(facts),
                 truth=None if outcome is before else outcome_record(outcome),
                 snapshot=self._snapshot(world),
             )
         except MALFORMED as error:
             raise malformed(world, "execute", error) from error
-        return Performed(execution, acted)
+        return Performed(replace(execution, facts=facts), acted)
 
     def _last_outcome(self) -> Outcome | None:
         return None if self._telling is None else self._telling.last_outcome

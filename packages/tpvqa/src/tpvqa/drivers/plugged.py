@@ -1,15 +1,16 @@
 """Calls into planners, worlds and VLMs: what plug-ins raise or return may be anything."""
 
 import traceback
-from collections.abc import Mapping
-from typing import Any, TypeVar
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeVar, cast
 
 from pydantic import ValidationError
 
 from tpvqa.errors import EpisodeError, PluginError, TpvqaError
-from tpvqa.worlds import Restorable
+from tpvqa.worlds import Restorable, World
 
 T = TypeVar("T")
+_VIEWS = cast("type[Sequence[str]]", Sequence)
 
 
 def called(part: object, method: str, wanted: type[T], /, *given: object, **named: object) -> T:
@@ -40,6 +41,15 @@ def called(part: object, method: str, wanted: type[T], /, *given: object, **name
     if not isinstance(result, wanted):
         raise PluginError(f"{where} has to return {wanted.__name__}, not {_short(result)}")
     return result
+
+
+def views_of(world: World) -> tuple[str, ...]:
+    """The views of a world, the default one first.
+
+    Raises:
+        PluginError: It broke, or returned something else.
+    """
+    return tuple(called(world, "views", _VIEWS))
 
 
 def put_back(part: Restorable, name: str, snapshot: Mapping[str, Any]) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from tpvqa.errors import EpisodeError
+from tpvqa.errors import EpisodeError, PDDLError
 from tpvqa.events import Event, Resumed
 from tpvqa.events.events import (
     Acted,
@@ -20,7 +20,7 @@ from tpvqa.events.events import (
 )
 from tpvqa.events.records import answers_from, execution_from, observation_from, plan_from
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
-from tpvqa.pddl import Task
+from tpvqa.pddl import Atom, Task
 from tpvqa.trial import Act, Pending
 
 E = TypeVar("E", bound=Event)
@@ -104,7 +104,9 @@ class Recording:
         """
         match pending.request:
             case Look():
-                return observation_from(self.event(Observed), self._folder)
+                seen = self.event(Observed)
+                self._see_known(seen)
+                return observation_from(seen, self._folder)
             case Ask(questions):
                 return answers_from(self.event(Answered), questions)
             case AskPerson(question):
@@ -112,7 +114,18 @@ class Recording:
             case PlanFrom():
                 return plan_from(self.event(PlanMade), self._task)
             case Act():
-                return execution_from(self.event(Acted))
+                acted = self.event(Acted)
+                self._see_known(acted)
+                return execution_from(acted)
+
+    def _see_known(self, event: Observed | Acted) -> None:
+        for each in event.facts:
+            try:
+                self._task.check_atom(Atom.parse(each.atom))
+            except PDDLError as error:
+                raise EpisodeError(
+                    f"event {event.number} of the log senses what its task does not know: {error}"
+                ) from error
 
 
 def _told(event: Event | None) -> object:

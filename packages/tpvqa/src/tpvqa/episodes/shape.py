@@ -77,7 +77,7 @@ class LogShape:
     def _look_into(self, event: Event) -> None:
         match event:
             case Started():
-                _atoms(*event.initial, *(event.start or ()))
+                _atoms(*event.initial, *(event.true_start or ()))
             case PlanMade():
                 _atoms(*event.state)
                 if event.result == "plan" and not event.considered:
@@ -114,6 +114,7 @@ class LogShape:
                 self._acting = event
             case Acted():
                 self._acting = None
+                _atoms(*(each.atom for each in event.facts))
                 if event.truth is not None:
                     _atoms(*event.truth.added, *event.truth.removed)
                     _atoms(*(() if event.truth.undone is None else (event.truth.undone,)))
@@ -125,6 +126,7 @@ class LogShape:
             raise _wrong(f"step {step} of the plan is another action")
 
     def _observed(self, event: Observed) -> None:
+        _atoms(*(each.atom for each in event.facts))
         if event.look != self._looks:
             raise _wrong(f"it is look {event.look}, and {self._looks} is expected")
         self._looks += 1

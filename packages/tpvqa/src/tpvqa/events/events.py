@@ -46,7 +46,7 @@ class Started(_Event):
         noise_model: Whether the VLM answers from the truth, for experiments; it is no VLM then.
         domain: Text of the file, as are `problem`, `questions` and `rules` (the world file).
         initial: The facts that hold at first, as the problem says.
-        start: Those that truly hold where a simulated world begins otherwise; for judges alone.
+        true_start: Those that truly hold where a simulated world begins otherwise; for judges.
         goal: The goal in words.
         calibration: What the monitor was told of the VLM's answers, where it weighs them.
         experience: What it was told of earlier trials.
@@ -73,7 +73,7 @@ class Started(_Event):
     questions: str | None = None
     rules: str | None = None
     initial: tuple[str, ...]
-    start: tuple[str, ...] | None = None
+    true_start: tuple[str, ...] | None = None
     goal: str
     calibration: dict[str, Any] | None = None
     experience: dict[str, Any] | None = None
@@ -139,8 +139,16 @@ class FrameRecord(_Record):
     depth: str | None = None
 
 
+class SensedRecord(_Record):
+    """A fact that the robot measured itself, and how probable the reading makes it."""
+
+    atom: str
+    probability: float = Field(ge=0, le=1)
+
+
 class Observed(_Event):
-    """A look at the world. One `during` an action was taken while the action ran."""
+    """A look at the world. One `during` an action was taken while the action ran; `facts` are what
+    the robot sensed itself."""
 
     kind: Literal["observed"] = "observed"
     look: int
@@ -148,6 +156,7 @@ class Observed(_Event):
     world_time: float
     frames: tuple[FrameRecord, ...] = ()
     detail: dict[str, Any] = Field(default_factory=dict)
+    facts: tuple[SensedRecord, ...] = ()
     during: bool = False
     snapshot: dict[str, Any] | None = None
 
@@ -264,12 +273,14 @@ class OutcomeRecord(_Record):
 
 
 class Acted(_Event):
-    """What the robot's skill reports. `truth` is what a simulated world knows, for judging."""
+    """What the robot's skill reports, and what the robot sensed then (`facts`). `truth` is what a
+    simulated world knows, for judging."""
 
     kind: Literal["acted"] = "acted"
     report: Report
     seconds: float
     message: str = ""
+    facts: tuple[SensedRecord, ...] = ()
     truth: OutcomeRecord | None = None
     snapshot: dict[str, Any] | None = None
 

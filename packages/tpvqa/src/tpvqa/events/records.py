@@ -16,9 +16,10 @@ from tpvqa.events.events import (
     OutcomeRecord,
     PlanMade,
     QuestionRecord,
+    SensedRecord,
 )
-from tpvqa.observation import NPY, PNG, Depth, Frame, Intrinsics, Observation
-from tpvqa.pddl import Action, State, Task
+from tpvqa.observation import NPY, PNG, Depth, Frame, Intrinsics, Observation, SensedFact
+from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.pictures import read_file
 from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.questions import ActionQuestion, FactQuestion, Question, QuestionBook
@@ -116,7 +117,19 @@ def outcome_record(outcome: Outcome | None) -> OutcomeRecord | None:
 
 def execution_from(record: Acted) -> Execution:
     """What a skill reported, from the record."""
-    return Execution(record.report, record.seconds, record.message)
+    return Execution(record.report, record.seconds, record.message, facts=sensed_from(record.facts))
+
+
+def sensed_records(facts: Sequence[SensedFact]) -> tuple[SensedRecord, ...]:
+    """What a robot sensed, as it is logged."""
+    return tuple(
+        SensedRecord(atom=each.atom.pddl(), probability=each.probability) for each in facts
+    )
+
+
+def sensed_from(records: Sequence[SensedRecord]) -> tuple[SensedFact, ...]:
+    """What a robot sensed, from the records."""
+    return tuple(SensedFact(Atom.parse(each.atom), each.probability) for each in records)
 
 
 def frame_record(frame: Frame, file: str) -> FrameRecord:
@@ -142,7 +155,9 @@ def observation_from(record: Observed, folder: Path | None) -> Observation:
     frames = {}
     for frame in record.frames:
         frames[frame.view] = _frame(frame, folder)
-    return Observation(record.look, record.world_time, frames, record.detail)
+    return Observation(
+        record.look, record.world_time, frames, record.detail, sensed_from(record.facts)
+    )
 
 
 def _frame(record: FrameRecord, folder: Path | None) -> Frame:

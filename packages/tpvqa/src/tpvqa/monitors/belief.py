@@ -1,6 +1,6 @@
 """The monitor that believes: probabilities instead of votes, costs instead of thresholds."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Collection, Generator, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -11,20 +11,20 @@ from tpvqa.belief.choices import Choice, Chooser, Table
 from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
-from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
+from tpvqa.belief.inquiry import DOUBT, Budget, Inquirer, Inquiry
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.skills import NAMED
 from tpvqa.belief.trust import Trust
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.monitors.capabilities import Learning
-from tpvqa.monitors.inspection import Inspection, Replies
+from tpvqa.monitors.inspection import REPORTED, SENSED, Inspection, Replies
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Ask, AskPerson, Look, Request
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.monitors.ways import Ways
-from tpvqa.observation import Observation
+from tpvqa.observation import Observation, SensedFact
 from tpvqa.pddl import Action, Atom, Literal, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWay, FactWords, QuestionBook, Way
@@ -49,6 +49,7 @@ class BeliefMonitor(Learning, PlainArguments):
         rules: What the world file says about faults.
         calibration: What the VLM's answers are worth.
         views: The views that the world can be looked at from, the default one first.
+        senses: The predicates of facts that looks tell of without any question.
         experience: What was learned in earlier trials; goes before the rates of `settings`.
         noise_model: Whether answers do not depend on the picture, but on the look.
         model: The action model, where trials one after the other share it.
@@ -67,6 +68,7 @@ class BeliefMonitor(Learning, PlainArguments):
         rules: FaultRules | None = None,
         calibration: Calibration | None = None,
         views: Sequence[str] = (),
+        senses: Collection[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
         model: FaultModel | None = None,
@@ -86,13 +88,15 @@ class BeliefMonitor(Learning, PlainArguments):
             learned = None if experience is None else experience.trusting()
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
-        self.evidence = Evidence(self.belief, calibration, self.trust)
+        self.evidence = Evidence(self.belief, calibration, self.trust, skill=settings.skill)
         self._sight = Sight(self.belief.model)
         self._chooser = Chooser(self.belief.model, self.costs, self._sight)
         self._ways = Ways(task, self._chooser, self.chances)
         self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
+        self._senses = frozenset(senses)
+        self._sensed, self._felt = {*senses}, {*self.evidence.noticed(task)}
         self._looks = self._questions = 0
         self._words: FactWords | None = None
         self._book: QuestionBook | None = None
@@ -110,6 +114,7 @@ class BeliefMonitor(Learning, PlainArguments):
         rules: FaultRules | None = None,
         calibration: Calibration | None = None,
         views: Sequence[str] = (),
+        senses: Collection[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
         model: FaultModel | None = None,
@@ -125,6 +130,7 @@ class BeliefMonitor(Learning, PlainArguments):
             rules=rules,
             calibration=calibration,
             views=views,
+            senses=senses,
             experience=experience,
             noise_model=noise_model,
             model=model,
@@ -163,7 +169,7 @@ class BeliefMonitor(Learning, PlainArguments):
         """Annotate the plan that is being followed, and know what the trial still allows."""
         if self._book is not step.book:
             self._book = step.book
-            self._sight.by(lambda atom: step.book.asked(Literal(atom)))
+            self._see_by(step.book)
         self._chooser.ahead.allow(step.actions_left)
         self._chooser.changes_left = step.replans_left
         self._ways.follow(step)
@@ -176,8 +182,34 @@ class BeliefMonitor(Learning, PlainArguments):
             self._inquirer.renumbered(self.belief.model)
         self._chooser.acted(self.belief, step.action)
         self.belief.act(step.action, self.chances.rates_of(step.action))
-        self.evidence.acted(troubled=bool(step.trouble))
         self._now = self._begin(step.action)
+        before = {atom: self.belief.probability(atom) for atom in self._now.effects}
+        self.evidence.acted(step.action.name, failed=step.reported)
+        for atom, was in before.items():
+            self._now.notice(atom, was, self.belief.probability(atom), REPORTED)
+        self._sense(step.sensed)
+
+    def _see_by(self, book: QuestionBook) -> None:
+        """Note what shows facts: questions, and what the robot notices itself."""
+        sensed, felt = frozenset(self._sensed), frozenset(self._felt)
+        self._sight.by(
+            lambda atom: book.asked(Literal(atom)) or atom.predicate in sensed,
+            lambda atom: atom.predicate in felt,
+        )
+        self._chooser.ahead.learned(self.chances.skill, self.chances.rates)
+
+    def _sense(self, facts: Sequence[SensedFact]) -> None:
+        """Take in what the robot itself has measured."""
+        told, effects = len(self._sensed) + len(self._felt), self._now.effects
+        for fact in facts:  # what an action did is perhaps felt then and never after
+            kind = self._felt if fact.atom in effects else self._sensed
+            kind.add(fact.atom.predicate)
+        if self._book is not None and len(self._sensed) + len(self._felt) > told:
+            self._see_by(self._book)
+        for fact in facts:
+            was = self.belief.probability(fact.atom)
+            self.evidence.take_sensed(fact.atom, fact.probability)
+            self._now.notice(fact.atom, was, self.belief.probability(fact.atom), SENSED)
 
     def _learn(self, action: Action | None) -> None:
         """Learn from how the last action came out, after all that was seen of it."""
@@ -191,6 +223,8 @@ class BeliefMonitor(Learning, PlainArguments):
     def _choose(self, step: Step, barred: Action | None = None) -> Generator[Request, Any, Choice]:
         while True:
             yield from self._ways.seek(self.belief)
+            if self._may_feel():
+                yield from self._look(self._now.view)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
             inquiry = self._inquire(step, table)
             if inquiry is None:
@@ -275,11 +309,7 @@ class BeliefMonitor(Learning, PlainArguments):
                 open_views = self._open_views(question)
                 if not open_views:
                     return
-                now.view = open_views[0]
-                observation: Observation = yield Look(now.view)
-                now.picture = observation.look if self._blind else _picture(observation)
-                self._looks += 1
-                now.looks += 1
+                yield from self._look(open_views[0])
                 looks += 1
             answers: list[Answer] = yield Ask((question,))
             answer = answers[0]
@@ -289,6 +319,24 @@ class BeliefMonitor(Learning, PlainArguments):
         if answer.reply in (Reply.YES, Reply.NO):
             told = Replies(question.atoms, before)
             now.replies.setdefault(question.text, told).replies.append(answer.reply)
+
+    def _look(self, view: str | None) -> Generator[Request, Any, None]:
+        now = self._now
+        now.view = view
+        observation: Observation = yield Look(view)
+        self._sense(observation.facts)
+        now.picture = observation.look if self._blind else _picture(observation)
+        self._looks += 1
+        now.looks += 1
+
+    def _may_feel(self) -> bool:
+        """Whether a look, the first since the last action, senses what a plan needs and is in
+        doubt: it costs next to nothing."""
+        if not self._senses or self._now.looks or self._budget().looks <= 0:
+            return False
+        needed = {atom for plan in self._chooser.plans for atom in plan.atoms()}
+        likely = (self.belief.probability(a) for a in needed if a.predicate in self._senses)
+        return any(DOUBT < p < 1 - DOUBT for p in likely)
 
     def _shows_something_new(self, question: FactQuestion) -> bool:
         """Whether the latest picture may tell more than what a question was answered before."""
@@ -320,6 +368,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self._words,
             self.belief,
             self._now.replies,
+            self._now.noticed,
             self._ways.annotated(step),
             acted,
             unseen=self.evidence.unseen,

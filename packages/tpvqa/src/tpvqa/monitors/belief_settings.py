@@ -8,9 +8,13 @@ from pydantic import ValidationError
 from tpvqa.belief.ablations import PARTS
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import Rates
+from tpvqa.belief.own_words import SkillWorth
 from tpvqa.errors import PluginError, suggestion
 
 _RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate")
+_REPORTS = ("notices", "false_alarms")
+_RARELY = 0.01
+"""Successes that a skill is taken to report as failures, where only `notices` is given."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,11 +24,13 @@ class BeliefSettings:
     Attributes:
         costs: What things cost.
         rates: What is believed about faults beforehand.
+        skill: What the report of any skill is worth; None for what the calibration says.
         without: One of `belief.ablations.PARTS`, to be left out.
     """
 
     costs: Costs = field(default_factory=Costs)
     rates: Rates = field(default_factory=Rates)
+    skill: SkillWorth | None = None
     without: str | None = None
 
     @classmethod
@@ -32,7 +38,8 @@ class BeliefSettings:
         """Read `question=0.05:failure=200`.
 
         Also understood: `failure_rate`, `disturbance_rate` and `spontaneous_rate`, believed
-        beforehand; `without=PART`.
+        beforehand; `notices` and `false_alarms`, the shares of its failures and of its successes
+        that a skill reports as failures; `without=PART`.
 
         Raises:
             PluginError: Something is unknown, or no fitting number.
@@ -54,11 +61,12 @@ class BeliefSettings:
             }
             if not all(0 <= rate <= 1 for rate in believed.values()):
                 raise ValueError("a rate lies between 0 and 1")
+            reports = {key: float(given.pop(key)) for key in _REPORTS if key in given}
             costs = Costs.model_validate(given)
         except ValidationError as error:
             first = error.errors()[0]
             where = ".".join(map(str, first["loc"]))
-            known = (*Costs.model_fields, *_RATES, "without")
+            known = (*Costs.model_fields, *_RATES, *_REPORTS, "without")
             what = (
                 f"there is no cost {where!r}{suggestion(where, known).rstrip('.')}"
                 if where not in Costs.model_fields
@@ -72,4 +80,19 @@ class BeliefSettings:
             ) from None
         except ValueError as error:
             raise PluginError(f"'belief:{arguments}' is not understood: {error}") from None
-        return cls(costs, Rates(**believed), without)
+        return cls(costs, Rates(**believed), _skill(reports, arguments), without)
+
+
+def _skill(reports: dict[str, float], arguments: str) -> SkillWorth | None:
+    """What the reports of skills are worth, where that is said."""
+    if not reports:
+        return None
+    notices = reports.get("notices", 0.0)
+    false_alarms = reports.get("false_alarms", min(_RARELY, notices))
+    if not 0 < false_alarms <= notices < 1:
+        raise PluginError(
+            f"'belief:{arguments}' is not understood: a skill reports a share of its failures, "
+            "and no larger one of its successes, both between 0 and 1; write "
+            "belief:notices=0.95:false_alarms=0.01, say"
+        )
+    return SkillWorth(notices=notices, false_alarms=false_alarms)

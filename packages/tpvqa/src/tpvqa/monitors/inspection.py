@@ -24,6 +24,22 @@ class Replies:
 
 
 @dataclass(slots=True, eq=False)
+class Noticed:
+    """What the robot itself noticed of a fact since the last action.
+
+    Attributes:
+        before: How probable the fact was before it.
+        by: What noticed it: `REPORTED`, `SENSED`, or both.
+    """
+
+    before: float
+    by: list[str] = field(default_factory=list)
+
+
+REPORTED, SENSED = "as the skill reports", "as sensed"
+
+
+@dataclass(slots=True, eq=False)
 class Inspection:
     """What happened since the last action; a new one begins with every action.
 
@@ -34,6 +50,7 @@ class Inspection:
         looks: Looks so far.
         questions: Questions so far.
         replies: What was answered to each question.
+        noticed: What the robot's own skill and sensors told of facts.
         about: The questions about sets of facts.
     """
 
@@ -43,7 +60,17 @@ class Inspection:
     looks: int = 0
     questions: int = 0
     replies: dict[str, Replies] = field(default_factory=dict)
+    noticed: dict[Atom, Noticed] = field(default_factory=dict)
     about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)
+
+    def notice(self, atom: Atom, before: float, after: float, by: str) -> None:
+        """Note that skill or sensors told something of a fact, where that shows in two digits."""
+        if abs(before - after) < 0.005:
+            return
+        first = (told.before for told in self.replies.values() if told.atoms == (atom,))
+        noticed = self.noticed.setdefault(atom, Noticed(next(first, before)))
+        if by not in noticed.by:
+            noticed.by.append(by)
 
     @property
     def effects(self) -> frozenset[Atom]:

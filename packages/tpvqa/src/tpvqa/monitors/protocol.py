@@ -6,6 +6,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.verdict import Verdict
+from tpvqa.observation import SensedFact
 from tpvqa.pddl import Action, State, Task
 from tpvqa.planning import Plan
 from tpvqa.questions import QuestionBook
@@ -26,6 +27,9 @@ class Step:
         state: What is believed to be true, before the action.
         attempt: How often this step's action has been repeated so far.
         trouble: After the action, what the robot's own skill says went wrong; never the truth.
+        reported: After the action, whether the skill reports that it failed; None where it reports
+            nothing, as the program was killed in its middle.
+        sensed: After the action, what the robot's own sensors tell; never the truth either.
         actions_left: Actions that the trial still allows; None for any number.
         replans_left: Replans that it still allows; None for any number.
         repeats_left: Repeats of this action that it still allows; None for any number.
@@ -38,6 +42,8 @@ class Step:
     state: State
     attempt: int = 0
     trouble: str = ""
+    reported: bool | None = None
+    sensed: tuple[SensedFact, ...] = ()
     actions_left: int | None = None
     replans_left: int | None = None
     repeats_left: int | None = None

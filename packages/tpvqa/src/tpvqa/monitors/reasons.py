@@ -7,7 +7,7 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import words
 from tpvqa.events.decision import Decision
-from tpvqa.monitors.inspection import Replies
+from tpvqa.monitors.inspection import Noticed, Replies
 from tpvqa.monitors.protocol import Step
 from tpvqa.pddl import Action, Atom, Literal, State
 from tpvqa.questions import FactWords
@@ -27,6 +27,7 @@ class Grounds:
         words: Says facts.
         belief: What is believed.
         told: What was answered since the last action, by question.
+        noticed: What the robot's own skill and sensors told since then, by fact.
         plan: The plan that is followed, with its needs.
         acted: Whether the step's action was just executed.
         unseen: Whether some question found no answer.
@@ -39,6 +40,7 @@ class Grounds:
     words: FactWords
     belief: Belief
     told: Mapping[str, Replies]
+    noticed: Mapping[Atom, Noticed]
     plan: AnnotatedPlan | None
     acted: bool
     unseen: bool
@@ -64,6 +66,10 @@ class Grounds:
     def answers(self, atom: Atom) -> Replies | None:
         """What was answered about a fact, or about those alike."""
         return next((told for told in self.told.values() if atom in told.atoms), None)
+
+    def known(self, atom: Atom) -> bool:
+        """Whether anything was answered or noticed about a fact."""
+        return self.answers(atom) is not None or atom in self.noticed
 
 
 def reason(
@@ -115,9 +121,9 @@ def _needs(grounds: Grounds) -> list[Literal]:
 
 
 def _why_on(grounds: Grounds, said: str, missing: Sequence[Literal]) -> list[str]:
-    """What speaks for the next step: what it rests on that was asked about, or is in doubt."""
+    """What speaks for the next step: what it rests on that was asked or sensed, or is in doubt."""
     needs = [need for need in _needs(grounds) if need not in missing]
-    doubted = [n for n in needs if grounds.answers(n.atom) or grounds.probability(n) < SURE]
+    doubted = [n for n in needs if grounds.known(n.atom) or grounds.probability(n) < SURE]
     parts = [_fact(grounds, each) for each in doubted[:SAID]]
     if not parts:
         parts = _most_telling(grounds)
@@ -130,23 +136,26 @@ def _why_on(grounds: Grounds, said: str, missing: Sequence[Literal]) -> list[str
 
 
 def _most_telling(grounds: Grounds) -> list[str]:
-    """The fact that was asked about, though not needed next, whose probability changed most."""
+    """The fact asked about or sensed, though not needed next, whose probability changed most."""
+    now = grounds.belief.probability
     changes = {
-        told: abs(grounds.belief.probability(told.atoms[0], told.atoms[1:]) - told.before)
+        told.atoms: abs(now(told.atoms[0], told.atoms[1:]) - told.before)
         for told in grounds.told.values()
     }
+    for atom, noticed in grounds.noticed.items():
+        changes.setdefault((atom,), abs(now(atom) - noticed.before))
     if not changes:
         return []
-    told = max(changes, key=lambda each: (changes[each], each.atoms))
-    return [_fact(grounds, Literal(told.atoms[0]), needing=False)]
+    atoms = max(changes, key=lambda each: (changes[each], each))
+    return [_fact(grounds, Literal(atoms[0]), needing=False)]
 
 
 def _of_goal(grounds: Grounds) -> list[str]:
-    """What of the goal was asked about, or is in doubt."""
+    """What of the goal was asked about or sensed, or is in doubt."""
     if grounds.plan is None:
         return []
     goal = sorted(grounds.plan.needs[-1], key=lambda n: (grounds.probability(n), n.atom))
-    doubted = [n for n in goal if grounds.answers(n.atom) or grounds.probability(n) < SURE]
+    doubted = [n for n in goal if grounds.known(n.atom) or grounds.probability(n) < SURE]
     return [_fact(grounds, each, needing=False) for each in doubted[:SAID]]
 
 
@@ -174,13 +183,18 @@ def _too_few(grounds: Grounds) -> bool:
 
 def _fact(grounds: Grounds, need: Literal, *, needing: bool = True) -> str:
     """A fact with how probable it is, since when, and what rests on it."""
-    told = grounds.answers(need.atom)
+    told, noticed = grounds.answers(need.atom), grounds.noticed.get(need.atom)
     text = f"{grounds.say(need)} {_figure(grounds.probability(need))}"
-    if told is not None:
-        before = told.before if need.positive else 1 - told.before
-        if len(told.atoms) == 1 and _figure(before) != _figure(grounds.probability(need)):
+    if told is not None or noticed is not None:
+        first = noticed or told  # it notices before anything is asked
+        assert first is not None
+        before = first.before if need.positive else 1 - first.before
+        alone = told is None or len(told.atoms) == 1
+        if alone and _figure(before) != _figure(grounds.probability(need)):
             text = f"{grounds.say(need)} {_figure(before)} → {_figure(grounds.probability(need))}"
-        text += f" after {words(told.replies)}"
+        by = [] if noticed is None else list(noticed.by)
+        by += [] if told is None else [f"after {words(told.replies)}"]
+        text += f" {' and '.join(by)}"
     elif not grounds.step.book.asked(Literal(need.atom)):
         pass  # bookkeeping that nothing shows
     elif not grounds.questions_left:

@@ -70,7 +70,12 @@ class _Loop:
                     return Conclusion("world refused", execution.message)
                 if execution.report is not Report.DONE:
                     step = replace(step, trouble=execution.message or execution.report.value)
-                step = replace(step, actions_left=self.state.actions_left)
+                step = replace(
+                    step,
+                    reported=_reported(execution),
+                    sensed=tuple(execution.facts),
+                    actions_left=self.state.actions_left,
+                )
                 verdict = yield from self._check(self.monitor.after, step, "after")
             match verdict.decision:
                 case Decision.DONE:
@@ -234,6 +239,8 @@ class _Loop:
                 Acted(report=execution.report, seconds=0.0, message=execution.message)
             )
             yield from self._persist(self._look)
+            if self._seen is not None:
+                execution = replace(execution, facts=self._seen.facts)
         return execution
 
     def _replan(self, known: Plan | None) -> Generator[Any, Any, Conclusion | None]:
@@ -267,3 +274,10 @@ class _Loop:
             yield from self.emit(
                 Believed(added=atoms(state - before), removed=atoms(before - state))
             )
+
+
+def _reported(execution: Execution) -> bool | None:
+    """Whether a skill reports a failure; None where the program was killed in its middle."""
+    if execution.message == INTERRUPTED:
+        return None
+    return execution.report is not Report.DONE

@@ -5,7 +5,7 @@ A world has a capability by having all of its members, but for `Simulated`, `Pic
 is made.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from tpvqa.errors import WorldError
@@ -44,6 +44,15 @@ class Telling(Protocol):
     @property
     def last_outcome(self) -> Outcome | None:
         """What came of the last action that happened; None before the first."""
+
+
+@runtime_checkable
+class Sensing(Protocol):
+    """Its looks tell what the robot senses itself, so that looking is worth while without any
+    question."""
+
+    def senses(self) -> Collection[str]:
+        """The predicates of the facts that `observe` tells of."""
 
 
 class Simulated:

@@ -52,7 +52,7 @@ def elsewhere(
         raise WorldError(
             f"--elsewhere {count}: of what the plan of {task.name} handles, {moved or 'no'} "
             f"{'thing' if moved < 2 else 'things'} can be elsewhere with the goal still in reach; "
-            "name fewer, or a state with --start"
+            "name fewer, or a state with --true-start"
         )
     return state
 

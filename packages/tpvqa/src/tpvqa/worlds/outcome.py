@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from tpvqa.observation import SensedFact
 from tpvqa.pddl import Atom, State
 from tpvqa.worlds.protocol import Execution, Report
 
@@ -41,6 +42,8 @@ class Outcome:
         undoing: How the world file says that.
         before: The true state before.
         after: The true state after.
+        reported: Whether the skill reports a failure: one that it noticed, or a false alarm.
+        sensed: What the robot's own sensors tell after it.
     """
 
     failure: Failure | None
@@ -48,6 +51,8 @@ class Outcome:
     undoing: str
     before: State
     after: State
+    reported: bool = False
+    sensed: tuple[SensedFact, ...] = ()
 
     @property
     def succeeded(self) -> bool:
@@ -55,11 +60,13 @@ class Outcome:
         return self.failure is None
 
     def execution(self, seconds: float) -> Execution:
-        """What the skill itself tells: it notices no fault, but knows what it refuses.
+        """What the skill itself tells: what it refuses, what it noticed, what was sensed.
 
         Args:
             seconds: How long it took.
         """
         if self.failure is Failure.REFUSED:
-            return Execution(Report.FAILED, seconds, self.failure.said)
-        return Execution(Report.DONE, seconds)
+            return Execution(Report.FAILED, seconds, self.failure.said, self.sensed)
+        if self.reported:
+            return Execution(Report.FAILED, seconds, "the skill noticed a failure", self.sensed)
+        return Execution(Report.DONE, seconds, facts=self.sensed)

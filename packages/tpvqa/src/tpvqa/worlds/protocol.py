@@ -6,7 +6,7 @@ from enum import StrEnum
 from threading import Event
 from typing import Protocol, runtime_checkable
 
-from tpvqa.observation import Observation
+from tpvqa.observation import Observation, SensedFact
 from tpvqa.pddl import Action
 
 
@@ -22,11 +22,19 @@ class Report(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """What came of executing an action, as far as the robot's skill can tell."""
+    """What came of executing an action, as far as the robot's skill can tell.
+
+    Attributes:
+        report: How the skill ended.
+        seconds: How long it took.
+        message: What the skill says besides, for people.
+        facts: What the robot's own sensors tell once it is over.
+    """
 
     report: Report
     seconds: float
     message: str = ""
+    facts: Sequence[SensedFact] = ()
 
 
 @runtime_checkable

@@ -25,17 +25,18 @@ class _ScriptedSimulation(Simulation):
             simulation.rules,
             failure=0.0,
             disturbance=0.0,
+            seed=simulation.seed,
+            episode=simulation.episode,
             dead=simulation.dead,
             start=simulation.start,
         )
         self._script = script
 
-    def execute(self, action: Action) -> Outcome:
-        """Try an action on the true state."""
+    def _tried(self, action: Action) -> Outcome:
         fault = self._script.get((action.pddl(), self.attempts[action.pddl()] + 1))
         before = self.state
         if fault is None or not fault.fails:
-            outcome = super().execute(action)
+            outcome = super()._tried(action)
         else:
             self.attempts[action.pddl()] += 1
             outcome = Outcome(Failure.SCRIPT, None, "", before, before)

@@ -7,13 +7,17 @@ also undo something achieved before. The truth is kept for judging and never sho
 import operator
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from enum import StrEnum
+from random import Random
 from typing import Any
 
 from tpvqa.chance import chance
+from tpvqa.observation import SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.worlds.dead import NOTHING_DEAD, Dead
 from tpvqa.worlds.outcome import Failure, Outcome
+from tpvqa.worlds.sensing import Occasion, Sensors
 from tpvqa.worlds.undo import Undoing
 from tpvqa.worlds.world_file import WorldRules
 
@@ -34,7 +38,7 @@ class Simulation:
 
     Args:
         task: Gives the initial state and the actions.
-        rules: What disturbances can undo, and more (see `load_world_file`).
+        rules: What disturbances can undo, what is sensed, and more (see `load_world_file`).
         failure: Probability that an action fails although it is possible.
         disturbance: Probability that a failure also undoes an achieved fact.
         spontaneous: Probability that an achieved fact is undone after a success.
@@ -70,6 +74,7 @@ class Simulation:
         self.state: State = self.start
         self.attempts: Counter[str] = Counter()
         self.ended: list[Atom] = []
+        self._sensors = Sensors(self.rules.sensed, task)
 
     def undoable(self) -> dict[Atom, list[tuple[str, State]]]:
         """The achieved facts that a disturbance could end now, with what each would lead to."""
@@ -85,7 +90,36 @@ class Simulation:
         return found
 
     def execute(self, action: Action) -> Outcome:
-        """Try an action on the true state."""
+        """Try an action on the true state, and tell what skill and sensors notice."""
+        if not (self.rules.sensed or self.rules.reports):
+            return self._tried(action)
+        attempt, truly = self.attempts[action.pddl()], self.truly(action)
+        outcome = self._tried(action)
+        report = next((r for r in self.rules.reports if r.action in (None, action.name)), None)
+        reported = report is not None and report.reports(
+            failed=not outcome.succeeded,
+            draw=chance(self.seed, self.episode, "report", action.pddl(), attempt),
+        )
+        true = self.task.extend(self.state)
+        sensed = self._sensors.after((action, truly), true, self._draw_for)
+        return replace(outcome, reported=reported, sensed=sensed)
+
+    def sensed(self) -> tuple[SensedFact, ...]:
+        """What the robot's own sensors tell at a look."""
+        if not self.rules.sensed:
+            return ()
+        return self._sensors.at_look(self.task.extend(self.state), self._draw_for)
+
+    def senses(self) -> frozenset[str]:
+        """The predicates that are sensed at looks."""
+        return self._sensors.predicates(Occasion.LOOK)
+
+    def _draw_for(self, atom: Atom) -> Random:
+        """A reading stays what it is until something is done: its error is not drawn again."""
+        done = self.attempts.total()
+        return chance(self.seed, self.episode, "sensed", atom.pddl(), done)
+
+    def _tried(self, action: Action) -> Outcome:
         before = self.state
         attempt = self.attempts[action.pddl()]
         self.attempts[action.pddl()] += 1

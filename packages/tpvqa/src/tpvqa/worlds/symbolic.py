@@ -36,12 +36,16 @@ class SymbolicWorld(Simulated, Pictureless):
         if view not in (None, "front"):
             raise UnknownNameError("view", str(view), self.views())
         looks, self._looks = self._looks, self._looks + 1
-        return Observation(time=float(looks))
+        return Observation(time=float(looks), facts=self.simulation.sensed())
+
+    def senses(self) -> frozenset[str]:
+        """The predicates that the world file says are sensed at looks."""
+        return self.simulation.senses()
 
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
     ) -> Execution:
-        """Try the action at once; the skill notices no fault."""
+        """Try the action at once; skill and sensors notice what the world file says."""
         if cancel is not None and cancel.is_set():
             return Execution(Report.CANCELLED, 0.0)
         if deadline is not None and deadline <= 0:

@@ -7,6 +7,7 @@ from pathlib import Path
 from tpvqa.errors import PDDLError, WorldFileError, suggestion, suggestion_or_list
 from tpvqa.pddl import Action, State, Task
 from tpvqa.pddl.pattern import Pattern, check_together
+from tpvqa.worlds.sensing import Occasion, ReportRule, SensedRule
 from tpvqa.worlds.stated import stated_pattern
 from tpvqa.worlds.undo import Reversal, UndoRule
 from tpvqa.yaml_places import Place, read_yaml
@@ -49,11 +50,15 @@ class WorldRules:
     Attributes:
         undo: What disturbances can undo.
         rebind: Arguments that skills do not take.
+        sensed: What the robot measures itself.
+        reports: What skills notice of their failures; the first that is of an action counts.
         nothing_undone: Whether it says that nothing can be undone, by an empty list.
     """
 
     undo: tuple[UndoRule, ...] = ()
     rebind: tuple[Rebinding, ...] = ()
+    sensed: tuple[SensedRule, ...] = ()
+    reports: tuple[ReportRule, ...] = ()
     nothing_undone: bool = False
 
 
@@ -65,10 +70,12 @@ def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
             line.
     """
     root = None if path is None else read_yaml(Path(path), WorldFileError)
-    sections = {} if root is None else root.sections("undo", "rebind")
+    sections = {} if root is None else root.sections("undo", "rebind", "sensed", "reports")
     return WorldRules(
         undo=tuple(_undo_rule(entry, task) for entry in _items(sections, "undo")),
         rebind=tuple(_rebinding(entry, task) for entry in _items(sections, "rebind")),
+        sensed=tuple(_sensed_rule(entry, task) for entry in _items(sections, "sensed")),
+        reports=tuple(_report_rule(entry, task) for entry in _items(sections, "reports")),
         nothing_undone="undo" in sections and not _items(sections, "undo"),
     )
 
@@ -81,13 +88,9 @@ def _rebinding(entry: Place, task: Task) -> Rebinding:
     parts = entry.sections("action", "argument", "to")
     if len(parts) < 3:
         raise entry.wrong("an entry needs 'action', 'argument' and 'to'")
-    name = parts["action"].text().lower()
-    schemas = {schema.name: schema for schema in task.schemas}
-    if name not in schemas:
-        raise parts["action"].wrong(
-            f"the domain has no action {name!r}{suggestion_or_list(name, schemas)}"
-        )
-    names = [parameter.name for parameter in schemas[name].parameters]
+    name = _action_name(parts["action"], task)
+    (schema,) = (schema for schema in task.schemas if schema.name == name)
+    names = [parameter.name for parameter in schema.parameters]
     argument = parts["argument"].text().lower()
     if argument not in names:
         raise parts["argument"].wrong(
@@ -97,6 +100,49 @@ def _rebinding(entry: Place, task: Task) -> Rebinding:
     if argument not in pattern.variables:
         raise parts["to"].wrong(f"{pattern} does not speak of {argument}, which it is to give")
     return Rebinding(name, tuple(names), argument, pattern)
+
+
+def _action_name(place: Place, task: Task) -> str:
+    name, known = place.text().lower(), [schema.name for schema in task.schemas]
+    if name not in known:
+        raise place.wrong(f"the domain has no action {name!r}{suggestion_or_list(name, known)}")
+    return name
+
+
+def _sensed_rule(entry: Place, task: Task) -> SensedRule:
+    parts = entry.sections("fact", "right", "claims", "at")
+    if "fact" not in parts:
+        raise entry.wrong("an entry needs 'fact', e.g. fact: (in_hand ?x ?h)")
+    try:
+        fact = Pattern.parse(parts["fact"].text(), task)
+    except PDDLError as error:
+        raise parts["fact"].wrong(error.message) from None
+    right = parts["right"].share() if "right" in parts else 1.0
+    claims = parts["claims"].share() if "claims" in parts else max(right, 1 - right)
+    if claims < 0.5:
+        raise parts["claims"].wrong("a reading of less than 0.5 says the opposite; give 0.5 to 1")
+    at = frozenset({Occasion.ACTION})
+    if "at" in parts:
+        at = frozenset(map(_occasion, parts["at"].texts()))
+        if not at:
+            raise parts["at"].wrong(f"name an occasion: {', '.join(Occasion)}")
+    return SensedRule(fact, right, claims, at)
+
+
+def _occasion(place: Place) -> Occasion:
+    word = place.text().lower()
+    if word not in set(Occasion):
+        raise place.wrong(f"{word!r} is no occasion{suggestion_or_list(word, Occasion)}")
+    return Occasion(word)
+
+
+def _report_rule(entry: Place, task: Task) -> ReportRule:
+    parts = entry.sections("action", "notices", "false_alarms")
+    return ReportRule(
+        _action_name(parts["action"], task) if "action" in parts else None,
+        parts["notices"].share() if "notices" in parts else 0.0,
+        parts["false_alarms"].share() if "false_alarms" in parts else 0.0,
+    )
 
 
 def _undo_rule(entry: Place, task: Task) -> UndoRule:

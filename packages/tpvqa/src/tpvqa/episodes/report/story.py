@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from tpvqa.episodes.agreement import Agreement
 from tpvqa.episodes.notable_facts import FactNow, notable
+from tpvqa.episodes.sensed_news import SensedNews
 from tpvqa.errors import EpisodeError
 from tpvqa.events import TrialState
 from tpvqa.events.events import (
@@ -37,10 +38,11 @@ class Told(NamedTuple):
 
 @dataclass
 class Check:
-    """One look, or none, with what was asked about it."""
+    """One look, or none, with what was asked about it, and what the robot sensed itself."""
 
     look: int | None = None
     frames: tuple[FrameRecord, ...] = ()
+    sensed: str = ""
     exchanges: list[Told] = field(default_factory=list)
 
 
@@ -61,12 +63,16 @@ class Phase:
 
 @dataclass
 class Chapter:
-    """One action: its check before, what came of it, its check after. Or a plan."""
+    """One action: its check before, what came of it, its check after. Or a plan.
+
+    `sensed` is what the robot's own sensors told anew once it was over.
+    """
 
     plan: PlanMade | None = None
     before: Phase = field(default_factory=Phase)
     acting: Acting | None = None
     acted: Acted | None = None
+    sensed: str = ""
     after: Phase = field(default_factory=Phase)
     step: int | None = None
     action: ActionRecord | None = None
@@ -105,7 +111,8 @@ def tell(events: Sequence[Event], words: FactWords | None = None) -> Story:
     if not events or not isinstance(events[0], Started):
         raise EpisodeError("the episode has no beginning")
     story = Story(events[0], [], None)
-    state, agreement = TrialState(), Agreement(words or FactWords())
+    words = words or FactWords()
+    state, agreement, news = TrialState(), Agreement(words), SensedNews(words.say)
     current: Chapter | None = None
     phase = Phase()
 
@@ -128,7 +135,7 @@ def tell(events: Sequence[Event], words: FactWords | None = None) -> Story:
                 current = None
             case Observed():
                 chapter()
-                phase.checks.append(Check(event.look, event.frames))
+                phase.checks.append(Check(event.look, event.frames, news.of(event.facts)))
             case Answered():
                 chapter()
                 if not phase.checks:
@@ -159,7 +166,8 @@ def tell(events: Sequence[Event], words: FactWords | None = None) -> Story:
                 here.acting, here.action, here.step = event, event.action, event.step
                 phase = here.after
             case Acted():
-                chapter().acted = event
+                here = chapter()
+                here.acted, here.sensed = event, news.of(event.facts)
             case Ended():
                 story.ended = event
     return story

@@ -99,12 +99,21 @@ class DrawnWorld(Simulated, Generic[P]):
             media_type=media_type(picture.file),
             source=picture.file,
         )
-        return Observation(time=float(look), frames={VIEW: frame}, detail=self.detail(picture))
+        return Observation(
+            time=float(look),
+            frames={VIEW: frame},
+            detail=self.detail(picture),
+            facts=self.simulation.sensed(),
+        )
+
+    def senses(self) -> frozenset[str]:
+        """The predicates that the world file says are sensed at looks."""
+        return self.simulation.senses()
 
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
     ) -> Execution:
-        """Try the action at once; the skill notices no fault.
+        """Try the action at once; skill and sensors notice what the world file says.
 
         An action that would lead to a state which no picture shows is refused, and changes
         nothing.

@@ -1,0 +1,265 @@
+"""A fact that no camera shows and the robot senses itself: whole trials, as a user runs them."""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+from tests.doubles import configured
+from tpvqa.assembly import Trial
+from tpvqa.belief import Calibration
+from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
+from tpvqa.episodes.log import LOG
+from tpvqa.errors import EpisodeError
+from tpvqa.events import Decision, Ended, Event
+from tpvqa.events.events import Acted, Acting, Asked, Decided, Observed
+from tpvqa.planning import Planner
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import Remembering
+from tpvqa.resuming import resume
+
+WARD = Path(__file__).parents[1] / "fixtures" / "drawers"
+FILES = {name: str(WARD / f"{name}.pddl") for name in ("domain", "problem")}
+WORDS = [word for name, file in FILES.items() for word in (f"--{name}", file)]
+TRIAL = [*WORDS, "--world", "symbolic"]
+NOTHING = "sensed: []"
+
+
+@pytest.fixture(scope="module")
+def planner() -> Iterator[Planner]:
+    planner = Remembering(FastDownward())
+    yield planner
+    planner.close()
+
+
+def run(
+    planner: Planner, monitor: str = "belief", *, rules: Path = WARD / "world.yaml", **more: object
+) -> tuple[Ended, list[Event]]:
+    """A trial with a VLM that is always right."""
+    files = {**FILES, "questions": str(WARD / "questions.yaml"), "world_file": str(rules)}
+    config = configured(**files, world="symbolic", vlm="oracle:1", monitor=monitor, **more)
+    writer = MemoryWriter()
+    with Trial(config, planner=planner) as trial:
+        return trial.run(writer), writer.events
+
+
+def disinfected(events: list[Event]) -> list[tuple[Acted, Decided]]:
+    """What came of each disinfecting, and what was decided after it."""
+    found, action, came = [], "", None
+    for event in events:
+        match event:
+            case Acting():
+                action = event.action.name
+            case Acted():
+                came = event
+            case Decided(when="after") if action == "disinfect":
+                assert came is not None
+                found.append((came, event))
+    return found
+
+
+def test_what_failed_by_the_sensor_is_repeated_and_nothing_else(planner: Planner) -> None:
+    decisions = []
+    for seed in range(12):
+        ended, events = run(planner, seed=seed)
+        assert ended.completed
+        assert not any("contaminated" in str(e.questions) for e in events if isinstance(e, Asked))
+        for acted, decided in disinfected(events):
+            (reading,) = acted.facts
+            assert acted.truth is not None
+            assert (reading.probability > 0.5) == (not acted.truth.succeeded)
+            again = decided.decision is Decision.REPEAT
+            assert again == (reading.probability > 0.5), decided.reason
+            assert "as sensed" in decided.reason
+            decisions.append(again)
+    assert {True, False} == set(decisions)
+
+
+def test_what_the_robot_never_hears_of_it_does_not_tell(planner: Planner, tmp_path: Path) -> None:
+    (tmp_path / "world.yaml").write_text(NOTHING)
+    for seed in range(3):
+        _, events = run(planner, rules=tmp_path / "world.yaml", seed=seed, limits={"actions": 12})
+        assert not any(e.facts for e in events if isinstance(e, Acted | Observed))
+        assert not any("sensed" in e.reason for e in events if isinstance(e, Decided))
+
+
+@pytest.mark.parametrize("at", ["look", "effect", "action"])
+def test_where_everything_is_sensed_no_question_is_needed(tpvqa: Run, at: str) -> None:
+    """Nor any look, but where looks are what senses."""
+    Path("felt.yaml").write_text(
+        f"sensed:\n  - {{fact: '(contaminated ?d)', at: {at}}}\n  - {{fact: '(open ?d)', at: {at}}}"
+    )
+    Path("mute.yaml").write_text("never_asked: [{fact: '(contaminated ?d)'}, {fact: '(open ?d)'}]")
+    given = ["--world-file", "felt.yaml", "--questions", "mute.yaml", "--vlm", "oracle:1"]
+    for seed in (2, 3):
+        code, _, err = tpvqa("run", *TRIAL, *given, "--seed", seed, "--out", f"e{seed}")
+        assert code == 0, err
+        events = read_episode(f"e{seed}")
+        ended = events[-1]
+        assert isinstance(ended, Ended)
+        failed = sum(not e.truth.succeeded for e in events if isinstance(e, Acted) and e.truth)
+        assert ended.questions == 0
+        if at == "effect":  # what a failure may have undone besides, nothing tells
+            assert ended.actions <= 6 + failed + 2
+        else:
+            assert ended.actions == 6 + failed
+        assert ended.looks <= (ended.actions if at == "look" else 0)
+
+
+@pytest.mark.parametrize("failure", [0.0, 0.25])
+def test_a_skill_that_is_said_to_notice_its_failures_is_heard(
+    planner: Planner, tmp_path: Path, failure: float
+) -> None:
+    (tmp_path / "world.yaml").write_text("reports: [{notices: 1}]")
+    monitor = "belief:notices=0.99:false_alarms=0.001"
+    decisions = []
+    for seed in range(8):
+        ended, events = run(
+            planner, monitor, rules=tmp_path / "world.yaml", seed=seed, failure=failure
+        )
+        assert ended.completed
+        for acted, decided in disinfected(events):
+            assert (decided.decision is Decision.REPEAT) == (acted.report == "failed")
+            assert "as the skill reports" in decided.reason
+            decisions.append(decided.decision)
+        assert failure or ended.actions == 6
+    assert (Decision.REPEAT in decisions) == bool(failure)
+
+
+@pytest.mark.parametrize("monitor", ["tpvqa", "vote:3", "effectvqa"])
+def test_the_papers_monitors_decide_as_if_nothing_were_sensed(
+    planner: Planner, tmp_path: Path, monitor: str
+) -> None:
+    (tmp_path / "world.yaml").write_text(NOTHING)
+    told = [
+        [
+            (event.step, event.decision, event.reason)
+            for event in run(planner, monitor, rules=rules, seed=seed, limits={"actions": 20})[1]
+            if isinstance(event, Decided)
+        ]
+        for seed in range(3)
+        for rules in (WARD / "world.yaml", tmp_path / "world.yaml")
+    ]
+    assert told[::2] == told[1::2]
+
+
+def test_a_resumed_trial_senses_what_the_unbroken_one_does(
+    planner: Planner, tmp_path: Path
+) -> None:
+    rules = tmp_path / "world.yaml"
+    rules.write_text(
+        "sensed:\n  - {fact: '(contaminated ?d)', right: 0.9, at: [look, action]}\n"
+        "reports: [{notices: 0.5, false_alarms: 0.1}]"
+    )
+    config = configured(**FILES, world_file=str(rules), world="symbolic", vlm="oracle:0.9", seed=5)
+    writer = EpisodeWriter(tmp_path / "whole", durable=False)
+    with Trial(config, planner=planner) as trial:
+        trial.run(writer, folder=tmp_path / "whole")
+    writer.close()
+    lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
+    whole = read_episode(tmp_path / "whole")
+    assert {p for e in whole if isinstance(e, Acted) for p in [f.probability for f in e.facts]} == {
+        0.9,
+        0.1,
+    }
+    for cut in range(3, len(lines), len(lines) // 3):
+        folder = tmp_path / f"cut{cut}"
+        folder.mkdir()
+        (folder / LOG).write_bytes(b"".join(lines[:cut]))
+        resume(folder)
+        assert story(read_episode(folder)) == story(whole), cut
+
+
+def story(events: list[Event]) -> list[dict[str, object]]:
+    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
+
+
+def test_a_log_that_senses_what_its_task_does_not_know_is_not_gone_on_with(
+    planner: Planner, tmp_path: Path
+) -> None:
+    writer = EpisodeWriter(tmp_path, durable=False)
+    config = configured(**FILES, world="symbolic", vlm="oracle:1")
+    with Trial(config, planner=planner) as trial:
+        trial.run(writer, folder=tmp_path)
+    writer.close()
+    lines = [json.loads(line) for line in (tmp_path / LOG).read_text().splitlines()]
+    place = next(n for n, line in enumerate(lines) if line["kind"] == "acted")
+    lines[place]["facts"] = [{"atom": "(contaminated attic)", "probability": 0.5}]
+    (tmp_path / LOG).write_text("".join(f"{json.dumps(line)}\n" for line in lines[:-2]))
+    with pytest.raises(EpisodeError, match=rf"event {place} .* no object 'attic'"):
+        resume(tmp_path)
+
+
+def test_logs_from_before_anything_was_sensed_are_read(tpvqa: Run) -> None:
+    assert tpvqa("run", *TRIAL, "--vlm", "oracle:1", "--out", "here")[0] == 0
+    log = Path("here") / LOG
+    lines = [json.loads(line) for line in log.read_text().splitlines()]
+    sensed = [line.pop("facts", ()) for line in lines]
+    assert any(sensed)
+    log.write_text("".join(f"{json.dumps(line)}\n" for line in lines))
+    code, out, _ = tpvqa("show", "here")
+    assert code == 0
+    assert "senses" not in out
+
+
+def test_what_was_sensed_is_shown_and_reported(tpvqa: Run) -> None:
+    assert tpvqa("run", *TRIAL, "--vlm", "oracle:1", "--seed", 3, "--out", "here")[0] == 0
+    code, out, _ = tpvqa("show", "here", "--verbose")
+    assert code == 0
+    assert "the robot senses: upper drawer contaminated 1.00" in out
+    assert "the robot senses: not upper drawer contaminated 1.00" in out
+    assert re.search(r"repeat: not upper drawer contaminated 0\.\d\d → 0\.\d\d as sensed", out)
+    assert tpvqa("report", "here", "--out", "page.html")[0] == 0
+    page = Path("page.html").read_text()
+    assert "the robot senses: not lower drawer contaminated 1.00" in page
+    assert "as sensed" in page
+
+
+def test_sensors_and_skills_are_calibrated_from_trials_and_from_episodes(tpvqa: Run) -> None:
+    Path("other.yaml").write_text(
+        "sensed:\n  - {fact: '(contaminated ?d)', right: 0.8, claims: 0.97}\n"
+        "reports: [{action: disinfect, notices: 0.7, false_alarms: 0.05}]"
+    )
+    where = ["--world-file", "other.yaml", "--vlm", "oracle:0.9"]
+    code, out, err = tpvqa("calibrate", *WORDS, *where, "--trials", 18, "--out", "c.json")
+    assert code == 0, err
+    assert re.search(r"sensed: contaminated is said to hold in 0\.\d+ where it does", out)
+    assert re.search(r"skills: disinfect reports 0\.\d+ of its failures", out)
+    known = Calibration.load(Path("c.json"))
+    (sensor,) = known.sensors
+    assert (sensor.says_if_true, sensor.says_if_false) == pytest.approx((0.8, 0.2), abs=0.12)
+    (skill,) = (each for each in known.skills if each.action == "disinfect")
+    assert (skill.notices, skill.false_alarms) == pytest.approx((0.7, 0.05), abs=0.17)
+    given = ["--calibration", "c.json", *where]
+    for seed in (1, 2):
+        code, _, err = tpvqa("run", *TRIAL, *given, "--seed", seed, "--out", f"e{seed}")
+        assert code in (0, 1), err
+    code, out, err = tpvqa("calibrate", "e1", "e2", "--json")
+    assert code == 0, err
+    rows = sum(
+        len(event.facts)
+        for name in ("e1", "e2")
+        for event in read_episode(name)
+        if isinstance(event, Acted)
+    )
+    (sensor_told,) = json.loads(out)["sensors"]
+    assert (sensor_told["predicate"], sensor_told["rows"]) == ("contaminated", rows)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ("notices=2", "both between 0 and 1"),
+        ("notices=0.2:false_alarms=0.3", "no larger one of its successes"),
+        ("false_alarms=0.1", "no larger one of its successes"),
+        ("notices=often", "could not convert"),
+        ("notice=0.9", "Did you mean 'notices'"),
+    ],
+)
+def test_what_is_said_of_skills_has_to_make_sense(tpvqa: Run, arguments: str, says: str) -> None:
+    code, _, err = tpvqa("run", *TRIAL, "--monitor", f"belief:{arguments}")
+    assert code == 2
+    assert says in " ".join(err.split())
