@@ -18,6 +18,8 @@ from tpvqa.pddl import Action, State
 
 LIKELY = 0.02
 """Joint states of at least this probability get a plan of their own."""
+UNLIKELY = 4
+"""Plans between two actions from joint states that are less probable than that."""
 CHOICES = 6
 """Choices that are compared, at most."""
 IDLE = 0.97
@@ -97,6 +99,7 @@ class Chooser:
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._postponed: set[State] = set()
+        self._unlikely = 0
         self._done: list[tuple[int, Action]] = []
         self.changes_left: int | None = None
 
@@ -112,6 +115,7 @@ class Chooser:
     def acted(self, belief: Belief, action: Action) -> None:
         """Note that an action is executed, before the belief predicts what it leads to."""
         self._postponed.clear()
+        self._unlikely = 0
         self._done.append((belief.ranked()[0][0], action))
 
     def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
@@ -127,16 +131,27 @@ class Chooser:
         return self.ahead.best(self._model.number(JointState(state)))
 
     def unplanned(self, belief: Belief) -> State | None:
-        """The most probable joint state that no known plan helps; None if none is likely."""
+        """The most probable joint state that no known plan helps; None if none is likely.
+
+        Many that are unlikely each are likely together: then the first few of them count too.
+        """
+        found: State | None = None
+        together = 0.0
         for number, weight in belief.ranked():
-            if weight < LIKELY:
-                return None
+            if weight < LIKELY / 10:
+                break
             state = self._model.state(number)
             if state in self.ahead.hopeless or state in self._postponed:
                 continue
             if self.ahead.best(number) is None:
-                return state
-        return None
+                if weight >= LIKELY:
+                    return state
+                found = found or state
+                together += weight
+        if together < LIKELY or self._unlikely >= UNLIKELY:
+            return None
+        self._unlikely += 1
+        return found
 
     def table(
         self,
