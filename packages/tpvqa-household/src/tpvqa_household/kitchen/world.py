@@ -101,7 +101,7 @@ class KitchenWorld(Simulated, PlainArguments):
         )
 
     def senses(self) -> frozenset[str]:
-        """The predicates that the world file says are sensed at looks."""
+        """The predicates that the world file says are sensed."""
         return self.simulation.senses()
 
     def execute(

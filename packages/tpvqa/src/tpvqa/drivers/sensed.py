@@ -13,7 +13,7 @@ _NAMES = cast("type[Collection[str]]", Collection)
 
 
 def senses_of(world: object, task: Task) -> frozenset[str]:
-    """The predicates that looks at a world tell of without any question.
+    """The predicates that a world says the robot senses itself.
 
     Raises:
         PluginError: The world broke, or names what is no predicate of the task.

@@ -49,7 +49,7 @@ class BeliefMonitor(Learning, PlainArguments):
         rules: What the world file says about faults.
         calibration: What the VLM's answers are worth.
         views: The views that the world can be looked at from, the default one first.
-        senses: The predicates of facts that looks tell of without any question.
+        senses: The predicates of facts that the robot is said to sense itself.
         experience: What was learned in earlier trials; goes before the rates of `settings`.
         noise_model: Whether answers do not depend on the picture, but on the look.
         model: The action model, where trials one after the other share it.
@@ -95,8 +95,9 @@ class BeliefMonitor(Learning, PlainArguments):
         self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
-        self._senses = frozenset(senses)
-        self._sensed, self._felt = {*senses}, {*self.evidence.noticed(task)}
+        self._felt = {*senses, *self.evidence.noticed(task)}
+        self._sensed: set[str] = set()
+        self._at_looks = set(senses)  # until a look has told
         self._looks = self._questions = 0
         self._words: FactWords | None = None
         self._book: QuestionBook | None = None
@@ -325,6 +326,8 @@ class BeliefMonitor(Learning, PlainArguments):
         now.view = view
         observation: Observation = yield Look(view)
         self._sense(observation.facts)
+        told = {fact.atom.predicate for fact in observation.facts}
+        self._at_looks = self._at_looks | told if self._looks else told
         now.picture = observation.look if self._blind else _picture(observation)
         self._looks += 1
         now.looks += 1
@@ -332,10 +335,10 @@ class BeliefMonitor(Learning, PlainArguments):
     def _may_feel(self) -> bool:
         """Whether a look, the first since the last action, senses what a plan needs and is in
         doubt: it costs next to nothing."""
-        if not self._senses or self._now.looks or self._budget().looks <= 0:
+        if not self._at_looks or self._now.looks or self._budget().looks <= 0:
             return False
         needed = {atom for plan in self._chooser.plans for atom in plan.atoms()}
-        likely = (self.belief.probability(a) for a in needed if a.predicate in self._senses)
+        likely = (self.belief.probability(a) for a in needed if a.predicate in self._at_looks)
         return any(DOUBT < p < 1 - DOUBT for p in likely)
 
     def _shows_something_new(self, question: FactQuestion) -> bool:

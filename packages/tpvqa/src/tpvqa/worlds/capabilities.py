@@ -48,11 +48,10 @@ class Telling(Protocol):
 
 @runtime_checkable
 class Sensing(Protocol):
-    """Its looks tell what the robot senses itself, so that looking is worth while without any
-    question."""
+    """It says beforehand what the robot senses itself, so that decisions can count on it."""
 
     def senses(self) -> Collection[str]:
-        """The predicates of the facts that `observe` tells of."""
+        """The predicates of the facts that `execute` or `observe` tell of."""
 
 
 class Simulated:

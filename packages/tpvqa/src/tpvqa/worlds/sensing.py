@@ -76,9 +76,9 @@ class Sensors:
             occasion: dict(self._matches(occasion, self._known)) for occasion in Occasion
         }
 
-    def predicates(self, occasion: Occasion) -> frozenset[str]:
-        """The predicates that are measured on an occasion."""
-        return frozenset(rule.fact.predicate for rule in self._rules if occasion in rule.at)
+    def predicates(self) -> frozenset[str]:
+        """The predicates that are measured."""
+        return frozenset(rule.fact.predicate for rule in self._rules)
 
     def at_look(self, state: State, draw_for: DrawFor) -> tuple[SensedFact, ...]:
         """The readings at a look.

@@ -17,7 +17,7 @@ from tpvqa.observation import SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.worlds.dead import NOTHING_DEAD, Dead
 from tpvqa.worlds.outcome import Failure, Outcome
-from tpvqa.worlds.sensing import Occasion, Sensors
+from tpvqa.worlds.sensing import Sensors
 from tpvqa.worlds.undo import Undoing
 from tpvqa.worlds.world_file import WorldRules
 
@@ -111,8 +111,8 @@ class Simulation:
         return self._sensors.at_look(self.task.extend(self.state), self._draw_for)
 
     def senses(self) -> frozenset[str]:
-        """The predicates that are sensed at looks."""
-        return self._sensors.predicates(Occasion.LOOK)
+        """The predicates that are sensed."""
+        return self._sensors.predicates()
 
     def _draw_for(self, atom: Atom) -> Random:
         """A reading stays what it is until something is done: its error is not drawn again."""

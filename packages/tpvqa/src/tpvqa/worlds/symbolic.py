@@ -39,7 +39,7 @@ class SymbolicWorld(Simulated, Pictureless):
         return Observation(time=float(looks), facts=self.simulation.sensed())
 
     def senses(self) -> frozenset[str]:
-        """The predicates that the world file says are sensed at looks."""
+        """The predicates that the world file says are sensed."""
         return self.simulation.senses()
 
     def execute(

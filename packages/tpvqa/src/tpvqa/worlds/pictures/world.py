@@ -107,7 +107,7 @@ class DrawnWorld(Simulated, Generic[P]):
         )
 
     def senses(self) -> frozenset[str]:
-        """The predicates that the world file says are sensed at looks."""
+        """The predicates that the world file says are sensed."""
         return self.simulation.senses()
 
     def execute(
