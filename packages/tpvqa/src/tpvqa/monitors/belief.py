@@ -13,7 +13,6 @@ from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
 from tpvqa.belief.inquiry import DOUBT, Budget, Inquirer, Inquiry
 from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import NAMED
 from tpvqa.belief.trust import Trust
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.belief_settings import BeliefSettings
@@ -377,7 +376,7 @@ class BeliefMonitor(Learning, PlainArguments):
             unseen=self.evidence.unseen,
             questions_left=self._budget().questions > 0,
             actions_left=step.actions_left,
-            failing=self._failing(step),
+            failing=self._ways.failing(step),
         )
         why = reason(grounds, decision, action, state, place)
         if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
@@ -388,13 +387,6 @@ class BeliefMonitor(Learning, PlainArguments):
         if decision is Decision.REPLAN and action is not None:
             plan = self._ways.plan(state, action)
         return Verdict(decision, why, state, step=place, belief=self._marginals(), plan=plan)
-
-    def _failing(self, step: Step) -> str:
-        """The skill of a step where it seems to be dead, in words."""
-        if self.chances.skill(step.action).dead < NAMED:
-            return ""
-        tried, failed = self.chances.skills.times(step.action)
-        return f"{step.book.say(step.action)} failed {round(failed)} times of {round(tried)}"
 
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}

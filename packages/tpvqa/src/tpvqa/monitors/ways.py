@@ -85,6 +85,13 @@ class Ways:
             if action.name in names and self._chances.skill(action).dead >= NAMED
         )
 
+    def failing(self, step: Step) -> str:
+        """The skill of a step where it seems to be dead, in words."""
+        if self._chances.skill(step.action).dead < NAMED:
+            return ""
+        tried, failed = self._chances.skills.times(step.action)
+        return f"{step.book.say(step.action)} failed {round(failed)} times of {round(tried)}"
+
     def _take(self, plan: Plan, state: State) -> None:
         self._plans[state] = plan
         self._annotate(plan, state)
