@@ -15,13 +15,14 @@ from tpvqa.pddl import Action
 
 ALIKE = 12.0
 """How many tries of a skill the rates of the others are worth."""
-DEAD = 0.015
+DEAD = 0.02
 """Chance that a skill never works."""
-DEAD_WITH = 0.005
-"""Chance that a skill that works never does with certain objects."""
-NAMED = 0.6
+DEAD_WITH = 0.004
+"""Chance that a skill never works with one object in one place, and that it never does with just
+these objects together."""
+NAMED = 0.75
 """A skill that is dead with this probability is named, and a way without it is looked for."""
-GIVEN_UP = 0.85
+GIVEN_UP = 0.93
 """One that is dead with this probability is not tried any more."""
 
 _RATES: Floats = np.array([*np.linspace(0.01, 0.99, 50), 1.0])
@@ -64,6 +65,7 @@ class Skills:
     def __init__(self) -> None:
         self._tried: dict[str, dict[Action, Tried]] = {}
         self._known: dict[tuple[Action | str, float, float], SkillState] = {}
+        self._causes: dict[tuple[str, float, float], dict[Cause, float]] = {}
 
     def of(self, action: Action, mean: float, strength: float) -> SkillState:
         """What is known of an action.
@@ -75,10 +77,33 @@ class Skills:
         """
         own = self._tried.get(action.name, {})
         key = (action if action in own else action.name, round(mean, 3), round(strength, 1))
-        found = self._known.get(key)
+        found = self._known.get(key) if action in own or not own else None
         if found is None:
-            found = self._known[key] = _state(action, own, mean, strength)
+            found = self._known[key] = self._worked_out(action, own, mean, strength)
         return found
+
+    def _worked_out(
+        self, action: Action, own: "Mapping[Action, Tried]", mean: float, strength: float
+    ) -> SkillState:
+        causes = self._causes.get((action.name, mean, strength))
+        if causes is None:
+            causes = self._causes[action.name, mean, strength] = _causes(own, mean, strength)
+        dead = min(sum(causes.get(each, 0.0) for each in _covering(action)), 1.0)
+        if not own:
+            dead = DEAD
+        others = [tried for other, tried in own.items() if other != action]
+        weights = _prior(mean, strength)
+        for tried in others:
+            weights *= tried.likelihood[:-1]
+        weights /= max(weights.sum(), _EDGE)
+        if action in own:
+            # Alike as skills are, with other objects it may be easier or harder.
+            known = 1 / (1 / ALIKE + 1 / (strength + sum(tried.times for tried in others)))
+            weights = _prior(float(weights @ _RATES[:-1]), known) * own[action].likelihood[:-1]
+            weights /= max(weights.sum(), _EDGE)
+        failure = float(weights @ _RATES[:-1])
+        tries = float((weights / (1 - _RATES[:-1])).sum())
+        return SkillState(dead + (1 - dead) * failure, dead, tries)
 
     def tried(self, action: Action) -> Tried | None:
         """How often an action was tried; None where it never was."""
@@ -118,33 +143,47 @@ class Skills:
         tried.likelihood = tried.likelihood * likelihood
         tried.likelihood /= tried.likelihood.max()
         self._known.clear()
+        self._causes.clear()
 
 
-def _state(action: Action, own: Mapping[Action, Tried], mean: float, strength: float) -> SkillState:
-    weights = _prior(mean, strength)
-    for other, tried in own.items():
-        if other != action:
-            weights *= (1 - DEAD_WITH) * tried.likelihood + DEAD_WITH * tried.likelihood[-1]
-    weights /= weights.sum()
-    dead = weights[-1] + (1 - weights[-1]) * DEAD_WITH
-    weights[-1] = 0.0
-    weights *= (1 - dead) / max(weights.sum(), _EDGE)
-    weights[-1] = dead
-    if action in own:
-        weights *= own[action].likelihood
-        weights /= weights.sum()
-    alive = weights[:-1].sum()
-    tries = (weights[:-1] / (1 - _RATES[:-1])).sum() / max(alive, _EDGE)
-    return SkillState(float(weights @ _RATES), float(weights[-1]), float(tries))
+Cause = tuple[object, ...]
+
+
+def _covering(action: Action) -> list[Cause]:
+    """What may be the cause that an action never works: the skill, one object, all together."""
+    single: list[Cause] = list(enumerate(action.arguments))
+    return [(), *single, *([action.arguments] if len(single) > 1 else [])]
+
+
+def _causes(own: "Mapping[Action, Tried]", mean: float, strength: float) -> dict[Cause, float]:
+    """How probable each cause is, one at most of a skill, by what its tries came to."""
+    logs = {action: np.log(np.maximum(tried.likelihood, 1e-300)) for action, tried in own.items()}
+    total = sum(logs.values(), np.zeros_like(_RATES))
+    prior = np.log(np.maximum(_prior(mean, strength), 1e-300))
+    of: dict[Cause, list[Action]] = {}
+    for action in own:
+        for cause in _covering(action):
+            of.setdefault(cause, []).append(action)
+    chances = {cause: DEAD_WITH if cause else DEAD for cause in of}
+    none = np.log(max(1 - sum(chances.values()), 0.5)) + np.logaddexp.reduce(prior + total[:-1])
+    found = {}
+    for cause, actions in of.items():
+        dead = sum((logs[action] for action in actions), np.zeros_like(_RATES))
+        alive = np.logaddexp.reduce(prior + (total - dead)[:-1])
+        found[cause] = float(np.log(chances[cause]) + dead[-1] + alive)
+    most = max(float(none), *found.values()) if found else 0.0
+    weights = {cause: float(np.exp(value - most)) for cause, value in found.items()}
+    whole = sum(weights.values()) + float(np.exp(none - most))
+    return {cause: weight / whole for cause, weight in weights.items()}
 
 
 def _prior(mean: float, strength: float) -> Floats:
-    """Of a skill's rate: as far from the common one as skills are from each other and as the
-    common one is unsure."""
+    """Of a skill's rate, if it works: as far from the common one as skills are from each other
+    and as the common one is unsure; shape (rates - 1,)."""
     alike = max(1 / (1 / (ALIKE + 1) + 1 / (strength + 1)) - 1, 1.0)
     mean = min(max(mean, 0.005), 0.995)
     a, b = alike * mean, alike * (1 - mean)
     logs = (a - 1) * np.log(_RATES[:-1]) + (b - 1) * np.log1p(-_RATES[:-1])
     weights = np.exp(logs - logs.max())
-    found: Floats = np.append(weights * (1 - DEAD) / weights.sum(), DEAD)
+    found: Floats = weights / weights.sum()
     return found
