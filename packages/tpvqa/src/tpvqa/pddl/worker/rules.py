@@ -1,0 +1,148 @@
+"""A normalised task as rules with variables: what adds, deletes or derives which literals."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from fast_downward.translate import pddl
+from fast_downward.translate.instantiate import get_objects_by_type
+
+Words = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A literal over variables and objects."""
+
+    positive: bool
+    predicate: str
+    arguments: Words
+
+    def bound(self, binding: Mapping[str, str]) -> "Literal":
+        """The literal with objects for those of its variables that have one."""
+        arguments = tuple(binding.get(word, word) for word in self.arguments)
+        return Literal(self.positive, self.predicate, arguments)
+
+    def negate(self) -> "Literal":
+        """The literal that holds where this one does not."""
+        return Literal(not self.positive, self.predicate, self.arguments)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """One effect of an action, or one axiom: its head holds after, or where, its body held.
+
+    Attributes:
+        head: What it brings about.
+        body: What must hold for it; of an action its precondition and the effect's condition.
+        variables: The objects that each variable may stand for, in the order of the task.
+        changes: All literals that the action brings about at once; empty for an axiom.
+        derives: Whether it is an axiom, which costs no action.
+    """
+
+    head: Literal
+    body: tuple[Literal, ...]
+    variables: Mapping[str, Mapping[str, None]]
+    changes: tuple[Literal, ...] = ()
+    derives: bool = False
+
+
+@dataclass(frozen=True)
+class Rules:
+    """All rules of a task.
+
+    Attributes:
+        by_head: By whether the head is positive, and its predicate.
+        goal: The literals of the goal.
+        static: The predicates that nothing changes or derives.
+        derived: The predicates that axioms derive.
+        named: Objects that actions, axioms and goal name.
+        size: Instances of actions times those of their effects, as far as types and static facts
+            about one thing tell: how large a grounding may get.
+    """
+
+    by_head: Mapping[tuple[bool, str], tuple[Rule, ...]]
+    goal: tuple[Literal, ...]
+    static: frozenset[str]
+    derived: frozenset[str]
+    named: frozenset[str]
+    size: int
+    objects: tuple[str, ...] = field(repr=False)
+
+
+def rules_of(task: Any) -> Rules:
+    """The rules of a normalised task; sizes are those of its initial state."""
+    objects = {
+        kind: dict.fromkeys(things)
+        for kind, things in get_objects_by_type(task.objects, task.types).items()
+    }
+    changing = {effect.literal.predicate for action in task.actions for effect in action.effects}
+    derived = {axiom.name for axiom in task.axioms}
+    with_one: dict[str, set[str]] = {}
+    for fact in task.init:
+        if isinstance(fact, pddl.Atom) and len(fact.args) == 1:
+            with_one.setdefault(fact.predicate, set()).add(fact.args[0])
+    rules: list[Rule] = []
+    size = 0
+    for action in task.actions:
+        given = _literals(action.precondition)
+        domains = _domains(action.parameters, objects)
+        for literal in given:
+            if literal.positive and literal.predicate not in changing | derived:
+                for word in literal.arguments[:1] if len(literal.arguments) == 1 else ():
+                    fitting = with_one.get(literal.predicate, set())
+                    if word in domains:
+                        domains[word] = {n: None for n in domains[word] if n in fitting}
+        instances = 1
+        for things in domains.values():
+            instances *= len(things)
+        changes = tuple(_literal(e.literal) for e in action.effects if not e.parameters)
+        effects = 0
+        for effect in action.effects:
+            own = _domains(effect.parameters, objects)
+            each = 1
+            for things in own.values():
+                each *= len(things)
+            effects += each
+            body = (*given, *_literals(effect.condition))
+            rules.append(Rule(_literal(effect.literal), body, {**domains, **own}, changes))
+        size += instances * max(effects, 1)
+    for axiom in task.axioms:
+        head = Literal(
+            True,
+            axiom.name,
+            tuple(each.name for each in axiom.parameters[: axiom.num_external_parameters]),
+        )
+        domains = _domains(axiom.parameters, objects)
+        rules.append(Rule(head, _literals(axiom.condition), domains, derives=True))
+    goal = _literals(task.goal)
+    said = [*goal, *(literal for rule in rules for literal in (rule.head, *rule.body))]
+    by_head: dict[tuple[bool, str], list[Rule]] = {}
+    for rule in rules:
+        by_head.setdefault((rule.head.positive, rule.head.predicate), []).append(rule)
+    return Rules(
+        by_head={key: tuple(found) for key, found in by_head.items()},
+        goal=goal,
+        static=frozenset(
+            literal.predicate for literal in said if literal.predicate not in changing | derived
+        ),
+        derived=frozenset(derived),
+        named=frozenset(word for each in said for word in each.arguments if word[0] != "?"),
+        size=size,
+        objects=tuple(thing.name for thing in task.objects),
+    )
+
+
+def _domains(parameters: Any, objects: Mapping[str, Any]) -> dict[str, Mapping[str, None]]:
+    return {each.name: objects.get(each.type_name, {}) for each in parameters}
+
+
+def _literal(written: Any) -> Literal:
+    return Literal(not written.negated, written.predicate, tuple(written.args))
+
+
+def _literals(condition: Any) -> tuple[Literal, ...]:
+    """The literals of a normalised condition, which is a conjunction of them."""
+    if isinstance(condition, pddl.Literal):
+        return (_literal(condition),)
+    return tuple(literal for part in condition.parts for literal in _literals(part))
