@@ -4,6 +4,7 @@ The scene's domain is written as those for simulated homes are: no types but `it
 is good for said by static facts, and effects for all things beside another.
 """
 
+from itertools import pairwise
 from random import Random
 
 SCENE = """(define (domain scene)
@@ -81,7 +82,7 @@ SCENE = """(define (domain scene)
 """
 
 _ROOMS = ("kitchen", "living_room", "bedroom", "bathroom")
-_WANTED = """dishwasher - item plate - item soap - item sink - item table - item cupboard - item"""
+_WANTED = ("dishwasher", "plate", "soap", "sink", "table", "cupboard")
 
 
 def scene_problem(things: int, *, seed: int = 0) -> str:
@@ -94,7 +95,7 @@ def scene_problem(things: int, *, seed: int = 0) -> str:
     random = Random(seed)
     names = [f"thing{n}" for n in range(things)]
     facts = [f"(room {room})" for room in _ROOMS]
-    facts += [f"(in_room {x} kitchen)" for x in "dishwasher plate soap sink table cupboard".split()]
+    facts += [f"(in_room {name} kitchen)" for name in _WANTED]
     facts += ["(surface table)", "(basin sink)", "(container dishwasher)", "(lidded dishwasher)"]
     facts += ["(switched dishwasher)", "(grabbable plate)", "(grabbable soap)", "(lidded cupboard)"]
     facts += ["(container cupboard)", "(ontop plate table)", "(inside soap cupboard)"]
@@ -116,8 +117,7 @@ def scene_problem(things: int, *, seed: int = 0) -> str:
             facts += [f"(grabbable {name})", f"(ontop {name} {home})"]
             facts += [f"(beside {name} {home})", f"(beside {home} {name})"]
     return f"""(define (problem scene_{things}) (:domain scene)
-  (:objects robot - agent {" ".join(_ROOMS)} - item {_WANTED}
-    {" ".join(names)} - item)
+  (:objects robot - agent {" ".join((*_ROOMS, *_WANTED, *names))} - item)
   (:init {" ".join(facts)})
   (:goal (and (inside plate dishwasher) (inside soap dishwasher) (not (open dishwasher))
     (on dishwasher))))
@@ -214,8 +214,8 @@ def blocks_problem(blocks: int, *, seed: int = 0, wanted: int = 4) -> str:
     for start in range(0, blocks, 4):
         tower = order[start : start + 4]
         facts += [f"(ontable {tower[0]})", f"(clear {tower[-1]})"]
-        facts += [f"(on {upper} {lower})" for lower, upper in zip(tower, tower[1:], strict=False)]
-    goal = [f"(on {x} {y})" for x, y in zip(names[: wanted - 1], names[1:wanted], strict=True)]
+        facts += [f"(on {upper} {lower})" for lower, upper in pairwise(tower)]
+    goal = [f"(on {x} {y})" for x, y in pairwise(names[:wanted])]
     return f"""(define (problem blocks_{blocks}) (:domain blocks)
   (:objects {" ".join(names)})
   (:init {" ".join(facts)})

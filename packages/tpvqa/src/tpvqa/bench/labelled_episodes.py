@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.labelled import Labeller
+from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
 from tpvqa.errors import CalibrationError
 from tpvqa.events import Ended, Event, Started
@@ -71,8 +72,7 @@ def _label(events: list[Event], started: Started, name: str) -> list[LabelledAns
     task, rules = _stage(started.domain, started.problem, started.rules)
     simulation = Simulation(task, rules)
     simulation.state = frozenset(map(Atom.parse, started.initial))
-    actions = {action.pddl(): action for action in task.ground_actions()}
-    labeller = Labeller(simulation, actions, name)
+    labeller = Labeller(simulation, WrittenActions(task), name)
     for event in events:
         labeller(event)
         if not isinstance(event, Acted):

@@ -18,13 +18,14 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.config import TrialConfig
 from tpvqa.drivers import run
 from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import BenchError, TpvqaError
 from tpvqa.events import Ended, Event
 from tpvqa.events.events import ListenerDropped
-from tpvqa.pddl import Action, Task, load_task
+from tpvqa.pddl import Task, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.making import make_planner
 from tpvqa.planning.remembering import Remembering
@@ -68,9 +69,7 @@ class Stage:
             self.task: Task = load_task(files.domain, files.problem)
             self.book = QuestionBook.load(files.questions, self.task)
             self.rules: WorldRules = load_world_file(files.world, self.task)
-        self.actions: dict[str, Action] = {
-            action.pddl(): action for action in self.task.ground_actions()
-        }
+        self.actions = WrittenActions(self.task)
         self._model: FaultModel | None = None
 
     @property

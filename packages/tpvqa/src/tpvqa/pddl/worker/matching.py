@@ -83,9 +83,7 @@ class Matcher:
         )
         found = {
             tuple(each.values()): (each, missing)
-            for each, missing in islice(
-                self._extended(rule, binding, soft, spare, most), 4 * most
-            )
+            for each, missing in islice(self._extended(rule, binding, soft, spare, most), 4 * most)
         }
         return sorted(found.values(), key=lambda each: len(each[1]))[:most]
 
@@ -143,7 +141,11 @@ class Matcher:
         """The objects for a variable with which an action can bring the body about at all."""
         fitting = rule.variables[variable]
         for literal in rule.body:
-            if not literal.positive or literal.predicate == "=" or variable not in literal.arguments:
+            if (
+                not literal.positive
+                or literal.predicate == "="
+                or variable not in literal.arguments
+            ):
                 continue
             bound = literal.bound(binding)
             if bound not in self._brought:
@@ -166,14 +168,13 @@ class Matcher:
                     place.add(name)
         return found
 
-    def _with(
-        self, rule: Rule, binding: Binding, words: Words, arguments: Words
-    ) -> Binding | None:
+    def _with(self, rule: Rule, binding: Binding, words: Words, arguments: Words) -> Binding | None:
         more = dict(binding)
         for word, name in zip(words, arguments, strict=True):
-            if word[0] == "?":
-                if more.setdefault(word, name) != name or name not in rule.variables[word]:
-                    return None
+            if word[0] == "?" and (
+                more.setdefault(word, name) != name or name not in rule.variables[word]
+            ):
+                return None
         return more
 
     def _matching(self, literal: Literal) -> list[Words]:
@@ -219,6 +220,4 @@ def unified(rule: Rule, literal: Literal) -> Binding | None:
 
 
 def _fits(words: Sequence[str], arguments: Sequence[str]) -> bool:
-    return all(
-        word[0] == "?" or word == name for word, name in zip(words, arguments, strict=True)
-    )
+    return all(word[0] == "?" or word == name for word, name in zip(words, arguments, strict=True))
