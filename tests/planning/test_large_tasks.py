@@ -1,6 +1,7 @@
 """Large tasks, of which objects are left out before grounding: plans hold, and none gets lost."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 from random import Random
 
@@ -15,6 +16,7 @@ from tests.planning.test_differential import judge
 from tpvqa.pddl import Atom, Task, load_task, task_from_text, validate
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.tasks import shipped_tasks
 
 PER_SAMPLE = 3
 
@@ -23,7 +25,7 @@ def large(domain: str) -> str:
     """A domain that counts as large: an action of many arguments, which nothing makes possible."""
     of = " - object" if ":typing" in domain else ""
     names = [f"?v{number}" for number in range(14)]
-    needed = " ".join(f"(never {first} {second})" for first, second in zip(names, names[1:]))
+    needed = " ".join(f"(never {first} {second})" for first, second in pairwise(names))
     action = (
         f"(:action nothing :parameters ({' '.join(names)}{of}) :precondition (and {needed}) "
         "\n:effect (done_nothing))"
@@ -81,7 +83,7 @@ STORE = """(define (domain store) (:requirements :adl :typing)
 (:action rest :parameters (?p - place)
   :precondition (and (here ?p) (forall (?x - thing) (not (and (at ?x ?p) (heavy ?x)))))
   :effect (not (tired))))"""
-"""Things weigh on the robot, are held one at a time, and open doors; some goals are out of reach."""
+"""Things weigh on the robot, are held one at a time, open doors; some goals are out of reach."""
 
 
 @st.composite
@@ -128,3 +130,108 @@ def test_a_plan_is_found_where_the_whole_task_has_one_and_holds_in_it(
         if isinstance(found, Plan) and isinstance(whole, Plan):
             assert validate(task, found.actions, state).valid
             assert found.cost >= whole.cost
+
+
+def test_of_shipped_tasks_nothing_is_left_out() -> None:
+    for files in shipped_tasks():
+        assert load_task(files.name).left_out == frozenset()
+
+
+CLUTTER = """(define (domain clutter) (:requirements :adl :typing)
+(:types place thing - object)
+(:predicates (at ?x - thing ?p - place) (held ?x - thing) (free) (lid ?p - place) (big ?x - thing)
+  (inside ?x ?y - thing) (clean ?x - thing) (sponge ?x - thing))
+(:action take :parameters (?x - thing ?p - place)
+  :precondition (and (free) (at ?x ?p) (not (lid ?p)))
+  :effect (and (held ?x) (not (at ?x ?p)) (not (free))))
+(:action put :parameters (?x - thing ?p - place)
+  :precondition (and (held ?x) (not (lid ?p))
+    (forall (?y - thing) (or (not (big ?y)) (not (at ?y ?p)))))
+  :effect (and (at ?x ?p) (free) (not (held ?x))))
+(:action lift :parameters (?p - place) :precondition (lid ?p) :effect (not (lid ?p)))
+(:action wipe :parameters (?x ?s - thing) :precondition (and (held ?s) (sponge ?s))
+  :effect (clean ?x)))"""
+
+
+def clutter(things: int, *, goal: str, more: str = "") -> str:
+    """A problem with so many things on shelves that do not matter for its goal."""
+    shelves = [f"shelf{number}" for number in range(things // 5)]
+    names = [f"thing{number}" for number in range(things)]
+    lying = " ".join(f"(at {name} {shelves[n % len(shelves)]})" for n, name in enumerate(names))
+    return (
+        f"(define (problem some) (:domain clutter) (:objects {' '.join(shelves)} box desk - place "
+        f"{' '.join(names)} cup - thing) (:init (free) (lid box) (at cup desk) {lying} {more}) "
+        f"(:goal {goal}))"
+    )
+
+
+def planned(task: Task, *state: frozenset[Atom]) -> list[str]:
+    """The plan from a state, seen to hold in the whole task."""
+    result = FastDownward().plan(task, *state)
+    assert isinstance(result, Plan), result
+    assert validate(task, result.actions, *state).valid
+    return list(map(str, result.actions))
+
+
+def test_what_does_not_matter_is_left_out_and_the_plan_is_that_without_it() -> None:
+    goal = "(and (at cup box) (clean cup))"
+    big = task_from_text(
+        large(CLUTTER), clutter(150, goal=goal, more="(sponge thing7) (big thing9)")
+    )
+    assert len(big.left_out) > 170
+    assert {"cup", "box", "desk", "thing7", "shelf7"}.isdisjoint(big.left_out)
+    assert len(planned(big)) == 6
+    # What is left out can still be spoken of.
+    assert big.action("take", ["thing11", "shelf11"]).pddl() == "(take thing11 shelf11)"
+    big.check_atom(Atom("at", ("cup", "shelf11")))
+
+
+def test_what_was_left_out_matters_once_the_state_says_so() -> None:
+    task = task_from_text(large(CLUTTER), clutter(150, goal="(at cup box)"))
+    assert {"shelf3", "thing3"} <= task.left_out
+    assert (
+        planned(task) == ["take(cup, desk)", "lift(box)", "put(cup, box)"]
+        or len(planned(task)) == 3
+    )
+    moved = (task.init - {Atom("at", ("cup", "desk"))}) | {Atom("at", ("cup", "shelf3"))}
+    assert "take(cup, shelf3)" in planned(task, moved)
+    full = moved - {Atom("free"), Atom("at", ("thing3", "shelf3"))} | {Atom("held", ("thing3",))}
+    steps = planned(task, full)
+    assert any(step.startswith("put(thing3") for step in steps)
+    again = task.with_init(full)
+    assert "thing3" not in again.left_out
+    assert Atom("at", ("thing3", "desk")) in again.atoms()
+
+
+def test_groups_speak_of_places_that_were_left_out() -> None:
+    task = task_from_text(large(CLUTTER), clutter(150, goal="(at cup box)"))
+    (group,) = [g for g in task.groups_of(Atom("at", ("cup", "desk"))) if g.exactly_one]
+    assert Atom("at", ("cup", "shelf3")) in group.atoms
+    assert Atom("held", ("cup",)) in group.atoms
+
+
+def test_a_plan_that_a_thing_left_out_forbids_is_not_taken() -> None:
+    # Whatever is big and on a shelf keeps the cup away from there, though the goal is not about it.
+    goal = "(exists (?p - place) (and (at cup ?p) (not (= ?p desk)) (not (= ?p box))))"
+    on_all = " ".join(f"(big thing{number})" for number in range(29))
+    task = task_from_text(large(CLUTTER), clutter(150, goal=goal, more=on_all))
+    assert planned(task)[-1] == "put(cup, shelf29)"
+
+
+def test_that_there_is_no_plan_is_said_of_the_whole_task() -> None:
+    domain = large(CLUTTER).replace("(sponge ?s)", "(sponge ?s) (big ?s)")
+    task = task_from_text(domain, clutter(60, goal="(clean cup)", more="(sponge thing7)"))
+    assert isinstance(FastDownward().plan(task), Unsolvable)
+    solvable = task_from_text(
+        domain, clutter(60, goal="(clean cup)", more="(sponge thing7) (big thing7)")
+    )
+    assert planned(solvable) == ["take(thing7, shelf7)", "wipe(cup, thing7)"]
+
+
+def test_optimal_plans_are_those_of_the_whole_task() -> None:
+    (sample,) = [each for each in SAMPLES if each.name == "action costs"]
+    task = read(sample.domain, sample.problem, 2)
+    assert task.left_out
+    result = FastDownward(search="optimal").plan(task)
+    assert isinstance(result, Plan)
+    assert result.cost == sample.cost
