@@ -82,7 +82,7 @@ class Matcher:
             if literal.predicate not in self._rules.static
         )
         found = {
-            tuple(each.values()): (each, missing)
+            tuple(each[word] for word in rule.variables): (each, missing)
             for each, missing in islice(self._extended(rule, binding, soft, spare, most), 4 * most)
         }
         return sorted(found.values(), key=lambda each: len(each[1]))[:most]
@@ -185,12 +185,15 @@ class Matcher:
                     rule.head.bound(binding).arguments for rule, binding in self.reasons(literal)
                 )
             )
-        facts = self._facts.get(literal.predicate, [])
+        facts, bound = self._facts.get(literal.predicate, []), 0
         for place, word in enumerate(literal.arguments):
             if word[0] != "?":
+                bound += 1
                 bucket = self._bucket(literal.predicate, place).get(word, [])
-                if len(bucket) < len(facts):
+                if bound == 1 or len(bucket) < len(facts):
                     facts = bucket
+        if bound < 2:
+            return facts
         return [each for each in facts if _fits(literal.arguments, each)]
 
     def _bucket(self, predicate: str, place: int) -> Mapping[str, list[Words]]:

@@ -22,8 +22,10 @@ from tpvqa.pddl.worker.rules import Literal, Rule, Rules
 
 _LEAST = 50
 """So many needs are traced at least to see how what is undone can be brought about again."""
-_DELAY = 8
-"""So many supports further down the list of a need are traced one action later."""
+_FEW = 16
+"""So many supports are looked at first, and further ones later."""
+_INFERENCE = 0.01
+"""What a step costs that is no action; more than nothing, so that no facts support each other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +37,7 @@ class Effort:
         supports: So many instances of a rule are taken for one of them.
         spare: So many facts of an instance that hold for some objects are also brought about for
             others.
-        slack: Supports that are so many actions dearer than the cheapest one matter, too.
+        slack: Supports that are dearer than the cheapest by so many times its cost matter, too.
     """
 
     needs: int
@@ -46,7 +48,7 @@ class Effort:
 
 EFFORTS = (
     Effort(needs=3000, supports=128, spare=2, slack=0),
-    Effort(needs=4000, supports=128, spare=2, slack=1),
+    Effort(needs=4000, supports=128, spare=2, slack=0.5),
     Effort(needs=5000, supports=192, spare=2, slack=math.inf),
 )
 """From the least to the most; what none of these finds, the whole task decides."""
@@ -57,7 +59,7 @@ class _Support:
     rule: Rule | None
     binding: Binding
     needs: list["_Need"]
-    own_cost: int
+    own_cost: float
 
 
 @dataclass(slots=True, eq=False)
@@ -66,6 +68,8 @@ class _Need:
     cost: float = math.inf
     far: float = 0
     supports: list[_Support] = field(default_factory=list)
+    known: set[tuple[str, ...]] = field(default_factory=set)
+    looked: bool = False
     users: list["_Need"] = field(default_factory=list)
 
 
@@ -148,20 +152,40 @@ class _Graph:
         assert literal is not None
         if literal.predicate in self._rules.derived and not literal.positive:
             self._prevent(node, literal)
-        else:
-            for rule in self._rules.by_head.get((literal.positive, literal.predicate), ()):
-                binding = unified(rule, literal)
-                if binding is None:
-                    continue
-                supports = self._matcher.supports(
-                    rule, binding, spare=self._effort.spare, most=self._effort.supports
-                )
-                for rank, (found, missing) in enumerate(supports):
-                    self._matcher.preferred.update(dict.fromkeys(found.values()))
-                    far = node.far + 1 + math.log2(1 + rank)
-                    needs = [self.need(each, far) for each in missing]
-                    self._add(node, _Support(rule, found, needs, 0 if rule.derives else 1))
+        elif self._support(node, literal, self._effort.supports if node.looked else _FEW):
+            later = node.far + math.log2(_FEW)
+            heappush(self._waiting, (later, next(self._numbers), node))
+        node.looked = True
         self._settle(node)
+
+    def _support(self, node: _Need, literal: Literal, most: int) -> bool:
+        """Adds what brings a literal about, so much a rule; whether there may be more."""
+        more = False
+        for number, rule in enumerate(
+            self._rules.by_head.get((literal.positive, literal.predicate), ())
+        ):
+            binding = unified(rule, literal)
+            if binding is None:
+                continue
+            supports = self._matcher.supports(rule, binding, spare=self._effort.spare, most=most)
+            more |= len(supports) == most < self._effort.supports
+            for rank, (found, missing) in enumerate(supports):
+                key = (str(number), *(found[word] for word in rule.variables))
+                if key in node.known:
+                    continue
+                node.known.add(key)
+                self._matcher.preferred.update(dict.fromkeys(found.values()))
+                far = node.far + 1 + math.log2(1 + rank)
+                needs = [self.need(each, far) for each in missing]
+                self._add(node, _Support(rule, found, needs, self._price(rule, found)))
+        return more
+
+    def _price(self, rule: Rule, binding: Binding) -> float:
+        if rule.derives:
+            return _INFERENCE
+        if not isinstance(rule.price, tuple):
+            return 1 + rule.price
+        return 1 + self._rules.prices.get(tuple(binding.get(w, w) for w in rule.price), 0)
 
     def _prevent(self, node: _Need, literal: Literal) -> None:
         """A derived fact is kept from holding by ending one condition of each of its reasons."""
@@ -173,12 +197,12 @@ class _Graph:
             for each in rule.body:
                 if each.predicate not in self._rules.static:
                     opposite = self.need(each.bound(found).negate(), node.far)
-                    self._add(end, _Support(None, {}, [opposite], 0))
+                    self._add(end, _Support(None, {}, [opposite], _INFERENCE))
             self._settle(end)
             ends.append(end)
             if len(ends) > self._effort.supports:
                 break
-        self._add(node, _Support(None, binding, ends, 0))
+        self._add(node, _Support(None, binding, ends, _INFERENCE))
 
     def _add(self, node: _Need, support: _Support) -> None:
         node.supports.append(support)
@@ -209,7 +233,7 @@ class _Graph:
             within = [
                 each
                 for cost, each in priced
-                if cost < math.inf and cost <= least + self._effort.slack
+                if cost < math.inf and cost <= least + self._effort.slack * max(1, least)
             ]
             if not self._effort.slack:
                 within = [min(within, key=lambda each: len(set(each.binding.values()) - names))]

@@ -1,7 +1,7 @@
 """A normalised task as rules with variables: what adds, deletes or derives which literals."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from fast_downward.translate import pddl
@@ -38,6 +38,7 @@ class Rule:
         variables: The objects that each variable may stand for, in the order of the task.
         changes: All literals that the action brings about at once; empty for an axiom.
         derives: Whether it is an axiom, which costs no action.
+        price: What the action costs where costs count: a number, or the function that says it.
     """
 
     head: Literal
@@ -45,6 +46,7 @@ class Rule:
     variables: Mapping[str, Mapping[str, None]]
     changes: tuple[Literal, ...] = ()
     derives: bool = False
+    price: float | Words = 0
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,7 @@ class Rules:
         goal: The literals of the goal.
         static: The predicates that nothing changes or derives.
         derived: The predicates that axioms derive.
+        prices: The values of the functions that prices refer to.
         named: Objects that actions, axioms and goal name.
         size: Instances of actions times those of their effects, as far as types and static facts
             about one thing tell: how large a grounding may get.
@@ -65,9 +68,9 @@ class Rules:
     goal: tuple[Literal, ...]
     static: frozenset[str]
     derived: frozenset[str]
+    prices: Mapping[Words, float]
     named: frozenset[str]
     size: int
-    objects: tuple[str, ...] = field(repr=False)
 
 
 def rules_of(task: Any) -> Rules:
@@ -105,7 +108,11 @@ def rules_of(task: Any) -> Rules:
                 each *= len(things)
             effects += each
             body = (*given, *_literals(effect.condition))
-            rules.append(Rule(_literal(effect.literal), body, {**domains, **own}, changes))
+            head, price = (
+                _literal(effect.literal),
+                _price(action) if task.use_min_cost_metric else 0,
+            )
+            rules.append(Rule(head, body, {**domains, **own}, changes, price=price))
         size += instances * max(effects, 1)
     for axiom in task.axioms:
         head = Literal(
@@ -127,10 +134,23 @@ def rules_of(task: Any) -> Rules:
             literal.predicate for literal in said if literal.predicate not in changing | derived
         ),
         derived=frozenset(derived),
+        prices={
+            (fact.fluent.symbol, *fact.fluent.args): fact.expression.value
+            for fact in task.init
+            if isinstance(fact, pddl.Assign)
+        },
         named=frozenset(word for each in said for word in each.arguments if word[0] != "?"),
         size=size,
-        objects=tuple(thing.name for thing in task.objects),
     )
+
+
+def _price(action: Any) -> float | Words:
+    if action.cost is None:
+        return 0
+    said = action.cost.expression
+    if isinstance(said, pddl.NumericConstant):
+        return float(said.value)
+    return (said.symbol, *said.args)
 
 
 def _domains(parameters: Any, objects: Mapping[str, Any]) -> dict[str, Mapping[str, None]]:
