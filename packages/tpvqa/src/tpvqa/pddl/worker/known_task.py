@@ -17,7 +17,7 @@ from tpvqa.pddl.worker.relevance import EFFORTS, relevant_objects
 from tpvqa.pddl.worker.rules import Rules, rules_of
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
-LARGE = 250_000
+LARGE = 50_000
 """Instances of actions times their effects (see `Rules.size`) above which objects are left out."""
 _WORTH = 0.75
 """Of a larger share of all objects none is left out."""

@@ -100,7 +100,8 @@ def relevant_objects(
     objects = set(rules.named)
     for support in chosen:
         objects.update(support.binding.values())
-    return frozenset(objects)
+    # Two hands may be needed at once though each alone could do whatever either does.
+    return frozenset(objects).union(*(rules.alike.get(name, ()) for name in objects))
 
 
 class _Graph:

@@ -9,6 +9,9 @@ from fast_downward.translate.instantiate import get_objects_by_type
 
 Words = tuple[str, ...]
 
+_FEW = 4
+"""So many objects of a type are few: hands, robots, sinks."""
+
 
 @dataclass(frozen=True, slots=True)
 class Literal:
@@ -60,6 +63,7 @@ class Rules:
         derived: The predicates that axioms derive.
         prices: The values of the functions that prices refer to.
         named: Objects that actions, axioms and goal name.
+        alike: For each object of a type of which there are few, all of that type.
         size: Instances of actions times those of their effects, as far as types and static facts
             about one thing tell: how large a grounding may get.
     """
@@ -70,6 +74,7 @@ class Rules:
     derived: frozenset[str]
     prices: Mapping[Words, float]
     named: frozenset[str]
+    alike: Mapping[str, frozenset[str]]
     size: int
 
 
@@ -140,8 +145,17 @@ def rules_of(task: Any) -> Rules:
             if isinstance(fact, pddl.Assign)
         },
         named=frozenset(word for each in said for word in each.arguments if word[0] != "?"),
+        alike=_alike(task.objects),
         size=size,
     )
+
+
+def _alike(objects: Any) -> dict[str, frozenset[str]]:
+    by_type: dict[str, set[str]] = {}
+    for thing in objects:
+        by_type.setdefault(thing.type_name, set()).add(thing.name)
+    few = [frozenset(names) for names in by_type.values() if len(names) <= _FEW]
+    return {name: names for names in few for name in names}
 
 
 def _price(action: Any) -> float | Words:
