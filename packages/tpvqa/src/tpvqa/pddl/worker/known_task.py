@@ -12,6 +12,7 @@ from tpvqa.pddl.worker.describing import static_description
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
 from tpvqa.pddl.worker.invariants import described_groups, lawful_groups
 from tpvqa.pddl.worker.kept import Facts, KeptGroundings, quiet
+from tpvqa.pddl.worker.likeness import out_of_reach
 from tpvqa.pddl.worker.reading import read
 from tpvqa.pddl.worker.relevance import EFFORTS, relevant_objects
 from tpvqa.pddl.worker.rules import Rules, rules_of
@@ -25,6 +26,10 @@ _KEPT_PARTS = 6
 _PATIENCE = 0.3
 """The share of the time that is left, which the search in a part of the task gets."""
 _LONGEST = 30.0  # seconds that it gets where the time is not limited
+
+_OUT_OF_REACH = SearchOutcome(
+    "unsolvable", reason="the goal is out of reach even where nothing is ever undone"
+)
 
 options.set_options(
     ["domain", "problem", "--keep-unreachable-facts", "--invariant-generation-max-time", "30"]
@@ -78,6 +83,7 @@ class KnownTask:
         self._numbers = [fact for fact in task.init if isinstance(fact, pddl.Assign)]
         self._names = frozenset(thing.name for thing in task.objects)
         self._whole = KeptGroundings(task, *self._initial, names=self._names, numbers=self._numbers)
+        self._large = self._rules.size > LARGE
         self._parts: list[KeptGroundings] = []
 
     @property
@@ -136,6 +142,8 @@ class KnownTask:
         """
         end = None if seconds is None else time.monotonic() + seconds
         static, fluent = self._split(map(tuple, state))
+        if self._large and not self._served(static, fluent) and self._hopeless(static, fluent):
+            return _OUT_OF_REACH
         for part in () if leaving is None else self._suitable(static, fluent, leaving):
             left = _LONGEST / _PATIENCE if end is None else end - time.monotonic()
             if left <= 0:
@@ -158,9 +166,7 @@ class KnownTask:
     ) -> SearchOutcome:
         grounding = kept.serving(static, fluent)
         if not grounding.goal_reachable:
-            return SearchOutcome(
-                "unsolvable", reason="the goal is out of reach even where nothing is ever undone"
-            )
+            return _OUT_OF_REACH
         if grounding.goal_trivial:
             return SearchOutcome("plan")
         with quiet():
@@ -178,7 +184,7 @@ class KnownTask:
     @cached_property
     def _first_part(self) -> KeptGroundings | None:
         """The part that is described; None where all objects are, as the task is not large."""
-        if self._rules.size <= LARGE:
+        if not self._large:
             return None
         found, _ = self._reaching(*self._initial, frozenset())
         return None if found is self._whole else found
@@ -188,13 +194,28 @@ class KnownTask:
     ) -> tuple[KeptGroundings, Grounding | None]:
         """The smallest part in which the goal can be reached where nothing is ever undone.
 
-        With it comes its grounding from this state; without, where it is the whole task.
+        With it comes its grounding from this state; without, where it is the whole task. Where
+        the goal is out of reach it is the part of what the goal names.
         """
+        if self._hopeless(static, fluent):
+            part = self._part(names | self._rules.named, static, fluent)
+            return part, part.ground(static, fluent)
         for part in self._grown(static, fluent, Leaving(), names):
             here = part.serving(static, fluent) if not names else part.ground(static, fluent)
             if here.goal_reachable:
                 return part, here
         return self._whole, None
+
+    def _hopeless(self, static: Facts, fluent: Facts) -> bool:
+        """Whether it is proved without grounding that no plan leads to the goal."""
+        with quiet():
+            return out_of_reach(
+                self._task, static, fluent, named=self._rules.named, numbers=self._numbers
+            )
+
+    def _served(self, static: Facts, fluent: Facts) -> bool:
+        """Whether a part is kept that serves a state and in which the goal seemed in reach."""
+        return any(part.knows(static, fluent) and part.home.goal_reachable for part in self._parts)
 
     def _suitable(self, static: Facts, fluent: Facts, leaving: Leaving) -> Iterator[KeptGroundings]:
         """Parts of a large task in which to look for a plan, one after the other."""
