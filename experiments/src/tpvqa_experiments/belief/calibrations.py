@@ -1,8 +1,9 @@
 """What each VLM's answers are worth, learnt from trials that no cell of the bench runs."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from tpvqa.belief.calibration import Calibration, Group
 from tpvqa.belief.fitting import fit
@@ -10,6 +11,7 @@ from tpvqa.belief.labelled_answer import LabelledAnswer
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.labelled_recordings import label_recordings
+from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.defaults import looks
@@ -61,6 +63,7 @@ def calibrations(
     episodes: int,
     *,
     done: Callable[[int, int], None] = lambda done, total: None,
+    own: Mapping[str, OwnTask] = MappingProxyType({}),
 ) -> dict[Source, Calibration]:
     """Load what lies in a folder already, and learn the rest.
 
@@ -70,6 +73,7 @@ def calibrations(
         common: Seed of the bench, rates of faults, limits.
         episodes: Trials that each is learnt from.
         done: Told how many there are, and of how many.
+        own: Tasks of the user's own, by name.
 
     Raises:
         TpvqaError: A trial cannot be run, a file is damaged or cannot be written.
@@ -84,7 +88,7 @@ def calibrations(
             continue
         looking = looks(source.vlm)
         cell = Cell(source.task, LOOKING if looking else SURVEY, source.vlm, source.world)
-        rows = gather(cell, away, range(episodes))
+        rows = gather(cell, away, range(episodes), own=own.get(source.task))
         found[source] = fit(rows, source.vlm, chosen_looks=looking)
         if source.vlm.startswith("recorded:"):
             found[source] = _of_recordings(source, rows, found[source])

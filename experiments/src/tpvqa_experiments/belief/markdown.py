@@ -37,7 +37,7 @@ def targets_markdown(checks: Sequence[Check]) -> str:
         condition = check.condition if check.condition != last else ""
         lines.append((condition, check.what, check.target, measured, reached))
         last = check.condition
-    return _table(("condition", "figure", "target", "measured", "reached"), lines)
+    return table(("condition", "figure", "target", "measured", "reached"), lines)
 
 
 def results_markdown(results: BeliefResults, extent: Extent) -> str:
@@ -79,7 +79,7 @@ def _grid(results: BeliefResults, extent: Extent) -> str:
                 (
                     vlm,
                     task,
-                    f"{_rate(found.completion_rate)} ({_rate(found.ci_low)}–{_rate(found.ci_high)})"
+                    f"{rate(found.completion_rate)} ({rate(found.ci_low)}–{rate(found.ci_high)})"
                     f" @ {found.questions:.0f}",
                     *rivals,
                     f"{verdict} ({clear} of {len(beside)} clearly)" if beside else "",
@@ -88,7 +88,7 @@ def _grid(results: BeliefResults, extent: Extent) -> str:
     if not lines:
         return ""
     names = ("VLM", "task", "belief (95%) @ questions", *RIVALS, "curve over the votes")
-    return _table(names, lines)
+    return table(names, lines)
 
 
 def _prices(results: BeliefResults, extent: Extent) -> str:
@@ -103,7 +103,7 @@ def _prices(results: BeliefResults, extent: Extent) -> str:
             if any(cells[: len(dearer)]):
                 lines.append((vlm, task, *map(_short, cells)))
     names = [f"{price:g}" for price in (*dearer, DEFAULT_PRICE, *cheaper)]
-    return _table(("VLM", "task", *names), lines) if lines else ""
+    return table(("VLM", "task", *names), lines) if lines else ""
 
 
 DEFAULT_PRICE = Costs().question
@@ -116,7 +116,7 @@ def _full(results: BeliefResults, extent: Extent, part: Part) -> str:
     order = sorted(cells, key=lambda cell: (cell.vlm, extent.tasks.index(cell.task)))
     lines = list(_lines(results, order))
     names = ("VLM", "task", "monitor", "completed", "95% interval", "belief less it")
-    return _table((*names, *FIGURES, "how they ended"), lines) if lines else ""
+    return table((*names, *FIGURES, "how they ended"), lines) if lines else ""
 
 
 FIGURES = ("questions", "looks", "actions", "repeats", "replans", "wasted")
@@ -134,8 +134,8 @@ def _lines(results: BeliefResults, cells: Iterable[Cell]) -> Iterator[Sequence[s
             cell.vlm,
             cell.task,
             cell.monitor,
-            _rate(found.completion_rate),
-            f"{_rate(found.ci_low)}–{_rate(found.ci_high)}",
+            rate(found.completion_rate),
+            f"{rate(found.ci_low)}–{rate(found.ci_high)}",
             paired,
             *(f"{getattr(found, name):.1f}" for name in FIGURES),
             ", ".join(f"{name} {count}" for name, count in found.endings.items()),
@@ -153,7 +153,7 @@ def _wrong_model(results: BeliefResults, extent: Extent) -> str:
             lost = _signed(difference(wrong, right))
             lines.append((cell.condition, cell.task, _short(wrong), _short(right), lost))
     names = ("in truth", "task", "wrong model", "right model", "difference (95%)")
-    return _table(names, lines) if lines else ""
+    return table(names, lines) if lines else ""
 
 
 def _wrong_vlm(results: BeliefResults, extent: Extent) -> str:
@@ -161,8 +161,8 @@ def _wrong_vlm(results: BeliefResults, extent: Extent) -> str:
         (
             task,
             f"{block.first + 1}–{block.first + BLOCK}",
-            _rate(block.learning),
-            _rate(block.knowing),
+            rate(block.learning),
+            rate(block.knowing),
             _signed(block.difference),
             f"{block.trust:.2f}",
         )
@@ -170,7 +170,7 @@ def _wrong_vlm(results: BeliefResults, extent: Extent) -> str:
         for block in blocks(results, task)
     ]
     names = ("task", "episodes", "has to learn", "was told", "difference (95%)", "trust")
-    return _table(names, lines) if lines else ""
+    return table(names, lines) if lines else ""
 
 
 def _ablations(results: BeliefResults, extent: Extent) -> str:
@@ -187,7 +187,7 @@ def _ablations(results: BeliefResults, extent: Extent) -> str:
             )
             lines.append((vlm, task, _short(whole), *told))
     names = ("VLM", "task", "whole", *(f"without {name}" for name in PARTS))
-    return _table(names, lines) if lines else ""
+    return table(names, lines) if lines else ""
 
 
 def _short(rows: Sequence[EpisodeRow]) -> str:
@@ -195,10 +195,11 @@ def _short(rows: Sequence[EpisodeRow]) -> str:
     if not rows:
         return ""
     completed = sum(row.completed for row in rows) / len(rows)
-    return f"{_rate(completed)} @ {sum(row.questions for row in rows) / len(rows):.0f}"
+    return f"{rate(completed)} @ {sum(row.questions for row in rows) / len(rows):.0f}"
 
 
-def _rate(value: float) -> str:
+def rate(value: float) -> str:
+    """A rate with three digits behind its point."""
     return f"{value:.3f}".removeprefix("0") if value < 1 else "1.00"
 
 
@@ -212,6 +213,7 @@ def _estimate(found: Estimate) -> str:
     return f"{found.value:.3f} ({found.low:.3f} to {found.high:.3f})"
 
 
-def _table(names: Sequence[str], lines: Iterable[Sequence[str]]) -> str:
+def table(names: Sequence[str], lines: Iterable[Sequence[str]]) -> str:
+    """A table in Markdown."""
     told = [names, ["---"] * len(names), *lines]
     return "".join(f"| {' | '.join(line)} |\n" for line in told)

@@ -1,4 +1,4 @@
-"""`tpvqa bench paper` and `tpvqa bench belief`, beside the core's `tpvqa bench run`."""
+"""`tpvqa bench paper`, `belief` and `abroad`, beside the core's `tpvqa bench run`."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from tpvqa.cli.bench_running import EXIT, bench_bar, finish, listed
+from tpvqa_experiments.cli.bench_abroad import abroad
 from tpvqa_experiments.cli.bench_belief import belief
 
 bench_app = typer.Typer(
@@ -18,6 +19,7 @@ def register(app: typer.Typer) -> None:
     """Add the commands."""
     bench_app.command(epilog=EXIT)(paper)
     bench_app.command(epilog=EXIT)(belief)
+    bench_app.command(epilog=EXIT)(abroad)
     app.add_typer(bench_app, name="bench")
 
 

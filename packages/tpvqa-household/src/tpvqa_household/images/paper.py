@@ -33,6 +33,8 @@ class PaperSimulation(Simulation):
             disturbance=simulation.disturbance,
             spontaneous=simulation.spontaneous,
             redo=simulation.redo,
+            dead=simulation.dead,
+            start=simulation.start,
             seed=simulation.seed,
             episode=simulation.episode,
         )

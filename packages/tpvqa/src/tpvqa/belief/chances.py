@@ -1,9 +1,11 @@
 """How often actions fail: Beta distributions that learn from what came of actions."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from tpvqa.belief.faults import Rates
+from tpvqa.belief.skills import Skills, SkillState
+from tpvqa.pddl import Action
 
 
 @dataclass(slots=True)
@@ -49,6 +51,10 @@ class Beta:
         self.yes, self.no = mean * cases, (1 - mean) * cases
 
 
+FIRST = 3.0
+"""Tries of one action that tell fully of the others."""
+
+
 class Chances:
     """The rates of faults, learned while running from expected numbers of cases.
 
@@ -62,13 +68,42 @@ class Chances:
         self.failure = Beta(rates.failure * strength, (1 - rates.failure) * strength)
         self.disturbance = Beta(rates.disturbance * strength, (1 - rates.disturbance) * strength)
         self.spontaneous = rates.spontaneous
+        self.skills = Skills()
+        self._sure = rates.failure in (0.0, 1.0)
 
     @property
     def rates(self) -> Rates:
         """The expected rates."""
         return Rates(self.failure.mean, self.disturbance.mean, self.spontaneous)
 
-    def learn(self, shares: Mapping[str, float]) -> None:
-        """Learn from how an action came out, see `Belief.outcome_shares`."""
-        self.failure.learn(shares.get("failure", 0.0), shares.get("success", 0.0))
+    def skill(self, action: Action) -> SkillState:
+        """What is known of how often an action fails."""
+        if self._sure:  # a rate that is believed for certain is that of every skill
+            return SkillState(self.failure.mean, 0.0, 1 / max(1 - self.failure.mean, 0.05))
+        return self.skills.of(action, self.failure.mean, self.failure.yes + self.failure.no)
+
+    def rates_of(self, action: Action) -> Rates:
+        """The expected rates where an action is executed."""
+        return Rates(self.skill(action).failure, self.disturbance.mean, self.spontaneous)
+
+    def tried(self) -> Iterable[Action]:
+        """The actions that were tried."""
+        return self.skills.all()
+
+    def learn(self, shares: Mapping[str, float], action: Action | None = None) -> None:
+        """Learn from how an action came out, see `Belief.outcome_shares`.
+
+        Args:
+            shares: How it came out.
+            action: What was done; None where only the common rates are to learn.
+        """
+        telling = alive = 1.0
+        if action is not None and not self._sure:
+            # One action tried again and again tells ever less of others, one that is dead nothing.
+            tried = self.skills.tried(action)
+            telling = 1.0 if tried is None else FIRST / (FIRST + tried.times)
+            self.skills.learn(action, shares, self.skill(action).failure)
+            alive = 1 - self.skill(action).dead
+        failed, worked = shares.get("failure", 0.0), shares.get("success", 0.0)
+        self.failure.learn(telling * alive * failed, telling * worked)
         self.disturbance.learn(shares.get("disturbed", 0.0), shares.get("undisturbed", 0.0))

@@ -1,15 +1,19 @@
 """What can be done next, and what each is expected to cost."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
+from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
+from tpvqa.belief.outlook import CHECKS, Outlook
+from tpvqa.belief.sight import Sight
+from tpvqa.belief.skills import GIVEN_UP
 from tpvqa.pddl import Action, State
 
 LIKELY = 0.02
@@ -18,8 +22,12 @@ CHOICES = 6
 """Choices that are compared, at most."""
 IDLE = 0.97
 """An action that changes nothing with this probability is no choice."""
-CHECKS = 2.0
-"""Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
+FLOOR = 0.1
+"""An action is no choice whose preconditions hold with less than this, where it is not done."""
+ROUNDS = 3.0
+"""How often it is no surprise to come back to the same action, were every step of it progress."""
+DISTURBED = 0.02
+"""In joint states of at least this probability it is worked out what disturbances would cost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,81 +73,58 @@ class Table:
 class Chooser:
     """Compares what can be done next (Q-MDP: Littman, Cassandra and Kaelbling 1995).
 
-    The cost of an action is its own, plus that of the plan from where it leads, as if the state
-    were known from then on. What it would cost to find that out is not in it: what answers are
-    worth is added by `information`.
+    The cost of an action is its own, plus that of the plan from where it leads, as if all that can
+    be seen were known from then on. What nothing shows stays as unsure as it is: joint states that
+    look alike are gone on from by one and the same way (`Commitments`). What it would cost to find
+    out the rest is not in it: what answers are worth is added by `information`.
 
     Args:
         model: The action model.
         costs: What things cost.
+        sight: What can be seen; by default everything.
 
     Attributes:
-        left: Actions that the trial still allows; None for any number. Where they are fewer than
-            what a state needs, the task fails there.
-        changes_left: Changes of plan that it still allows; None for any number.
+        ahead: What lies ahead of single joint states.
+        changes_left: Changes of plan that the trial still allows; None for any number.
     """
 
-    def __init__(self, model: FaultModel, costs: Costs):
+    def __init__(self, model: FaultModel, costs: Costs, sight: Sight | None = None):
         self._model, self._costs = model, costs
-        self.plans: list[AnnotatedPlan] = []
-        self.hopeless: set[State] = set()
-        self._found: dict[int, tuple[int, AnnotatedPlan] | None] = {}
-        self._goals: dict[int, bool] = {}
-        self._cost_of: dict[Action | None, dict[int, float]] = {}
-        self._rest: dict[int, float] = {}
-        self._ahead_of: dict[int, float] = {}
-        self._lost: float | None = None
-        self._rates = Rates()
+        self._sight = sight or Sight(model)
+        self.ahead = Outlook(model, costs, self._sight)
+        self._commitments = Commitments(model, self.ahead, self._sight)
+        self._going: dict[int, float] = {}
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._postponed: set[State] = set()
-        self.left: int | None = None
+        self._done: list[tuple[int, Action]] = []
         self.changes_left: int | None = None
 
-    def add(self, plan: AnnotatedPlan) -> None:
-        """Take in a plan; the latest is preferred among equals."""
-        if plan in self.plans:
-            self.plans.remove(plan)
-        self.plans.insert(0, plan)
-        self._found.clear()
-        self._forget()
-
-    def give_up_on(self, state: State) -> None:
-        """Note that no plan exists from a state."""
-        self.hopeless.add(state)
-        self._forget()
+    @property
+    def plans(self) -> Sequence[AnnotatedPlan]:
+        """The known plans."""
+        return self.ahead.plans
 
     def postpone(self, state: State) -> None:
         """Note that the planner found no plan in time; it may be asked after the next action."""
         self._postponed.add(state)
 
-    def acted(self) -> None:
-        """Note that an action was executed."""
+    def acted(self, belief: Belief, action: Action) -> None:
+        """Note that an action is executed, before the belief predicts what it leads to."""
         self._postponed.clear()
+        self._done.append((belief.ranked()[0][0], action))
 
-    def allow(self, actions: int | None, changes: int | None) -> None:
-        """Note what the trial still allows.
+    def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
+        """Go on with a model that gives joint states other numbers."""
+        self._model = model
+        self._sight.renumbered(model)
+        self.ahead.renumbered(model)
+        self._commitments.renumbered(model)
+        self._done = [(numbers.get(number, -1), action) for number, action in self._done]
 
-        Args:
-            actions: Actions; None for any number.
-            changes: Changes of plan; None for any number.
-        """
-        if actions != self.left:
-            self.left = actions
-            self._forget()
-        self.changes_left = changes
-
-    def shortest(self, number: int) -> tuple[int, AnnotatedPlan] | None:
-        """The fewest actions to the goal by a known plan, and that plan."""
-        if number in self._found:
-            return self._found[number]
-        state, best = self._model.state(number), None
-        for plan in self.plans:
-            remaining = plan.remaining(state)
-            if remaining is not None and (best is None or remaining < best[0]):
-                best = remaining, plan
-        self._found[number] = best
-        return best
+    def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
+        """The cheapest known way from a state: a place in a plan, and that plan."""
+        return self.ahead.best(self._model.number(JointState(state)))
 
     def unplanned(self, belief: Belief) -> State | None:
         """The most probable joint state that no known plan helps; None if none is likely."""
@@ -147,9 +132,9 @@ class Chooser:
             if weight < LIKELY:
                 return None
             state = self._model.state(number)
-            if state in self.hopeless or state in self._postponed:
+            if state in self.ahead.hopeless or state in self._postponed:
                 continue
-            if self.shortest(number) is None:
+            if self.ahead.best(number) is None:
                 return state
         return None
 
@@ -164,135 +149,132 @@ class Chooser:
 
         Args:
             belief: What is believed.
-            rates: Of faults.
+            rates: Of disturbances; how often single skills fail is known to `ahead`.
             current: The plan that is being followed; other actions cost a change of plan.
             barred: An action that the trial does not allow now: it was repeated too often.
         """
-        if rates != self._rates:
-            self._rates = rates
-            self._forget()
+        self._going.clear()
         ranked = belief.ranked()
         choices = [
             each
             for each in self._choices(ranked)
-            if self._allowed(each, current, barred) and not self._idle(each, ranked)
+            if self._allowed(each, current, barred)
+            and self._worth_a_try(each)
+            and not self._idle(each, ranked)
         ]
-        numbers = tuple(number for number, _ in ranked)
-        changes = [
-            self._costs.replan if each.action is not None and not self._in(each, current) else 0.0
+        choices = [each for each in choices if self._possible(each, ranked)] or choices
+        if self._stuck(ranked):
+            choices = [each for each in choices if each.action is None]
+        columns = [
+            self._end(ranked)
+            if each.action is None
+            else self._column(each.action, ranked, rates)
+            + (0.0 if self._in(each, current) else self._costs.replan)
+            + self._weary(each.action, ranked)
             for each in choices
         ]
-        columns = [self._column(each.action, numbers) for each in choices]
         return Table(
             tuple(choices),
-            numbers,
+            tuple(number for number, _ in ranked),
             np.array([weight for _, weight in ranked]),
-            np.array(columns).reshape(len(choices), len(ranked)).T + changes,
+            np.array(columns).reshape(len(choices), len(ranked)).T,
         )
 
-    def _column(self, action: Action | None, numbers: Sequence[int]) -> list[float]:
-        """The expected costs of a choice in some joint states."""
-        known = self._cost_of.setdefault(action, {})
-        for number in numbers:
-            if number not in known:
-                known[number] = self._cost(action, number)
-        return [known[number] for number in numbers]
+    def _end(self, ranked: Sequence[tuple[int, float]]) -> Floats:
+        lost = self.ahead.failure
+        return np.array([0.0 if self.ahead.is_goal(number) else lost for number, _ in ranked])
 
-    def _cost(self, action: Action | None, number: int) -> float:
-        """The expected cost of a choice in one joint state."""
-        if action is None:
-            return 0.0 if self._is_goal(number) else self._failure()
-        f, d, s = self._rates.failure, self._rates.disturbance, self._rates.spontaneous
+    def _column(self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates) -> Floats:
+        """The expected costs of an action in the joint states."""
+        skill = self.ahead.skill(action)
+        led = [self._successors(action, *each, skill.failure, rates) for each in ranked]
+        together = self._commitments.made(
+            (other, weight * share)
+            for (_, weight), successors in zip(ranked, led, strict=True)
+            for share, other, _ in successors
+        )
+        to_go = self.ahead.to_go
+        return np.array(
+            [
+                self._step
+                + sum(
+                    share * (together.get(other, to_go(other)) + more)
+                    for share, other, more in successors
+                )
+                for successors in led
+            ]
+        )
+
+    def _successors(
+        self, action: Action, number: int, weight: float, failure: float, rates: Rates
+    ) -> list[tuple[float, int, float]]:
+        """What an action leads to from a joint state: shares, joint states, and what each costs
+        besides."""
         outcomes = self._model.outcomes(action)[number]
-        failed = self._to_go(number)
-        if outcomes.achieved or outcomes.intended is None:
-            failed = self._going_on(number)
         if outcomes.achieved:
-            return self._step + failed
-        if outcomes.undone:
-            falls = sum(share * self._to_go(other) for share, other in outcomes.undone)
-            failed = (1 - d) * failed + d * falls
-        if outcomes.intended is None:
-            return self._step + failed
-        done = self._to_go(outcomes.intended)
-        if outcomes.undone_after and s:
-            falls = sum(share * self._to_go(other) for share, other in outcomes.undone_after)
-            done = (1 - s) * done + s * falls
-        return self._step + (1 - f) * done + f * failed
+            return [(1.0, number, self._idling(number, rates))]
+        possible = outcomes.intended is not None
+        failed = failure if possible else 1.0
+        more = 0.0 if possible else self._idling(number, rates)
+        found: list[tuple[float, int, float]] = []
+        if outcomes.intended is not None:
+            after = outcomes.undone_after
+            found += _fallen(1 - failure, outcomes.intended, after, rates.spontaneous)
+        if weight >= DISTURBED:
+            found += _fallen(failed, number, outcomes.undone, rates.disturbance, more)
+        else:
+            found.append((failed, number, more + rates.disturbance * self._step))
+        return found
 
-    def _going_on(self, number: int) -> float:
-        """What is left after an action that could do nothing: the next one with its risks.
+    def _idling(self, number: int, rates: Rates) -> float:
+        """What it costs besides to have done nothing: the risks of the next action remain.
 
-        `_to_go` knows no disturbances. If it were taken here, an action that changes nothing would
-        look better than one that may go wrong.
+        The way ahead knows no disturbances. If it were taken here, an action that changes nothing
+        would look better than one that may go wrong.
         """
-        known = self._ahead_of.get(number)
+        known = self._going.get(number)
         if known is None:
-            known, found = self._to_go(number), self.shortest(number)
-            if found is not None and found[0]:
-                action = found[1].actions[len(found[1].actions) - found[0]]
+            known, action = 0.0, self.ahead.next(number)
+            if action is not None:
                 outcomes = self._model.outcomes(action)[number]
                 if outcomes.intended is not None and not outcomes.achieved:
-                    known = max(known, self._cost(action, number))
-            self._ahead_of[number] = known
+                    skill = self.ahead.skill(action)
+                    cost = self._step + sum(
+                        share * self.ahead.to_go(other)
+                        for share, other, _ in self._successors(
+                            action, number, 1.0, skill.failure, rates
+                        )
+                    )
+                    known = max(0.0, cost - self.ahead.to_go(number))
+            self._going[number] = known
         return known
 
-    def _to_go(self, number: int) -> float:
-        """What the rest of the shortest plan costs: repeated where checks say so, or unchecked."""
-        known = self._rest.get(number)
-        if known is None:
-            known = self._rest[number] = self._worked_out(number)
-        return known
+    def _weary(self, action: Action, ranked: Sequence[tuple[int, float]]) -> float:
+        """What an action costs more each time that the trial comes back to it.
 
-    def _worked_out(self, number: int) -> float:
-        found = self.shortest(number)
-        if found is not None:
-            steps: float = found[0]
-        elif self._model.state(number) in self.hopeless:
-            return self._failure()
-        else:
-            steps = self._longest() + 2
-        if self.left is not None and steps >= self.left:  # the action at hand is one of them
-            return self._failure()
-        works: float = 1 - self._rates.failure
-        unchecked = steps * self._costs.action + (1 - works**steps) * self._failure()
-        return float(min(steps * self._ahead(), unchecked))
+        To repeat it is no coming back; to do something else in between, and to believe again what
+        was believed then, is going round in a circle. So often as faults explain it costs nothing.
+        """
+        times = self.returns(action, ranked[0][0]) - ROUNDS / self.ahead.progress
+        return self._costs.action * max(0.0, times) ** 2
 
-    def _ahead(self) -> float:
-        """What a step of a plan costs, its checks and its repeats counted in."""
-        step = self._costs.action + CHECKS * (self._costs.question + self._costs.look)
-        return step / max(1 - self._rates.failure, 0.05)
-
-    def _longest(self) -> int:
-        return max((len(plan.actions) for plan in self.plans), default=0)
-
-    def _failure(self) -> float:
-        """What a failed task costs: at least twice what it takes to do it, so that long plans
-        are worth their while."""
-        if self._lost is None:
-            acting = self._longest() * self._costs.action / max(1 - self._rates.failure, 0.05)
-            self._lost = max(self._costs.failure, 2 * acting)
-        return self._lost
-
-    def _forget(self) -> None:
-        """What was worked out holds for other plans, rates or limits."""
-        self._cost_of.clear()
-        self._rest.clear()
-        self._ahead_of.clear()
-        self._lost = None
+    def returns(self, action: Action, number: int) -> int:
+        """How often an action was begun anew where the same joint state was most probable."""
+        done = self._done
+        return sum(
+            each == (number, action) and (not place or done[place - 1][1] != action)
+            for place, each in enumerate(done)
+        )
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[Action | None, Choice] = {}
         least = 0.1 * self._costs.action / self._costs.failure
         for number, weight in ranked:
-            known = self.shortest(number)
-            if known is None:
+            if self.ahead.best(number) is None:
                 continue
             if found and (weight < least or len(found) >= CHOICES):
                 break
-            remaining, plan = known
-            place = len(plan.actions) - remaining
-            action = plan.actions[place] if remaining else None
+            action = self.ahead.next(number)
             if action not in found:
                 found[action] = Choice(action, self._model.state(number))
         if None not in found:
@@ -306,6 +288,18 @@ class Chooser:
         if barred is not None and self._model.same_skill(choice.action, barred, choice.state):
             return False
         return self.changes_left != 0 or self._in(choice, current)
+
+    def _worth_a_try(self, choice: Choice) -> bool:
+        """Whether what one more try may win is worth an action."""
+        if choice.action is None:
+            return True
+        skill = self.ahead.skill(choice.action)
+        worth = (1 - skill.failure) * self.ahead.failure >= self._costs.action
+        return worth and skill.dead < GIVEN_UP
+
+    def _stuck(self, ranked: Sequence[tuple[int, float]]) -> bool:
+        """Whether all ways that are known lead through something that does not work any more."""
+        return sum(weight for number, weight in ranked if self.ahead.blocked(number)) > 0.5
 
     def _in(self, choice: Choice, plan: Sequence[Action]) -> bool:
         same, action = self._model.same_skill, choice.action
@@ -327,7 +321,26 @@ class Chooser:
                     return False
         return True
 
-    def _is_goal(self, number: int) -> bool:
-        if number not in self._goals:
-            self._goals[number] = self._model.task.goal_holds(self._model.state(number))
-        return self._goals[number]
+    def _possible(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> bool:
+        """Whether the preconditions of an action are not believed false."""
+        if choice.action is None:
+            return True
+        leads_to, possible, at_work = self._model.outcomes(choice.action), 0.0, 0.0
+        for number, weight in ranked:
+            outcomes = leads_to[number]
+            if not outcomes.achieved:
+                at_work += weight
+                possible += weight * (outcomes.intended is not None)
+        return possible >= FLOOR * at_work
+
+
+def _fallen(
+    share: float,
+    number: int,
+    undone: Iterable[tuple[float, int]],
+    rate: float,
+    more: float = 0.0,
+) -> list[tuple[float, int, float]]:
+    """What comes of a joint state where something achieved may be undone."""
+    falls = [(share * rate * each, other, 0.0) for each, other in undone] if rate else []
+    return [(share * (1 - rate) if falls else share, number, more), *falls]

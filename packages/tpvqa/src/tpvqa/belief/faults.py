@@ -194,6 +194,10 @@ class FaultModel:
         intended = self.become(number, self.task.apply(state, truly))
         return Outcomes(intended, False, undone, self.undone(intended))
 
+    def applicable(self, action: Action, state: State) -> bool:
+        """Whether the preconditions of what an action truly is hold."""
+        return self.task.applicable(state, self._truly(action, state))
+
     def same_skill(self, action: Action, other: Action, state: State) -> bool:
         """Whether two actions make the robot do the same: they differ only in what holds anyway."""
         if action == other:

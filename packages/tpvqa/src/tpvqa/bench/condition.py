@@ -1,5 +1,6 @@
 """What differs between cells besides task, monitor, VLM and world, as users write it."""
 
+import re
 from typing import Any
 
 from tpvqa.errors import BenchError, shown, suggestion
@@ -8,7 +9,7 @@ RATES = ("failure", "disturbance", "spontaneous")
 LIMITS = ("repeats", "replans", "actions", "seconds")
 UNBOUND = {"repeats": "none", "replans": "none", "actions": "50x"}
 """What `limits=none` stands for: who does not come to an end with these has failed."""
-OTHERS = ("redo", "limits", "planner", "wording", "believed", "carried")
+OTHERS = ("redo", "dead", "elsewhere", "limits", "planner", "wording", "believed", "carried")
 
 
 def settings_of(condition: str) -> dict[str, str]:
@@ -44,8 +45,8 @@ def changes_of(condition: str) -> dict[str, Any]:
         raise not_understood(condition)
     limits = {**(UNBOUND if "limits" in settings else {})}
     limits |= {name: settings[name] for name in LIMITS if name in settings}
-    if "redo" in settings:
-        simulation["redo"] = settings["redo"]
+    others = ("redo", "dead", "elsewhere")
+    simulation |= {name: settings[name] for name in others if name in settings}
     changes: dict[str, Any] = {"simulation": simulation, "limits": limits}
     if "wording" in settings:
         changes["wording"] = settings["wording"]
@@ -55,8 +56,9 @@ def changes_of(condition: str) -> dict[str, Any]:
 
 
 def normalised(condition: str) -> str:
-    """A condition without spaces, so that it is the same however it was typed."""
-    return ",".join(part.strip().replace(" ", "") for part in condition.split(",") if part.strip())
+    """A condition without spaces to spare, so that it is the same however it was typed."""
+    parts = (" ".join(part.split()) for part in condition.split(","))
+    return ",".join(re.sub(r" ?([=+:]) ?", r"\1", part) for part in parts if part)
 
 
 def not_understood(condition: str, meant: str = "") -> BenchError:
@@ -68,7 +70,8 @@ def not_understood(condition: str, meant: str = "") -> BenchError:
     """
     return BenchError(
         f"The condition {shown(condition)} is not understood{meant or '.'} Write settings with "
-        f"commas: rates of faults ({', '.join(RATES)}), redo=free, risky or refused, limits "
+        f"commas: rates of faults ({', '.join(RATES)}), redo=free, risky or refused, "
+        "dead=SKILL, elsewhere=THINGS, limits "
         f"({', '.join(LIMITS)}; limits=none), planner=PLANNER, wording=paper, believed=VLM, "
         "carried=EPISODES; for example failure=0.4,actions=30"
     )

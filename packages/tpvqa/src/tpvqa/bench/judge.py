@@ -30,7 +30,7 @@ class Judge:
         self._truths: list[bool] = []
         self.answers: Counter[str] = Counter()
         self.decisions: Counter[str] = Counter()
-        self.longest_repeat = self.failures = self.wasted = 0
+        self.longest_repeat = self.failures = self.wasted = self.dead = 0
 
     @property
     def first_plan(self) -> int:
@@ -74,5 +74,6 @@ class Judge:
                 came = event.truth
                 changed = bool(came.added or came.removed)
                 self.failures += not came.succeeded or came.undone is not None
+                self.dead += came.failure is Failure.DEAD
                 impossible = came.failure is Failure.PRECONDITION
                 self.wasted += impossible or (came.succeeded and not changed)

@@ -17,6 +17,7 @@ class EpisodeRow(BaseModel):
         failures: Actions that failed in truth, or undid something.
         wasted: Actions that could do nothing: their effects held already, or a precondition did
             not.
+        dead: Tries of skills that never work.
         first_plan: Actions of the first plan.
         seconds: Wall time.
         trust: The factor by which the VLM's answers are worth more or less than its calibration
@@ -46,6 +47,7 @@ class EpisodeRow(BaseModel):
     longest_repeat: int = 0
     failures: int = 0
     wasted: int = 0
+    dead: int = 0
     first_plan: int = 0
     seconds: float = 0.0
     trust: float | None = None

@@ -2,11 +2,16 @@
 
 import json
 from collections.abc import Iterator
+from hashlib import sha256
+from pathlib import Path
 from typing import Any
 
 from tpvqa import DECIDES_AS
+from tpvqa.bench.condition import RATES
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.config.layers import settings
+from tpvqa.errors import PDDLError
+from tpvqa.text_files import read_text
 
 OF_CELLS = (("world", "spec"), ("vlm", "spec"), ("monitor", "spec"))
 """What every cell says for itself."""
@@ -35,10 +40,14 @@ def common_settings(common: TrialConfig) -> dict[str, Any]:
 
 
 def _faults(simulation: SimulationConfig) -> dict[str, Any]:
-    """The rates; what redoing leads to where it is not as it always was."""
-    told = simulation.model_dump()
-    if simulation.redo == SimulationConfig().redo:
-        del told["redo"]
+    """The rates, and what else is not as it always was; of a file what it says."""
+    told, usual = simulation.model_dump(), SimulationConfig().model_dump()
+    for name in usual.keys() - RATES:
+        if told[name] == usual[name]:
+            del told[name]
+    if simulation.start is not None:
+        text = read_text(Path(simulation.start), PDDLError, what="state file")
+        told["start"] = sha256(text.encode()).hexdigest()[:12]
     return told
 
 

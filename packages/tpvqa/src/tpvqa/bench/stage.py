@@ -191,6 +191,7 @@ class Stage:
             "longest_repeat": judge.longest_repeat,
             "failures": judge.failures,
             "wasted": judge.wasted,
+            "dead": judge.dead,
             "first_plan": judge.first_plan,
             "answers": dict(judge.answers),
             "decisions": dict(judge.decisions),

@@ -210,6 +210,31 @@ class SimulationConfig(_Part):
         "free",
     )
 
+    dead: str | None = setting(
+        "--dead",
+        "Skills that never work: an action's name, with its first objects where it is dead only "
+        "for them (_ for any); several with +: 'pick_up apple + wash'.",
+        min_length=1,
+    )
+    start: str | None = setting(
+        "--start",
+        "File of the state in which the world truly begins, as `tpvqa plan --from-state` reads it. "
+        "The monitor is told what the problem says.",
+        file=True,
+    )
+    elsewhere: int = setting(
+        "--elsewhere",
+        "So many things, drawn by the seed, are truly elsewhere at first than the problem says.",
+        0,
+        ge=0,
+    )
+
+    @model_validator(mode="after")
+    def _one_start(self) -> Self:
+        if self.start is not None and self.elsewhere:
+            raise ValueError("name a state that the world begins in, or how many things to move")
+        return self
+
 
 def _named(value: Any, key: str = "spec") -> Any:
     """A name alone stands for the part of that name."""

@@ -14,6 +14,7 @@ from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Task
 from tpvqa.planning import Planner, PlanningResult
+from tpvqa.planning.without import plan_without
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending
 from tpvqa.vlm import VLM, Answer, Reply
@@ -131,7 +132,14 @@ class Performer:
 
     def _plan(self, request: PlanFrom, seconds: float | None) -> Performed:
         parts, timeout = self.parts, _less(self._planning_timeout, seconds)
-        result = called(parts.planner, "plan", object, parts.task, request.state, timeout=timeout)
+        if request.without:
+            result: object = plan_without(
+                parts.planner, parts.task, request.state, request.without, timeout=timeout
+            )
+        else:
+            result = called(
+                parts.planner, "plan", object, parts.task, request.state, timeout=timeout
+            )
         if not isinstance(result, PlanningResult):
             raise PluginError(
                 f"{parts.planner.name} has to return a Plan, Unsolvable, TimedOut or Crashed, not "
@@ -141,7 +149,9 @@ class Performer:
             made = plan_record(result, request.state, parts.book)
         except MALFORMED as error:
             raise malformed(parts.planner, "plan", error) from error
-        return Performed(result, made.model_copy(update={"considered": not request.followed}))
+        without = tuple(sorted(action.pddl() for action in request.without))
+        seen_so = {"considered": not request.followed, "without": without}
+        return Performed(result, made.model_copy(update=seen_so))
 
     def _ask(self, seen: Observation | None, questions: Sequence[Question]) -> Performed:
         why = ""

@@ -77,7 +77,7 @@ class LogShape:
     def _look_into(self, event: Event) -> None:
         match event:
             case Started():
-                _atoms(*event.initial)
+                _atoms(*event.initial, *(event.start or ()))
             case PlanMade():
                 _atoms(*event.state)
                 if event.result == "plan" and not event.considered:

@@ -45,7 +45,8 @@ class Started(_Event):
         planner: Specification of the planner.
         noise_model: Whether the VLM answers from the truth, for experiments; it is no VLM then.
         domain: Text of the file, as are `problem`, `questions` and `rules` (the world file).
-        initial: The facts that hold at first.
+        initial: The facts that hold at first, as the problem says.
+        start: Those that truly hold where a simulated world begins otherwise; for judges alone.
         goal: The goal in words.
         calibration: What the monitor was told of the VLM's answers, where it weighs them.
         experience: What it was told of earlier trials.
@@ -72,6 +73,7 @@ class Started(_Event):
     questions: str | None = None
     rules: str | None = None
     initial: tuple[str, ...]
+    start: tuple[str, ...] | None = None
     goal: str
     calibration: dict[str, Any] | None = None
     experience: dict[str, Any] | None = None
@@ -103,7 +105,8 @@ class PlanMade(_Event):
     """A planner's result: a plan, or why there is none.
 
     A plan that is only `considered` is not followed: a monitor wanted to know what it would be.
-    `limit` is that of the time, in seconds, where it passed.
+    `limit` is that of the time, in seconds, where it passed. `without` are actions that it was not
+    to have, as PDDL writes them.
     """
 
     kind: Literal["plan made"] = "plan made"
@@ -116,6 +119,7 @@ class PlanMade(_Event):
     limit: float | None = None
     reason: str = ""
     considered: bool = False
+    without: tuple[str, ...] = ()
 
 
 class FrameRecord(_Record):

@@ -5,7 +5,6 @@ from copy import deepcopy
 from typing import Any
 
 from tpvqa.belief.ablations import belief_without
-from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Choice, Chooser, Table
@@ -13,20 +12,20 @@ from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
 from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
+from tpvqa.belief.sight import Sight
+from tpvqa.belief.skills import NAMED
 from tpvqa.belief.trust import Trust
-from tpvqa.errors import PlannerError
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.monitors.capabilities import Learning
 from tpvqa.monitors.inspection import Inspection, Replies
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
-from tpvqa.monitors.requests import Ask, AskPerson, Look, PlanFrom, Request
+from tpvqa.monitors.requests import Ask, AskPerson, Look, Request
 from tpvqa.monitors.verdict import Verdict
+from tpvqa.monitors.ways import Ways
 from tpvqa.observation import Observation
-from tpvqa.pddl import Action, Atom, Literal, State, Task
-from tpvqa.planning import Plan, Unsolvable
-from tpvqa.planning.regression import regress
+from tpvqa.pddl import Action, Atom, Literal, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWay, FactWords, QuestionBook, Way
 from tpvqa.vlm import Answer, Reply
@@ -86,14 +85,16 @@ class BeliefMonitor(Learning, PlainArguments):
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
         self.evidence = Evidence(self.belief, calibration, self.trust)
-        self._chooser = Chooser(self.belief.model, self.costs)
+        self._sight = Sight(self.belief.model)
+        self._chooser = Chooser(self.belief.model, self.costs, self._sight)
+        self._ways = Ways(task, self._chooser, self.chances)
+        self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
         self._looks = self._questions = 0
         self._words: FactWords | None = None
+        self._book: QuestionBook | None = None
         self._person = self.costs.person is not None
-        self._plans: dict[State, Plan] = {}
-        self._followed: Plan | None = None
         self._settled: Action | None = None
         self._stepped: Step | None = None
         self._now = self._begin(None)
@@ -134,7 +135,7 @@ class BeliefMonitor(Learning, PlainArguments):
         if self.trust is None:
             return None
         chances = deepcopy(self.chances)
-        chances.learn(self.belief.outcome_shares())  # of the last action
+        chances.learn(self.belief.outcome_shares(), self._now.action)
         return Experience.of(chances, self.trust, self._trials + 1)
 
     def before(self, step: Step) -> Check:
@@ -158,47 +159,32 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _know(self, step: Step) -> None:
         """Annotate the plan that is being followed, and know what the trial still allows."""
-        self._chooser.allow(step.actions_left, step.replans_left)
-        if step.plan is not self._followed:
-            self._followed = step.plan
-            self._plans[step.state] = step.plan
-            if self._annotated(step) is None:
-                self._annotate(step.plan, step.state)
-
-    def _annotated(self, step: Step) -> AnnotatedPlan | None:
-        actions = step.plan.actions
-        return next((plan for plan in self._chooser.plans if plan.actions == actions), None)
-
-    def _annotate(self, plan: Plan, state: State) -> None:
-        try:
-            needs = regress(self.task, plan.actions, state)
-        except PlannerError:
-            self._chooser.give_up_on(state)
-            return
-        self._chooser.add(AnnotatedPlan(self.task, plan.actions, needs))
+        if self._book is not step.book:
+            self._book = step.book
+            self._sight.by(lambda atom: step.book.asked(Literal(atom)))
+        self._chooser.ahead.allow(step.actions_left)
+        self._chooser.changes_left = step.replans_left
+        self._ways.follow(step)
 
     def _acted(self, step: Step) -> None:
-        if self._learns:
-            self.chances.learn(self.belief.outcome_shares())
-        self.belief.act(step.action, self.chances.rates)
+        self._learn(self._now.action)
+        self._chooser.acted(self.belief, step.action)
+        self.belief.act(step.action, self.chances.rates_of(step.action))
         self.evidence.acted(troubled=bool(step.trouble))
-        self._chooser.acted()
         self._now = self._begin(step.action)
+
+    def _learn(self, action: Action | None) -> None:
+        """Learn from how the last action came out, after all that was seen of it."""
+        if action is not None and self._learns:
+            self.chances.learn(self.belief.outcome_shares(), action)
+        self._chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
     def _begin(self, action: Action | None) -> Inspection:
         return Inspection(action, self._views[0] if self._views else None)
 
     def _choose(self, step: Step, barred: Action | None = None) -> Generator[Request, Any, Choice]:
         while True:
-            while (state := self._chooser.unplanned(self.belief)) is not None:
-                result = yield PlanFrom(state)
-                if isinstance(result, Plan):
-                    self._plans[state] = result
-                    self._annotate(result, state)
-                elif isinstance(result, Unsolvable):
-                    self._chooser.give_up_on(state)
-                else:
-                    self._chooser.postpone(state)
+            yield from self._ways.seek(self.belief)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
             inquiry = self._inquire(step, table)
             if inquiry is None:
@@ -328,19 +314,29 @@ class BeliefMonitor(Learning, PlainArguments):
             self._words,
             self.belief,
             self._now.replies,
-            self._annotated(step),
+            self._ways.annotated(step),
             acted,
             unseen=self.evidence.unseen,
             questions_left=self._budget().questions > 0,
             actions_left=step.actions_left,
+            failing=self._failing(step),
         )
         why = reason(grounds, decision, action, state, place)
         if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
             acted or place != step.index
         ):
             self._settled = action
-        plan = self._plans.get(state) if decision is Decision.REPLAN else None
+        plan = None
+        if decision is Decision.REPLAN and action is not None:
+            plan = self._ways.plan(state, action)
         return Verdict(decision, why, state, step=place, belief=self._marginals(), plan=plan)
+
+    def _failing(self, step: Step) -> str:
+        """The skill of a step where it seems to be dead, in words."""
+        if self.chances.skill(step.action).dead < NAMED:
+            return ""
+        tried, failed = self.chances.skills.times(step.action)
+        return f"{step.book.say(step.action)} failed {round(failed)} times of {round(tried)}"
 
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}

@@ -32,6 +32,7 @@ class Grounds:
         unseen: Whether some question found no answer.
         questions_left: Whether anything more may be asked.
         actions_left: Actions that the trial still allows; None for any number.
+        failing: That the step's skill seems never to work, in words; empty where it does.
     """
 
     step: Step
@@ -43,6 +44,7 @@ class Grounds:
     unseen: bool
     questions_left: bool
     actions_left: int | None
+    failing: str = ""
 
     @property
     def next(self) -> int:
@@ -76,6 +78,13 @@ def reason(
         state: The most probable joint state in which this is what to do.
         place: Which step of the plan that is; None for none.
     """
+    failing = (grounds.failing,) if grounds.failing and decision is not Decision.DONE else ()
+    return "; ".join((*failing, _reason(grounds, decision, action, state, place)))
+
+
+def _reason(
+    grounds: Grounds, decision: Decision, action: Action | None, state: State, place: int | None
+) -> str:
     if action is None:
         return "; ".join((*_of_goal(grounds), _end(grounds, decision)))
     missing = [each for each in _needs(grounds) if not each.holds(state)]
@@ -152,7 +161,9 @@ def _end(grounds: Grounds, decision: Decision) -> str:
         why = "no question is left, and "
     if decision is Decision.DONE:
         return f"{why}the goal holds with {goal}"
-    return f"{why or 'no plan is worth trying, and '}the goal holds with only {goal}"
+    if not why:
+        why = "no other way is known, and " if grounds.failing else "no plan is worth trying, and "
+    return f"{why}the goal holds with only {goal}"
 
 
 def _too_few(grounds: Grounds) -> bool:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from tpvqa.pddl import State
+from tpvqa.pddl import Action, State
 from tpvqa.questions import Question
 
 
@@ -27,10 +27,12 @@ class PlanFrom:
     Attributes:
         state: Where it begins.
         followed: Whether it is to be followed, or only considered.
+        without: Actions that must not be in it.
     """
 
     state: State
     followed: bool = False
+    without: frozenset[Action] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)

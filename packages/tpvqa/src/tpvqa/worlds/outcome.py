@@ -13,6 +13,7 @@ class Failure(StrEnum):
     PRECONDITION = "precondition"  # one did not hold
     CHANCE = "chance"  # it was possible, and failed
     SCRIPT = "script"  # a script says so
+    DEAD = "dead"  # the skill never works
     REFUSED = "refused"  # its effects held already, and the skill will not do it again
 
     @property
@@ -25,6 +26,7 @@ _SAID = {
     Failure.PRECONDITION: "a precondition did not hold",
     Failure.CHANCE: "the action failed",
     Failure.SCRIPT: "the action failed, as the script says",
+    Failure.DEAD: "the skill never works",
     Failure.REFUSED: "it was done already, and is refused",
 }
 

@@ -20,7 +20,14 @@ class _ScriptedSimulation(Simulation):
     """The true state, changed as the script says instead of by chance."""
 
     def __init__(self, simulation: Simulation, script: Script):
-        super().__init__(simulation.task, simulation.rules, failure=0.0, disturbance=0.0)
+        super().__init__(
+            simulation.task,
+            simulation.rules,
+            failure=0.0,
+            disturbance=0.0,
+            dead=simulation.dead,
+            start=simulation.start,
+        )
         self._script = script
 
     def execute(self, action: Action) -> Outcome:

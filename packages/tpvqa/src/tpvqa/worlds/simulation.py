@@ -6,13 +6,15 @@ also undo something achieved before. The truth is kept for judging and never sho
 
 import operator
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from enum import StrEnum
 from typing import Any
 
 from tpvqa.chance import chance
 from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.worlds.dead import NOTHING_DEAD, Dead
 from tpvqa.worlds.outcome import Failure, Outcome
+from tpvqa.worlds.undo import Undoing
 from tpvqa.worlds.world_file import WorldRules
 
 FAILURE = 0.25
@@ -37,6 +39,9 @@ class Simulation:
         disturbance: Probability that a failure also undoes an achieved fact.
         spontaneous: Probability that an achieved fact is undone after a success.
         redo: What comes of an action whose effects hold already.
+        dead: Skills that never work.
+        undoing: What disturbances undo; by default what the rules say.
+        start: The true state at first; by default the task's.
         seed: With `episode`, the action and its attempt, decides every fault.
         episode: Number of the episode under this seed.
     """
@@ -50,24 +55,29 @@ class Simulation:
         disturbance: float = DISTURBANCE,
         spontaneous: float = 0.0,
         redo: Redo | str = Redo.FREE,
+        dead: Dead = NOTHING_DEAD,
+        undoing: Sequence[Undoing] | None = None,
+        start: State | None = None,
         seed: int = 0,
         episode: int = 0,
     ):
         self.task, self.rules = task, rules or WorldRules()
         self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
-        self.redo = Redo(redo)
+        self.redo, self.dead = Redo(redo), dead
+        self.undoing = self.rules.undo if undoing is None else undoing
+        self.start = task.init if start is None else start
         self.seed, self.episode = seed, episode
-        self.state: State = task.init
+        self.state: State = self.start
         self.attempts: Counter[str] = Counter()
         self.ended: list[Atom] = []
 
     def undoable(self) -> dict[Atom, list[tuple[str, State]]]:
         """The achieved facts that a disturbance could end now, with what each would lead to."""
         found = {}
-        for atom in sorted(self.state - self.task.init):
+        for atom in sorted(self.state - self.start):
             results = [
                 result
-                for rule in self.rules.undo
+                for rule in self.undoing
                 for result in rule.results(atom, self.state, self.ended, self.task)
             ]
             if results:
@@ -85,6 +95,8 @@ class Simulation:
         if achieved and self.redo is not Redo.RISKY:
             failure = Failure.REFUSED if self.redo is Redo.REFUSED else None
             return Outcome(failure, None, "", before, before)
+        if self.dead.holds(action):
+            return Outcome(Failure.DEAD, None, "", before, before)
         undone, undoing = None, ""
         failure, disturbance = None, self.disturbance
         if not achieved and not self.possible(action):

@@ -2,9 +2,19 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.pattern import Binding, Pattern
+
+
+class Undoing(Protocol):
+    """What disturbances undo; see `UndoRule`."""
+
+    def results(
+        self, atom: Atom, state: State, history: Sequence[Atom], task: Task
+    ) -> list[tuple[str, State]]:
+        """What undoing an atom can lead to: how it is said, and the state."""
 
 
 def bindings(

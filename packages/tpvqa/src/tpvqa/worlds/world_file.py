@@ -49,14 +49,16 @@ class WorldRules:
     Attributes:
         undo: What disturbances can undo.
         rebind: Arguments that skills do not take.
+        nothing_undone: Whether it says that nothing can be undone, by an empty list.
     """
 
     undo: tuple[UndoRule, ...] = ()
     rebind: tuple[Rebinding, ...] = ()
+    nothing_undone: bool = False
 
 
 def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
-    """Read a world file; without one nothing can be undone.
+    """Read a world file; without one there are no rules.
 
     Raises:
         WorldFileError: The file is missing or broken, or does not fit the task; with file and
@@ -67,6 +69,7 @@ def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
     return WorldRules(
         undo=tuple(_undo_rule(entry, task) for entry in _items(sections, "undo")),
         rebind=tuple(_rebinding(entry, task) for entry in _items(sections, "rebind")),
+        nothing_undone="undo" in sections and not _items(sections, "undo"),
     )
 
 

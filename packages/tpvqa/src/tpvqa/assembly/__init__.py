@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from pydantic import BaseModel
 
 from tpvqa import __version__
+from tpvqa.assembly.simulating import simulate
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
@@ -135,7 +136,7 @@ class Trial:
             self._closing.append(planner.close)
         files = None if config.task.name is None else find_task(config.task.name)
         self.world_spec = config.world.spec or default_world(files)
-        self.simulation = self._simulate()
+        self.simulation = self._simulate(planner)
         context = {
             **options,
             "task": self.task,
@@ -181,19 +182,11 @@ class Trial:
             self._closing.append(made.close)
         self.parts = Parts(self.task, self.book, planner, world, made, person)
 
-    def _simulate(self) -> Simulation | None:
+    def _simulate(self, planner: Planner) -> Simulation | None:
         """The true state, where the world is one that keeps it."""
-        config = self.config
         if not is_simulated(load_spec(Kind.WORLD, self.world_spec)):
             return None
-        faults = config.simulation or SimulationConfig()
-        return Simulation(
-            self.task,
-            self.rules,
-            **faults.model_dump(),
-            seed=config.seed,
-            episode=config.episode,
-        )
+        return simulate(self.task, self.rules, self.config, planner, self._begun_as)
 
     def _read(
         self, calibration: Calibration | None, experience: Experience | None
@@ -240,10 +233,17 @@ class Trial:
             questions=_text(self.questions),
             rules=_text(self.world_file),
             initial=atoms(self.task.init),
+            start=self._true_start,
             goal=", ".join(goal),
             calibration=_plain(self.calibration),
             experience=_plain(self.known),
         )
+
+    @property
+    def _true_start(self) -> tuple[str, ...] | None:
+        """The facts that truly hold at first; None where they are those of the problem."""
+        start = self.task.init if self.simulation is None else self.simulation.start
+        return None if start == self.task.init else atoms(start)
 
     def check(self) -> None:
         """See whether world and VLM are there, before a robot moves: files, keys, servers.

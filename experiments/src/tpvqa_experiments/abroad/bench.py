@@ -1,0 +1,178 @@
+"""Runs the bench abroad: calibrations, every missing episode, the limit, the tables."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from tpvqa.belief.calibration import Calibration
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.engine import Bench, Progress, run_bench
+from tpvqa.bench.ledger import Ledger
+from tpvqa.bench.own_task import OwnTask, own_tasks
+from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.stage import stage
+from tpvqa.config import TrialConfig
+from tpvqa.errors import BenchError
+from tpvqa_experiments.abroad.parts import SEEING, Extent, Part, believes
+from tpvqa_experiments.abroad.seeing import seeing
+from tpvqa_experiments.abroad.tables import write_results
+from tpvqa_experiments.belief import calibrations as learnt
+
+SENSED = "world-sensed.yaml"
+AT_ONCE = 20
+"""Episodes of the limit that are written together."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AbroadBench:
+    """What to run.
+
+    Attributes:
+        parts: Which parts.
+        extent: How much of them.
+        calibration_episodes: Trials that each calibration is learnt from.
+        limit: Whether to measure who sees all, too.
+        common: Seed, rates of faults, limits.
+    """
+
+    parts: Sequence[Part] = tuple(Part)
+    extent: Extent = field(default_factory=Extent)
+    calibration_episodes: int = 120
+    limit: bool = True
+    common: TrialConfig = field(default_factory=TrialConfig)
+
+    def wanted(self) -> dict[Cell, int]:
+        """How many episodes of each cell; a cell of several parts is run once."""
+        found: dict[Cell, int] = {}
+        for part in self.parts:
+            for cell, episodes in self.extent.cells(part):
+                found[cell] = max(episodes, found.get(cell, 0))
+        return found
+
+    def limits(self) -> dict[Cell, int]:
+        """How many episodes of who sees all, in every task and condition that is run.
+
+        Where a skill is dead there are none: it plans as if every skill worked.
+        """
+        found: dict[Cell, int] = {}
+        for part in self.parts if self.limit else ():
+            if part is not Part.DEAD:
+                for cell, episodes in self.extent.cells(part):
+                    limit = replace(cell, monitor=SEEING)
+                    found[limit] = max(episodes, found.get(limit, 0))
+        return found
+
+    def declared(self, folder: Path, calibrating: Progress) -> Bench:
+        """What the engine is given."""
+        extent = self.extent
+
+        def told(missing: Sequence[Cell]) -> Mapping[Cell, Calibration]:
+            believing = [
+                cell
+                for cell in missing
+                if believes(cell.monitor) and cell.task not in extent.others
+            ]
+            known = learnt.calibrations(
+                folder / "calibrations",
+                {learnt.source_of(cell) for cell in believing},
+                self.common,
+                self.calibration_episodes,
+                done=calibrating,
+                own=extent.own,
+            )
+            return {cell: known[learnt.source_of(cell)] for cell in believing}
+
+        return Bench(
+            wanted=self.wanted(),
+            common=self.common,
+            own=extent.tasks_of_files,
+            calibrations=told,
+            more_settings={"trials of a calibration": self.calibration_episodes},
+        )
+
+
+def run_abroad_bench(
+    bench: AbroadBench,
+    folder: Path,
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    calibrating: Progress = lambda done, total: None,
+    progress: Progress = lambda done, total: None,
+) -> dict[Part, dict[Cell, Sequence[EpisodeRow]]]:
+    """Run what is missing, and write tables of the parts that were named.
+
+    Args:
+        bench: What to run.
+        folder: Where everything goes; a bench that was stopped goes on there.
+        workers: Local processes.
+        scheduler: Address of a Dask scheduler to use instead.
+        calibrating: Told how many calibrations are there and how many there will be.
+        progress: Told how many episodes are done and how many there are.
+
+    Returns:
+        The episodes of every cell, by part; those of who sees all are among them.
+
+    Raises:
+        TpvqaError: Something is not there, or the folder cannot be used.
+    """
+    declared = bench.declared(folder, calibrating)
+    if not declared.wanted:
+        raise BenchError(
+            "There is nothing to run: none of these parts has a task. Name domains of others with "
+            "--others FOLDER, see experiments/tools/others_domains.py"
+        )
+    ledger = run_bench(declared, folder, workers=workers, scheduler=scheduler, progress=progress)
+    limits = bench.limits()
+    if any(ledger.missing(cell, count) for cell, count in limits.items()):
+        ledger = Ledger(folder, declared.settings)
+        try:
+            for rows in _limits(bench, ledger, limits):
+                ledger.add(rows)
+        finally:
+            ledger.close()
+    found = {part: dict(_rows(bench, part, ledger, limits)) for part in bench.parts}
+    write_results(folder, declared.settings, found)
+    return found
+
+
+def _limits(
+    bench: AbroadBench, ledger: Ledger, limits: Mapping[Cell, int]
+) -> Iterator[list[EpisodeRow]]:
+    own = bench.extent.tasks_of_files
+    for cell, count in limits.items():
+        here, missing = stage(cell.task, own.get(cell.task)), ledger.missing(cell, count)
+        for first in range(0, len(missing), AT_ONCE):
+            numbers = missing[first : first + AT_ONCE]
+            yield [seeing(here, cell, bench.common, number) for number in numbers]
+
+
+def _rows(
+    bench: AbroadBench, part: Part, ledger: Ledger, limits: Mapping[Cell, int]
+) -> Iterator[tuple[Cell, Sequence[EpisodeRow]]]:
+    for cell, count in bench.extent.cells(part):
+        limit = replace(cell, monitor=SEEING)
+        for each in (cell, limit) if limit in limits else (cell,):
+            rows = ledger.of(each, count)
+            if rows:
+                yield each, rows
+
+
+def tasks_in(folder: Path) -> dict[str, OwnTask]:
+    """The tasks that lie in a folder, a folder each, by the names of their problems.
+
+    One that has a `world-sensed.yaml`, too, is two tasks: with that world file it is called
+    NAME-sensed.
+
+    Raises:
+        BenchError: There are none, or a file cannot be read.
+    """
+    folders = sorted(each.parent for each in folder.glob("*/domain.pddl"))
+    if not folders:
+        raise BenchError(f"{folder} holds no folder with a domain.pddl and a problem")
+    found = own_tasks(folders)
+    for name, task in list(found.items()):
+        sensed = task.origin.domain.parent / SENSED
+        if sensed.exists():
+            found[f"{name}-sensed"] = OwnTask.read(replace(task.origin, world=sensed))
+    return found

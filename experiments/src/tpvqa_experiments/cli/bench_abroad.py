@@ -1,0 +1,122 @@
+"""`tpvqa bench abroad`: others' domains, and worlds that are not as the problem says."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from tpvqa.cli.bench_running import bench_bar, listed
+
+if TYPE_CHECKING:
+    from tpvqa.bench.own_task import OwnTask
+    from tpvqa_experiments.abroad import Part
+
+PARTS = "others,own,elsewhere,dead,failure,shipped"
+
+
+def abroad(
+    *,
+    parts: Annotated[str, typer.Option(help=f"Parts, with commas: {PARTS}.")] = PARTS,
+    others: Annotated[
+        Path | None,
+        typer.Option(help="Folder of domains of others, see experiments/tools/others_domains.py."),
+    ] = None,
+    own: Annotated[
+        Path | None, typer.Option(help="Folder of domains of one's own, a folder each.")
+    ] = None,
+    tasks: Annotated[
+        str, typer.Option(help="Shipped tasks, or some of the folders', with commas. Default: all.")
+    ] = "",
+    monitors: Annotated[str, typer.Option(help="Monitors, with commas. Default: all.")] = "",
+    vlms: Annotated[str, typer.Option(help="Noise models, with commas.")] = "oracle:0.8",
+    more: Annotated[
+        str, typer.Option(help="Settings that every condition has besides, e.g. redo=risky.")
+    ] = "",
+    episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 300,
+    others_episodes: Annotated[
+        int, typer.Option(help="Of every cell of others' domains.", min=1)
+    ] = 100,
+    calibration_episodes: Annotated[
+        int, typer.Option(help="Trials that each calibration is learnt from.", min=1)
+    ] = 120,
+    limit: Annotated[bool, typer.Option(help="Measure who sees all, too.")] = True,
+    seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
+    workers: Annotated[
+        int | None, typer.Option(help="Local processes. Default: one a core.", min=1)
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, e.g. tcp://host:8786.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder; a bench that was stopped goes on.")] = Path(
+        "bench-abroad"
+    ),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
+) -> None:
+    """Measure monitors on domains of others, and in worlds that are not as the problem says."""
+    import os
+
+    from tpvqa.bench.condition import normalised
+    from tpvqa.config import TrialConfig
+    from tpvqa_experiments.abroad import AbroadBench, run_abroad_bench
+    from tpvqa_experiments.abroad.bench import tasks_in
+    from tpvqa_experiments.abroad.parts import MONITORS, SHIPPED, Extent
+    from tpvqa_experiments.abroad.tables import lines
+
+    chosen = listed(tasks)
+    bench = AbroadBench(
+        parts=[_part(name) for name in listed(parts)],
+        extent=Extent(
+            others=_chosen({} if others is None else tasks_in(others), chosen),
+            own=_chosen({} if own is None else tasks_in(own), chosen),
+            tasks=[name for name in SHIPPED if not chosen or name in chosen],
+            monitors=listed(monitors) or MONITORS,
+            vlms=listed(vlms),
+            episodes=episodes,
+            others_episodes=others_episodes,
+            more=normalised(more),
+        ),
+        calibration_episodes=calibration_episodes,
+        limit=limit,
+        common=TrialConfig(seed=seed),
+    )
+    with bench_bar(out, "calibrations") as bar:
+
+        def progress(done: int, total: int) -> None:
+            if bar.what != "episodes":
+                bar.count("episodes")
+            bar(done, total)
+
+        found = run_abroad_bench(
+            bench,
+            out,
+            workers=workers or os.cpu_count() or 1,
+            scheduler=scheduler,
+            calibrating=bar,
+            progress=progress,
+        )
+    if as_json:
+        told = [
+            {"part": str(part), **line.flat()}
+            for part, rows in found.items()
+            for line in lines(rows)
+        ]
+        print(json.dumps(told, indent=1))
+    else:
+        print((out / "abroad.md").read_text(encoding="utf-8"))
+        print(f"tables: {out}/abroad.md, {out}/abroad.json")
+    if any(row.error for rows in found.values() for own_rows in rows.values() for row in own_rows):
+        raise typer.Exit(1)
+
+
+def _chosen(tasks: "dict[str, OwnTask]", names: tuple[str, ...]) -> "dict[str, OwnTask]":
+    return {name: task for name, task in tasks.items() if not names or name in names}
+
+
+def _part(name: str) -> "Part":
+    from tpvqa.errors import UnknownNameError
+    from tpvqa_experiments.abroad import Part
+
+    if name not in set(Part):
+        raise UnknownNameError("part of the bench abroad", name, [part.value for part in Part])
+    return Part(name)

@@ -1,0 +1,70 @@
+"""The true state of a trial's world, and the faults that its configuration names."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from tpvqa.belief.undoing import BackToBefore
+from tpvqa.config import SimulationConfig, TrialConfig
+from tpvqa.events import Started
+from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.pddl.state_file import read_state
+from tpvqa.planning import Plan, Planner
+from tpvqa.worlds.dead import Dead
+from tpvqa.worlds.elsewhere import elsewhere
+from tpvqa.worlds.simulation import Simulation
+from tpvqa.worlds.world_file import WorldRules
+
+
+def simulate(
+    task: Task,
+    rules: WorldRules,
+    config: TrialConfig,
+    planner: Planner,
+    begun_as: Started | None,
+) -> Simulation:
+    """The simulation of a trial.
+
+    Where no world file says what comes undone, an undone fact gives way to what held before it, as
+    the belief takes it to.
+
+    Args:
+        task: The task.
+        rules: What its world file says.
+        config: What the trial is.
+        planner: Tells what a plan handles, and whether there is one.
+        begun_as: The first event, where the trial was begun before: it says the true first state.
+
+    Raises:
+        TpvqaError: A skill or a first state that is named does not fit the task.
+    """
+    faults = config.simulation or SimulationConfig()
+    if begun_as is not None:
+        start = None if begun_as.start is None else frozenset(map(Atom.parse, begun_as.start))
+    else:
+        start = _start(task, config, faults, planner)
+    return Simulation(
+        task,
+        rules,
+        **faults.model_dump(exclude={"dead", "start", "elsewhere"}),
+        dead=Dead.parse(faults.dead, task),
+        undoing=() if rules.nothing_undone else rules.undo or (BackToBefore(task),),
+        start=start,
+        seed=config.seed,
+        episode=config.episode,
+    )
+
+
+def _start(
+    task: Task, config: TrialConfig, faults: SimulationConfig, planner: Planner
+) -> State | None:
+    """The true state at first; None for that of the problem."""
+    if faults.start is not None:
+        return read_state(Path(faults.start), task)
+    if not faults.elsewhere:
+        return None
+
+    def plan(state: State) -> Sequence[Action] | None:
+        found = planner.plan(task, state, timeout=config.planner.timeout)
+        return found.actions if isinstance(found, Plan) else None
+
+    return elsewhere(task, faults.elsewhere, plan=plan, seed=config.seed, episode=config.episode)

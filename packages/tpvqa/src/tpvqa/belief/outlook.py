@@ -1,0 +1,233 @@
+"""What lies ahead of a joint state: the rest of the cheapest known plan, and what it costs."""
+
+from collections.abc import Callable, Sequence
+
+from tpvqa.belief.annotated import AnnotatedPlan
+from tpvqa.belief.costs import Costs
+from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.sight import Sight
+from tpvqa.belief.skills import GIVEN_UP, NAMED, SkillState
+from tpvqa.pddl import Action, State
+
+CHECKS = 2.0
+"""Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
+PLANS = 24
+"""Plans that are kept, the latest ones."""
+
+SkillOf = Callable[[Action], SkillState]
+
+
+class Outlook:
+    """Costs of the way to the goal from single joint states, as if they were known.
+
+    A step whose effects can be seen is repeated until they are there. One whose effects nothing
+    shows is repeated as often as the risk that is left is worth another time, and then left.
+
+    Args:
+        model: The action model.
+        costs: What things cost.
+        sight: What can be seen.
+
+    Attributes:
+        left: Actions that the trial still allows; None for any number. Where they are fewer than
+            what a state needs, the task fails there.
+        hopeless: States that no plan leads out of.
+    """
+
+    def __init__(self, model: FaultModel, costs: Costs, sight: Sight):
+        self._model, self._costs, self._sight = model, costs, sight
+        self.plans: list[AnnotatedPlan] = []
+        self.hopeless: set[State] = set()
+        self.left: int | None = None
+        self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
+        self._rates = Rates()
+        self._lost: float | None = None
+        self._places: dict[int, list[tuple[int, AnnotatedPlan]]] = {}
+        self._goals: dict[int, bool] = {}
+        self._forget()
+
+    def add(self, plan: AnnotatedPlan) -> None:
+        """Take in a plan; the latest is preferred among equals."""
+        if plan in self.plans:
+            self.plans.remove(plan)
+        self.plans.insert(0, plan)
+        del self.plans[PLANS:]
+        self._places.clear()
+        self._forget()
+
+    def learned(self, skill: SkillOf, rates: Rates) -> None:
+        """Take in new rates of faults.
+
+        Args:
+            skill: Those of single actions.
+            rates: Those of actions in general.
+        """
+        self._skill, self._rates = skill, rates
+        self._forget()
+
+    def allow(self, actions: int | None) -> None:
+        """Note how many actions the trial still allows."""
+        if actions != self.left:
+            self.left = actions
+            self._to_go.clear()
+
+    def give_up_on(self, state: State) -> None:
+        """Note that no plan exists from a state."""
+        self.hopeless.add(state)
+        self._to_go.clear()
+
+    def renumbered(self, model: FaultModel) -> None:
+        """Go on with a model that gives joint states other numbers."""
+        self._model = model
+        self._places.clear()
+        self._goals.clear()
+        self._forget()
+
+    def best(self, number: int) -> tuple[int, AnnotatedPlan] | None:
+        """The cheapest known way from a joint state: a place in a plan, and that plan."""
+        known = self._best.get(number, _UNKNOWN)
+        if isinstance(known, _Unknown):
+            places = self._places.get(number)
+            if places is None:
+                state = self._model.state(number)
+                found = ((plan.place(state), plan) for plan in self.plans)
+                places = [(place, plan) for place, plan in found if place is not None]
+                self._places[number] = places
+            known = min(places, key=lambda each: self.rest(*each), default=None)
+            self._best[number] = known
+        return known
+
+    def next(self, number: int) -> Action | None:
+        """The first action of that way; None at the goal, or where no way is known."""
+        found = self.best(number)
+        if found is None or found[0] >= len(found[1].actions):
+            return None
+        return found[1].actions[found[0]]
+
+    def blocked(self, number: int) -> bool:
+        """Whether the way from a joint state leads through a skill that is given up."""
+        found = self.best(number)
+        if found is None:
+            return False
+        place, plan = found
+        known = self._blocks.get(id(plan))
+        if known is None:
+            dead = [self.skill(action).dead >= GIVEN_UP for action in plan.actions]
+            known = self._blocks[id(plan)] = max(
+                (n + 1 for n, d in enumerate(dead) if d), default=0
+            )
+        return place < known
+
+    def is_goal(self, number: int) -> bool:
+        """Whether the goal holds in a joint state."""
+        if number not in self._goals:
+            self._goals[number] = self._model.task.goal_holds(self._model.state(number))
+        return self._goals[number]
+
+    def rest(self, place: int, plan: AnnotatedPlan) -> float:
+        """What a plan costs from a place on."""
+        known = self._rests.get(id(plan))
+        if known is None:
+            known = self._rests[id(plan)] = self._rests_of(plan.actions)
+        return known[place]
+
+    def step(self, action: Action) -> float:
+        """What a step of a plan costs, its checks and its repeats counted in."""
+        known = self._steps.get(action)
+        if known is None:
+            skill = self._skill(action)
+            dead = skill.dead if skill.dead >= NAMED else 0.0
+            if self._sight.hidden(action):
+                known = _unseen(skill.failure, self._costs.action, self.failure)
+            else:
+                checks = CHECKS * (self._costs.question + self._costs.look)
+                tries = min(skill.tries, 20.0)
+                known = (1 - dead) * tries * (self._costs.action + checks) + dead * self.failure
+            self._steps[action] = known
+        return known
+
+    def skill(self, action: Action) -> SkillState:
+        """What is known of how often an action fails."""
+        return self._skill(action)
+
+    def to_go(self, number: int) -> float:
+        """What is left to pay from a joint state, if it is known."""
+        known = self._to_go.get(number)
+        if known is None:
+            known = self._to_go[number] = self._worked_out(number)
+        return known
+
+    def _worked_out(self, number: int) -> float:
+        found = self.best(number)
+        if found is None:
+            if self._model.state(number) in self.hopeless:
+                return self.failure
+            steps = self._longest() + 2
+            cost = steps * self._usual_step()
+        else:
+            place, plan = found
+            steps = len(plan.actions) - place
+            cost = self.rest(place, plan)
+        if self.left is not None and steps >= self.left:  # the action at hand is one of them
+            return self.failure
+        return cost
+
+    def _rests_of(self, actions: Sequence[Action]) -> list[float]:
+        """What a plan costs from each of its places: repeated where checks say so, or unchecked."""
+        rests, checked, unchecked, works = [0.0], 0.0, 0.0, 1.0
+        for action in reversed(actions):
+            checked += self.step(action)
+            unchecked += self._costs.action
+            works *= 1 - self._skill(action).failure
+            rests.append(min(checked, unchecked + (1 - works) * self.failure))
+        return rests[::-1]
+
+    @property
+    def failure(self) -> float:
+        """What a failed task costs: always more than it takes to do it, so that long plans are
+        worth their while; whether one more try is worth it is asked try by try."""
+        if self._lost is None:
+            steps, works = self._longest(), 1 - self._rates.failure
+            twice = 2 * steps * self._costs.action / self.progress
+            unchecked = steps * self._costs.action / max(works, 0.05) ** steps
+            self._lost = max(
+                self._costs.failure, twice, 1.5 * min(steps * self._usual_step(), unchecked)
+            )
+        return self._lost
+
+    def _usual_step(self) -> float:
+        checks = CHECKS * (self._costs.question + self._costs.look)
+        return (self._costs.action + checks) / max(1 - self._rates.failure, 0.05)
+
+    @property
+    def progress(self) -> float:
+        """Steps of a plan that a try brings nearer to the goal: successes less what is undone."""
+        rates = self._rates
+        return float(max(1 - rates.failure * (1 + rates.disturbance), 0.02))
+
+    def _longest(self) -> int:
+        return max((len(plan.actions) for plan in self.plans), default=0)
+
+    def _forget(self) -> None:
+        """What was worked out holds for other plans or rates."""
+        self._best: dict[int, tuple[int, AnnotatedPlan] | None] = {}
+        self._rests: dict[int, list[float]] = {}
+        self._steps: dict[Action, float] = {}
+        self._blocks: dict[int, int] = {}
+        self._to_go: dict[int, float] = {}
+        self._lost = None
+
+
+class _Unknown:
+    """Stands for what was not worked out yet, as None is an answer."""
+
+
+_UNKNOWN = _Unknown()
+
+
+def _unseen(failure: float, action: float, lost: float) -> float:
+    """What a step costs whose effects nothing shows: so many tries, and the risk that is left."""
+    tries, risk = 1, failure
+    while risk * (1 - failure) * lost > action and tries < 20:
+        tries, risk = tries + 1, risk * failure
+    return tries * action + risk * lost

@@ -1,0 +1,98 @@
+"""Which ways to the goal a belief monitor knows, and where it has others planned."""
+
+from collections.abc import Generator
+from typing import Any
+
+from tpvqa.belief.annotated import AnnotatedPlan
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.chances import Chances
+from tpvqa.belief.choices import Chooser
+from tpvqa.belief.skills import NAMED
+from tpvqa.errors import PlannerError
+from tpvqa.monitors.protocol import Step
+from tpvqa.monitors.requests import PlanFrom, Request
+from tpvqa.pddl import Action, State, Task
+from tpvqa.planning import Plan, Unsolvable
+from tpvqa.planning.regression import regress
+
+
+class Ways:
+    """Has plans made where none is known, or none without a skill that seems to be dead.
+
+    Args:
+        task: The task.
+        chooser: Compares the plans.
+        chances: Says which skills fail.
+    """
+
+    def __init__(self, task: Task, chooser: Chooser, chances: Chances):
+        self._task, self._chooser, self._chances = task, chooser, chances
+        self._plans: dict[State, Plan] = {}
+        self._followed: Plan | None = None
+        self._sought: set[tuple[State, frozenset[Action]]] = set()
+
+    def follow(self, step: Step) -> None:
+        """Note which plan is being followed."""
+        if step.plan is self._followed:
+            return
+        self._followed = step.plan
+        self._plans[step.state] = step.plan
+        if self.annotated(step) is None:
+            self._annotate(step.plan, step.state)
+
+    def annotated(self, step: Step) -> AnnotatedPlan | None:
+        """The plan that is followed, with what its steps need; None where it was not valid."""
+        actions = step.plan.actions
+        return next((plan for plan in self._chooser.plans if plan.actions == actions), None)
+
+    def plan(self, state: State, action: Action) -> Plan | None:
+        """A known plan from a state that begins with an action."""
+        found = self._plans.get(state)
+        if found is not None and found.actions[:1] == (action,):
+            return found
+        way = self._chooser.way(state)
+        if way is None:
+            return None
+        place, plan = way
+        actions = plan.actions[place:]
+        return Plan(actions, sum(each.cost for each in actions), "a known plan", 0.0)
+
+    def seek(self, belief: Belief) -> Generator[Request, Any, None]:
+        """Have plans made for what is likely, and without what does not work."""
+        while (state := self._chooser.unplanned(belief)) is not None:
+            result = yield PlanFrom(state)
+            if isinstance(result, Plan):
+                self._take(result, state)
+            elif isinstance(result, Unsolvable):
+                self._chooser.ahead.give_up_on(state)
+            else:
+                self._chooser.postpone(state)
+        dead, state = self.dead(), belief.most_probable()[0]
+        if dead and (state, dead) not in self._sought and not self._task.goal_holds(state):
+            self._sought.add((state, dead))
+            result = yield PlanFrom(state, without=dead)
+            if isinstance(result, Plan):
+                self._take(result, state)
+
+    def dead(self) -> frozenset[Action]:
+        """The actions that seem never to work, whatever they were tried with."""
+        if not any(self._chances.skill(each).dead >= NAMED for each in self._chances.tried()):
+            return frozenset()
+        names = {action.name for action in self._chances.tried()}
+        return frozenset(
+            action
+            for action in self._task.ground_actions()
+            if action.name in names and self._chances.skill(action).dead >= NAMED
+        )
+
+    def _take(self, plan: Plan, state: State) -> None:
+        self._plans[state] = plan
+        self._annotate(plan, state)
+
+    def _annotate(self, plan: Plan, state: State) -> None:
+        try:
+            needs = regress(self._task, plan.actions, state)
+        except PlannerError:
+            self._chooser.ahead.give_up_on(state)
+            return
+        self._chooser.ahead.add(AnnotatedPlan(self._task, plan.actions, needs))

@@ -1,0 +1,125 @@
+"""The bench abroad: domains that nobody here wrote, and the limit beside the monitors."""
+
+import importlib.util
+import json
+import zipfile
+from hashlib import sha256
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.stage import stage
+from tpvqa.config import TrialConfig
+from tpvqa.errors import BenchError
+from tpvqa.pddl import load_task
+from tpvqa_experiments.abroad import AbroadBench, Part, run_abroad_bench
+from tpvqa_experiments.abroad.bench import tasks_in
+from tpvqa_experiments.abroad.parts import SEEING, Extent
+from tpvqa_experiments.abroad.seeing import seeing
+from tpvqa_experiments.abroad.tables import lines
+
+ROOT = Path(__file__).parents[2]
+DOMAIN = """(define (domain lift) (:requirements :typing) (:types block)
+  (:predicates (down ?b - block) (up ?b - block) (raise ?b - block))
+  ; (:actions raise)
+  (:action raise :parameters (?b - block) :precondition (and (raise ?b) (down ?b))
+    :effect (and (up ?b) (not (down ?b)))))"""
+PROBLEM = """(define (problem some) (:domain lift) (:objects a b c d - block)
+  (:goal (and (up a) (up b) (up c) (up d)))
+  (:init (down a) (down b) (down c) (down d) (raise a)))"""
+
+
+def _tool() -> ModuleType:
+    path = ROOT / "experiments/tools/others_domains.py"
+    spec = importlib.util.spec_from_file_location("others_domains", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_domains_of_others_lose_what_only_their_library_needs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tool = _tool()
+    wheel = tmp_path / "others.whl"
+    with zipfile.ZipFile(wheel, "w") as archive:
+        archive.writestr("pddlgym/pddl/lift.pddl", DOMAIN)
+        archive.writestr("pddlgym/pddl/lift/one.pddl", PROBLEM)
+        archive.writestr("pddlgym/code.py", "raise SystemExit")
+    monkeypatch.setattr(tool, "SHA256", sha256(wheel.read_bytes()).hexdigest())
+    monkeypatch.setattr(tool, "KINDS", {"lifting": "lift"})
+    out = tmp_path / "others"
+    monkeypatch.setattr("sys.argv", ["tool", "--wheel", str(wheel), "--out", str(out)])
+    tool.main()
+    task = load_task(out / "lifting/domain.pddl", out / "lifting/problem.pddl")
+    assert "raise" not in task.predicates
+    assert len(task.reachable_actions) == 4
+    (told,) = json.loads((out / "others.json").read_text())
+    assert (told["kind"], told["plan"], told["objects"]) == ("lifting", 4, 4)
+    assert "1 domains" in capsys.readouterr().out
+    assert list(tasks_in(out)) == ["lifting"]
+
+
+def test_another_wheel_is_not_taken(tmp_path: Path) -> None:
+    wheel = tmp_path / "others.whl"
+    wheel.write_bytes(b"something else")
+    with pytest.raises(SystemExit, match="is not pddlgym"):
+        _tool().pddl_of(wheel)
+
+
+def test_who_sees_all_needs_an_action_more_for_every_failure() -> None:
+    cell = Cell("build_tower", "belief", "oracle:0.8", "symbolic", "limits=none,disturbance=0")
+    for episode in range(8):
+        row = seeing(stage("build_tower"), cell, TrialConfig(), episode)
+        assert row.completed
+        assert row.monitor == SEEING
+        assert row.actions == row.first_plan + row.failures
+        assert row.questions == 0
+
+
+def test_a_bench_abroad_goes_on_where_it_was_stopped(tmp_path: Path) -> None:
+    extent = Extent(tasks=("build_tower",), monitors=("tp", "blind:5"), episodes=3)
+    bench = AbroadBench(parts=(Part.SHIPPED,), extent=extent)
+    run_abroad_bench(bench, tmp_path)
+    before = (tmp_path / "episodes.jsonl").read_text()
+    found = run_abroad_bench(bench, tmp_path)[Part.SHIPPED]
+    assert (tmp_path / "episodes.jsonl").read_text() == before
+    told = {line.monitor: line for line in lines(found)}
+    assert list(told) == ["tp", "blind:5", SEEING]
+    assert told[SEEING].quotient == 1
+    assert told[SEEING].completion.rate == 1
+    blind = told["blind:5"].quotient
+    assert blind is not None
+    assert blind > 1
+    assert "| build_tower |" in (tmp_path / "abroad.md").read_text()
+
+
+def test_a_part_without_tasks_says_what_to_name(tmp_path: Path) -> None:
+    with pytest.raises(BenchError, match="--others"):
+        run_abroad_bench(AbroadBench(parts=(Part.OTHERS,)), tmp_path / "out")
+    with pytest.raises(BenchError, match="holds no folder"):
+        tasks_in(tmp_path)
+
+
+def test_a_dead_skill_is_counted_and_has_no_limit_beside_it(tmp_path: Path) -> None:
+    extent = Extent(tasks=("clean_dishes",), monitors=("blind:5", "tpvqa"), episodes=2)
+    found = run_abroad_bench(AbroadBench(parts=(Part.DEAD,), extent=extent), tmp_path)[Part.DEAD]
+    told = {(line.condition, line.monitor): line for line in lines(found)}
+    assert {monitor for _, monitor in told} == {"blind:5", "tpvqa"}
+    assert told["limits=none,dead=wash", "blind:5"].patient == 1
+    assert told["limits=none,dead=wash", "blind:5"].completion.rate == 0
+    rows = [row for own in found.values() for row in own]
+    assert {row.dead for row in rows if row.monitor == "blind:5"} == {5}
+    assert "dead skill tried 8 times at most" in (tmp_path / "abroad.md").read_text()
+
+
+def test_who_sees_all_knows_where_things_are_at_first(tmp_path: Path) -> None:
+    extent = Extent(tasks=("eat_apple",), monitors=("tp",), episodes=6)
+    found = run_abroad_bench(AbroadBench(parts=(Part.ELSEWHERE,), extent=extent), tmp_path)
+    told = {line.monitor: line for line in lines(found[Part.ELSEWHERE])}
+    assert told[SEEING].completion.rate == 1
+    assert told["tp"].completion.rate < 1
