@@ -1,7 +1,8 @@
 """A normalised task as rules with variables: what adds, deletes or derives which literals."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import prod
 from typing import Any
 
 from fast_downward.translate import pddl
@@ -65,7 +66,7 @@ class Rules:
         named: Objects that actions, axioms and goal name.
         alike: For each object of a type of which there are few, all of that type.
         size: Instances of actions times those of their effects, as far as types and static facts
-            about one thing tell: how large a grounding may get.
+            tell: how large a grounding may get.
     """
 
     by_head: Mapping[tuple[bool, str], tuple[Rule, ...]]
@@ -86,37 +87,25 @@ def rules_of(task: Any) -> Rules:
     }
     changing = {effect.literal.predicate for action in task.actions for effect in action.effects}
     derived = {axiom.name for axiom in task.axioms}
-    with_one: dict[str, set[str]] = {}
+    facts: dict[str, set[Words]] = {}
     for fact in task.init:
-        if isinstance(fact, pddl.Atom) and len(fact.args) == 1:
-            with_one.setdefault(fact.predicate, set()).add(fact.args[0])
+        if isinstance(fact, pddl.Atom):
+            facts.setdefault(fact.predicate, set()).add(tuple(fact.args))
     rules: list[Rule] = []
     size = 0
     for action in task.actions:
         given = _literals(action.precondition)
         domains = _domains(action.parameters, objects)
-        for literal in given:
-            if literal.positive and literal.predicate not in changing | derived:
-                for word in literal.arguments[:1] if len(literal.arguments) == 1 else ():
-                    fitting = with_one.get(literal.predicate, set())
-                    if word in domains:
-                        domains[word] = {n: None for n in domains[word] if n in fitting}
-        instances = 1
-        for things in domains.values():
-            instances *= len(things)
+        static = [each for each in given if each.predicate not in changing | derived | {"="}]
+        instances = _instances(domains, [each for each in static if each.positive], facts)
         changes = tuple(_literal(e.literal) for e in action.effects if not e.parameters)
         effects = 0
         for effect in action.effects:
             own = _domains(effect.parameters, objects)
-            each = 1
-            for things in own.values():
-                each *= len(things)
-            effects += each
+            effects += prod(map(len, own.values()))
             body = (*given, *_literals(effect.condition))
-            head, price = (
-                _literal(effect.literal),
-                _price(action) if task.use_min_cost_metric else 0,
-            )
+            head = _literal(effect.literal)
+            price = _price(action) if task.use_min_cost_metric else 0
             rules.append(Rule(head, body, {**domains, **own}, changes, price=price))
         size += instances * max(effects, 1)
     for axiom in task.axioms:
@@ -156,6 +145,33 @@ def _alike(objects: Any) -> dict[str, frozenset[str]]:
         by_type.setdefault(thing.type_name, set()).add(thing.name)
     few = [frozenset(names) for names in by_type.values() if len(names) <= _FEW]
     return {name: names for names in few for name in names}
+
+
+def _instances(
+    domains: dict[str, Mapping[str, None]],
+    static: Iterable[Literal],
+    facts: Mapping[str, set[Words]],
+) -> int:
+    """At most so many ways there are to make static literals hold; narrows domains of variables.
+
+    Every variable is counted once, with a literal of few facts that speaks of it, or alone.
+    """
+    literals = sorted(static, key=lambda each: len(facts.get(each.predicate, ())))
+    for literal in literals:
+        if len(literal.arguments) == 1 and literal.arguments[0] in domains:
+            fitting = facts.get(literal.predicate, set())
+            word = literal.arguments[0]
+            domains[word] = {name: None for name in domains[word] if (name,) in fitting}
+    left = {word: len(things) for word, things in domains.items()}
+    count = 1
+    for literal in literals:
+        words = [word for word in dict.fromkeys(literal.arguments) if word in left]
+        number = len(facts.get(literal.predicate, ()))
+        if words and number < prod(left[word] for word in words):
+            count *= number
+            for word in words:
+                del left[word]
+    return count * prod(left.values())
 
 
 def _price(action: Any) -> float | Words:
