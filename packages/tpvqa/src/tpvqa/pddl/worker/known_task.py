@@ -214,8 +214,11 @@ class KnownTask:
             )
 
     def _served(self, static: Facts, fluent: Facts) -> bool:
-        """Whether a part is kept that serves a state and in which the goal seemed in reach."""
-        return any(part.knows(static, fluent) and part.home.goal_reachable for part in self._parts)
+        """Whether a grounding is kept that serves a state and in which the goal seemed in reach."""
+        return any(
+            kept.knows(static, fluent) and kept.home.goal_reachable
+            for kept in (self._whole, *self._parts)
+        )
 
     def _suitable(self, static: Facts, fluent: Facts, leaving: Leaving) -> Iterator[KeptGroundings]:
         """Parts of a large task in which to look for a plan, one after the other."""
@@ -235,9 +238,12 @@ class KnownTask:
         self, static: Facts, fluent: Facts, leaving: Leaving, names: frozenset[str]
     ) -> Iterator[KeptGroundings]:
         """Parts with these objects and what may matter from a state, each larger than the last."""
-        known, names = frozenset[str](), names | leaving.keep
+        known, names, lacking = frozenset[str](), names | leaving.keep, False
         for effort in EFFORTS[leaving.effort :]:
+            if lacking and effort is not EFFORTS[-1]:
+                continue  # a little more of the same
             found = relevant_objects(self._rules, static | fluent, effort)
+            lacking = found is None
             if found is None or found <= known:
                 continue
             known = names = names | found

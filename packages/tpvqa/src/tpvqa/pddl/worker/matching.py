@@ -11,6 +11,9 @@ Binding = dict[str, str]
 _DEEP = 40
 """Derived facts that rest on each other; further ones are taken not to hold."""
 _ALL = 1 << 30
+_MUST, _MAY, _OPEN = "holds", "may hold", "is left open"
+_Pending = tuple[str, Literal]
+"""Whether a literal of a body has to hold, and the literal as far as it is bound."""
 
 
 class Matcher:
@@ -58,14 +61,15 @@ class Matcher:
             for rule in self._rules.by_head.get((True, atom.predicate), ()):
                 binding = unified(rule, atom)
                 if binding is not None:
-                    for found, _ in self._extended(rule, binding, frozenset(), 0, _ALL):
+                    body = [(_MUST, literal) for literal in rule.body]
+                    for found, _ in self._extended(rule, binding, body, (), 0, _ALL):
                         yield rule, found
         finally:
             self._deep -= 1
 
     def supports(
         self, rule: Rule, binding: Binding, *, spare: int, most: int
-    ) -> list[tuple[Binding, list[Literal]]]:
+    ) -> list[tuple[Binding, tuple[Literal, ...]]]:
         """Objects for all variables of a rule, with what of its body does not hold.
 
         Static parts of the body hold; the fewer of the others are open, the earlier it comes.
@@ -76,66 +80,71 @@ class Matcher:
             spare: So many literals may be left open though they hold for some objects.
             most: So many at most.
         """
-        soft = frozenset(
-            number
-            for number, literal in enumerate(rule.body)
-            if literal.predicate not in self._rules.static
-        )
+        body = [
+            (_MUST if literal.predicate in self._rules.static else _MAY, literal)
+            for literal in rule.body
+        ]
         found = {
             tuple(each[word] for word in rule.variables): (each, missing)
-            for each, missing in islice(self._extended(rule, binding, soft, spare, most), 4 * most)
+            for each, missing in islice(
+                self._extended(rule, binding, body, (), spare, most), 4 * most
+            )
         }
         return sorted(found.values(), key=lambda each: len(each[1]))[:most]
 
     def _extended(
-        self, rule: Rule, binding: Binding, soft: frozenset[int], spare: int, most: int
-    ) -> Iterator[tuple[Binding, list[Literal]]]:
+        self,
+        rule: Rule,
+        binding: Binding,
+        pending: Sequence[_Pending],
+        missing: tuple[Literal, ...],
+        spare: int,
+        most: int,
+    ) -> Iterator[tuple[Binding, tuple[Literal, ...]]]:
         """Joins the body with the facts, those literals first that leave the fewest choices."""
-        body = rule.body
-        best: tuple[tuple[bool, int], int, list[Words]] | None = None
-        for number, literal in enumerate(body):
+        rest: list[_Pending] = []
+        for how, literal in pending:
             bound = literal.bound(binding)
-            free = [word for word in bound.arguments if word[0] == "?"]
-            if not free:
-                if number not in soft and not self.holds(bound):
+            if any(word[0] == "?" for word in bound.arguments):
+                rest.append((how, bound))
+            elif not self.holds(bound):
+                if how is _MUST:
                     return
+                missing = (*missing, bound)
+        best: tuple[tuple[bool, int], int, list[Words]] | None = None
+        for place, (how, literal) in enumerate(rest):
+            if how is _OPEN or not literal.positive or literal.predicate == "=":
                 continue
-            if not bound.positive or bound.predicate == "=":
-                continue
-            facts = self._matching(bound)
-            if not facts:
-                if number not in soft:
-                    return
-                continue
-            if number in soft and -number - 1 in soft:
-                continue  # left open on purpose
-            rank = (len(free) == len(bound.arguments), len(facts))
-            if best is None or rank < best[0]:
-                best = rank, number, facts
+            facts = self._matching(literal)
+            if facts:
+                alone = all(word[0] == "?" for word in literal.arguments)
+                if best is None or (alone, len(facts)) < best[0]:
+                    best = (alone, len(facts)), place, facts
+            elif how is _MUST:
+                return
         if best is not None:
-            _, number, facts = best
+            _, place, facts = best
+            how, literal = rest[place]
             some = False
             for arguments in facts[: 4 * most]:
-                more = self._with(rule, binding, body[number].arguments, arguments)
+                more = self._with(rule, binding, literal.arguments, arguments)
                 if more is not None:
-                    for each in self._extended(rule, more, soft, spare, most):
+                    for each in self._extended(rule, more, rest, missing, spare, most):
                         some = True
                         yield each
-            if number in soft and (spare or not some):
-                # A negative number marks a literal that is left open.
-                left = soft | {-number - 1}
-                yield from self._extended(rule, binding, left, spare - some, most)
+            if how is _MAY and (spare or not some):
+                rest[place] = (_OPEN, literal)
+                yield from self._extended(rule, binding, rest, missing, spare - some, most)
             return
-        free = [word for word in rule.variables if word not in binding]
-        if free:
-            fitting = self._possible(rule, binding, free[0])
-            names = [name for name in self.preferred if name in fitting]
-            others = (name for name in fitting if name not in self.preferred)
-            for name in [*names, *islice(others, most)][:most]:
-                yield from self._extended(rule, {**binding, free[0]: name}, soft, spare, most)
+        free = next((word for word in rule.variables if word not in binding), None)
+        if free is None:
+            yield binding, tuple(dict.fromkeys(missing))
             return
-        literals = [literal.bound(binding) for literal in body]
-        yield binding, [literal for literal in dict.fromkeys(literals) if not self.holds(literal)]
+        fitting = self._possible(rule, binding, free)
+        names = [name for name in self.preferred if name in fitting]
+        others = (name for name in fitting if name not in self.preferred)
+        for name in [*names, *islice(others, most)][:most]:
+            yield from self._extended(rule, {**binding, free: name}, rest, missing, spare, most)
 
     def _possible(self, rule: Rule, binding: Binding, variable: str) -> Mapping[str, None]:
         """The objects for a variable with which an action can bring the body about at all."""
