@@ -115,6 +115,19 @@ def test_yes_that_means_no_is_said_so_and_worth_nothing() -> None:
     assert fit(trials(100, surer=1.0), "v").notices == ()
 
 
+def test_few_answers_that_are_wrong_by_chance_are_not_worth_nothing() -> None:
+    others = list(trials(60, surer=1.0, predicate="on"))
+    own = [row for row in trials(40, surer=1.0, predicate="clean") if row.look == 0]
+    wrong = [row for row in own if (row.reply is Reply.YES) != row.truth]
+    worths = []
+    for count in (4, 12, 36):
+        found = fit([*others, *wrong[:count]], "v")
+        worths.append(worth(found, Reply.YES, 0.8, "clean"))
+    assert worths[0] > 0.2
+    assert worths[0] > worths[1] > worths[2] > 0
+    assert worths[2] < 0.1
+
+
 def test_noise_never_gives_a_negative_slope() -> None:
     found = fit(trials(30, accuracy=0.5, surer=1.0), "v")
     curves = [each.curve for each in (found.whole, *found.ways, *found.groups)]

@@ -5,7 +5,7 @@ its latest step whose needs hold, however the state came about. Needs are regres
 rest of the plan (Fritz and McIlraith 2007).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from tpvqa.pddl import Action, Atom, Literal, State, Task, literals
 
@@ -24,14 +24,16 @@ class AnnotatedPlan:
 
     def __init__(self, task: Task, actions: Sequence[Action], needs: Sequence[Needs]):
         self.task, self.actions, self.needs = task, tuple(actions), tuple(needs)
-        self._places: dict[State, int | None] = {}
         self._atoms = frozenset(each.atom for need in needs for each in need)
-        self._wanted = [
+
+    def wanted(self, bits: Callable[[Iterable[Atom]], int]) -> list[tuple[int, int]]:
+        """What every step and the goal need, and what must not hold there, as bits of facts."""
+        return [
             (
-                frozenset(each.atom for each in need if each.positive),
-                frozenset(each.atom for each in need if not each.positive),
+                bits(each.atom for each in need if each.positive),
+                bits(each.atom for each in need if not each.positive),
             )
-            for need in needs
+            for need in self.needs
         ]
 
     def place(self, state: State) -> int | None:
@@ -39,23 +41,13 @@ class AnnotatedPlan:
 
         None where the plan cannot be gone on with from the state.
         """
-        if state in self._places:
-            return self._places[state]
+        if self.task.goal_holds(state):
+            return len(self.actions)
         full = self.task.extend(state)
-        found = (
-            len(self.actions)
-            if self.task.goal_holds(state)
-            else next(
-                (
-                    index
-                    for index in range(len(self._wanted) - 1, -1, -1)
-                    if self._wanted[index][0] <= full and full.isdisjoint(self._wanted[index][1])
-                ),
-                None,
-            )
-        )
-        self._places[state] = found
-        return found
+        for index in range(len(self.needs) - 1, -1, -1):
+            if all((each.atom in full) is each.positive for each in self.needs[index]):
+                return index
+        return None
 
     def remaining(self, state: State) -> int | None:
         """How many actions are left from a state; None where the plan does not help."""

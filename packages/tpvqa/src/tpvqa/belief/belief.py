@@ -55,6 +55,21 @@ class Belief:
         self._marginals: dict[tuple[Atom, ...], float] = {}
         self._ranked: list[tuple[int, float]] | None = None
 
+    def renew(self) -> dict[int, int]:
+        """Forget the joint states that are not possible any more, before an action.
+
+        Returns:
+            The new numbers of those that are, by their old ones.
+        """
+        old, self.model = self.model, self.model.renewed()
+        numbers = {number: self.model.number(old.joint_states[number]) for number in self.weights}
+        self.weights = {numbers[number]: weight for number, weight in self.weights.items()}
+        self.outcome_weights = None
+        self._predicted = {}
+        self._marginals.clear()
+        self._ranked = None
+        return numbers
+
     def states(self) -> list[tuple[State, float]]:
         """The joint states with their probabilities, the most probable first."""
         return [(self.model.state(number), weight) for number, weight in self.ranked()]
@@ -62,8 +77,7 @@ class Belief:
     def ranked(self) -> Sequence[tuple[int, float]]:
         """The numbers of the joint states with their probabilities, the most probable first."""
         if self._ranked is None:
-            keys = self.model.keys
-            self._ranked = sorted(self.weights.items(), key=lambda each: (-each[1], keys[each[0]]))
+            self._ranked = self.model.ranked(self.weights)
         return self._ranked
 
     def most_probable(self) -> tuple[State, float]:
@@ -111,17 +125,19 @@ class Belief:
             possible = outcomes.intended is not None
             if outcomes.intended is not None:
                 failing = weight * f
-                lasting = 1 - s if outcomes.undone_after else 1.0
+                falling = weight * (1 - f) * s
+                after_it = outcomes.undone_after if falling > self._smallest else ()
+                lasting = 1 - s if after_it else 1.0
                 add(outcomes.intended, weight * (1 - f) * lasting, came.success)
-                if s:
-                    for share, other in outcomes.undone_after:
-                        add(other, weight * (1 - f) * s * share, came.success)
-            if not outcomes.undone:
+                for share, other in after_it:
+                    add(other, falling * share, came.success)
+            undone = outcomes.undone if failing * d > self._smallest else ()
+            if not undone:
                 add(number, failing, came.failure if possible else None)
                 continue
             add(number, failing * (1 - d), came.failure if possible else None)
             came.could_disturb[number] = came.could_disturb.get(number, 0) + failing * (1 - d)
-            for share, other in outcomes.undone:
+            for share, other in undone:
                 mass = failing * d * share
                 add(other, mass, came.failure if possible else None)
                 came.disturbed[other] = came.disturbed.get(other, 0.0) + mass
@@ -231,9 +247,7 @@ class Belief:
         least = (self._smallest if smallest is None else smallest) * total
         kept = {n: w / total for n, w in weights.items() if w > least}
         if len(kept) > self._most:
-            keys = self.model.keys
-            ranked = sorted(kept, key=lambda n: (-kept[n], keys[n]))[: self._most]
-            kept = {n: kept[n] for n in ranked}
+            kept = dict(self.model.ranked(kept)[: self._most])
         share = sum(kept.values())
         self.weights = {n: w / share for n, w in kept.items()}
         self._marginals.clear()

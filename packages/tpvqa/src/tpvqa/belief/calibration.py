@@ -130,7 +130,10 @@ class Calibration(_Model):
     Attributes:
         version: Of the file.
         vlm: What it was learnt of.
-        rows: Labelled answers that it was learnt from.
+        rows: Labelled answers that it was learnt from, each as often as it counts.
+        by_hand: Labels that a person gave for them; one may hold for many answers.
+        inferred: Answers that nobody has labelled, and of which later steps told what was probably
+            right; they count for less (`labelling.inferring`).
         groups: By way and predicate.
         ways: By way.
         whole: Of all answers.
@@ -144,6 +147,8 @@ class Calibration(_Model):
     version: Literal[1] = 1
     vlm: str
     rows: int = 0
+    by_hand: int = Field(default=0, ge=0)
+    inferred: int = Field(default=0, ge=0)
     groups: tuple[Group, ...] = ()
     ways: tuple[Group, ...] = ()
     whole: Group
@@ -176,7 +181,8 @@ class Calibration(_Model):
     @property
     def fingerprint(self) -> str:
         """Tells it from other calibrations."""
-        return sha256(self.model_dump_json().encode()).hexdigest()[:12]
+        unsaid = {name for name in ("by_hand", "inferred") if not getattr(self, name)}
+        return sha256(self.model_dump_json(exclude=unsaid).encode()).hexdigest()[:12]
 
     @classmethod
     def default(cls, vlm: str = "") -> "Calibration":

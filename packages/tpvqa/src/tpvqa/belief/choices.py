@@ -18,6 +18,8 @@ from tpvqa.pddl import Action, State
 
 LIKELY = 0.02
 """Joint states of at least this probability get a plan of their own."""
+UNLIKELY = 4
+"""Plans between two actions from joint states that are less probable than that."""
 CHOICES = 6
 """Choices that are compared, at most."""
 IDLE = 0.97
@@ -93,10 +95,14 @@ class Chooser:
         self._sight = sight or Sight(model)
         self.ahead = Outlook(model, costs, self._sight)
         self._commitments = Commitments(model, self.ahead, self._sight)
-        self._going: dict[int, float] = {}
+        self._going: dict[tuple[int, bool], float] = {}
+        self._led: dict[tuple[Action, int, bool], list[tuple[float, int, float]]] = {}
+        self._cost: dict[tuple[Action, int, bool], float] = {}
+        self._worked_out_for: tuple[int, Rates] | None = None
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._postponed: set[State] = set()
+        self._unlikely = 0
         self._done: list[tuple[int, Action]] = []
         self.changes_left: int | None = None
 
@@ -112,6 +118,7 @@ class Chooser:
     def acted(self, belief: Belief, action: Action) -> None:
         """Note that an action is executed, before the belief predicts what it leads to."""
         self._postponed.clear()
+        self._unlikely = 0
         self._done.append((belief.ranked()[0][0], action))
 
     def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
@@ -127,16 +134,27 @@ class Chooser:
         return self.ahead.best(self._model.number(JointState(state)))
 
     def unplanned(self, belief: Belief) -> State | None:
-        """The most probable joint state that no known plan helps; None if none is likely."""
+        """The most probable joint state that no known plan helps; None if none is likely.
+
+        Many that are unlikely each are likely together: then the first few of them count too.
+        """
+        found: State | None = None
+        together = 0.0
         for number, weight in belief.ranked():
-            if weight < LIKELY:
-                return None
+            if weight < LIKELY / 10:
+                break
             state = self._model.state(number)
             if state in self.ahead.hopeless or state in self._postponed:
                 continue
             if self.ahead.best(number) is None:
-                return state
-        return None
+                if weight >= LIKELY:
+                    return state
+                found = found or state
+                together += weight
+        if together < LIKELY or self._unlikely >= UNLIKELY:
+            return None
+        self._unlikely += 1
+        return found
 
     def table(
         self,
@@ -153,7 +171,10 @@ class Chooser:
             current: The plan that is being followed; other actions cost a change of plan.
             barred: An action that the trial does not allow now: it was repeated too often.
         """
-        self._going.clear()
+        if (self.ahead.version, rates) != self._worked_out_for:
+            self._worked_out_for = self.ahead.version, rates
+            for known in (self._going, self._led, self._cost):
+                known.clear()
         ranked = belief.ranked()
         choices = [
             each
@@ -186,67 +207,81 @@ class Chooser:
 
     def _column(self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates) -> Floats:
         """The expected costs of an action in the joint states."""
-        skill = self.ahead.skill(action)
-        led = [self._successors(action, *each, skill.failure, rates) for each in ranked]
-        together = self._commitments.made(
-            (other, weight * share)
-            for (_, weight), successors in zip(ranked, led, strict=True)
-            for share, other, _ in successors
-        )
-        to_go = self.ahead.to_go
-        return np.array(
-            [
-                self._step
-                + sum(
-                    share * (together.get(other, to_go(other)) + more)
-                    for share, other, more in successors
-                )
-                for successors in led
-            ]
-        )
+        together = {}
+        if not self._sight.complete:
+            together = self._commitments.made(
+                (other, weight * share)
+                for number, weight in ranked
+                for share, other, _ in self._successors(action, number, weight, rates)
+            )
+        return np.array([self._paid(action, *each, rates, together) for each in ranked])
+
+    def _paid(
+        self,
+        action: Action,
+        number: int,
+        weight: float,
+        rates: Rates,
+        together: Mapping[int, float],
+    ) -> float:
+        """What an action costs in a joint state, with all that lies ahead."""
+        key = (action, number, weight >= DISTURBED)
+        known = None if together else self._cost.get(key)
+        if known is None:
+            to_go = self.ahead.to_go
+            known = self._step + sum(
+                share * ((together[other] if other in together else to_go(other)) + more)
+                for share, other, more in self._successors(action, number, weight, rates)
+            )
+            if not together:
+                self._cost[key] = known
+        return known
 
     def _successors(
-        self, action: Action, number: int, weight: float, failure: float, rates: Rates
+        self, action: Action, number: int, weight: float, rates: Rates
     ) -> list[tuple[float, int, float]]:
         """What an action leads to from a joint state: shares, joint states, and what each costs
         besides."""
+        key = (action, number, weight >= DISTURBED)
+        found = self._led.get(key)
+        if found is None:
+            found = self._led[key] = self._followed(action, number, rates, near=key[2])
+        return found
+
+    def _followed(
+        self, action: Action, number: int, rates: Rates, *, near: bool
+    ) -> list[tuple[float, int, float]]:
         outcomes = self._model.outcomes(action)[number]
         if outcomes.achieved:
-            return [(1.0, number, self._idling(number, rates))]
-        possible = outcomes.intended is not None
+            return [(1.0, number, self._idling(number, rates, near=near))]
+        possible, failure = outcomes.intended is not None, self.ahead.skill(action).failure
         failed = failure if possible else 1.0
-        more = 0.0 if possible else self._idling(number, rates)
+        more = 0.0 if possible else self._idling(number, rates, near=near)
         found: list[tuple[float, int, float]] = []
         if outcomes.intended is not None:
-            after = outcomes.undone_after
+            after = outcomes.undone_after if near else ()
             found += _fallen(1 - failure, outcomes.intended, after, rates.spontaneous)
-        if weight >= DISTURBED:
+        if near:
             found += _fallen(failed, number, outcomes.undone, rates.disturbance, more)
         else:
             found.append((failed, number, more + rates.disturbance * self._step))
         return found
 
-    def _idling(self, number: int, rates: Rates) -> float:
+    def _idling(self, number: int, rates: Rates, *, near: bool) -> float:
         """What it costs besides to have done nothing: the risks of the next action remain.
 
         The way ahead knows no disturbances. If it were taken here, an action that changes nothing
         would look better than one that may go wrong.
         """
-        known = self._going.get(number)
+        known = self._going.get((number, near))
         if known is None:
             known, action = 0.0, self.ahead.next(number)
             if action is not None:
                 outcomes = self._model.outcomes(action)[number]
                 if outcomes.intended is not None and not outcomes.achieved:
-                    skill = self.ahead.skill(action)
-                    cost = self._step + sum(
-                        share * self.ahead.to_go(other)
-                        for share, other, _ in self._successors(
-                            action, number, 1.0, skill.failure, rates
-                        )
-                    )
+                    cost = self._paid(action, number, float(near), rates, {})
                     known = max(0.0, cost - self.ahead.to_go(number))
-            self._going[number] = known
+            self._going[number, near] = known
         return known
 
     def _weary(self, action: Action, ranked: Sequence[tuple[int, float]]) -> float:

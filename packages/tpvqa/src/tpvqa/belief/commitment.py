@@ -39,6 +39,8 @@ class Commitments:
         Args:
             predicted: Joint states that an action leads to, with their probabilities.
         """
+        if self._sight.complete:
+            return {}
         masses: dict[int, float] = defaultdict(float)
         for number, mass in predicted:
             masses[number] += mass
@@ -52,7 +54,7 @@ class Commitments:
         return costs
 
     def _together(self, numbers: list[int], masses: dict[int, float]) -> dict[int, float]:
-        ranked = sorted(numbers, key=lambda n: (-masses[n], self._model.keys[n]))
+        ranked = [number for number, _ in self._model.ranked({n: masses[n] for n in numbers})]
         ways = [self._ahead.best(number) for number in ranked[:WAYS]]
         found = [
             {number: self._along(way, number) for number in ranked}

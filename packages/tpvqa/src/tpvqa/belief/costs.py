@@ -22,8 +22,8 @@ class Costs(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     action: float = Field(default=1.0, gt=0)
-    question: float = Field(default=0.01, ge=0)
-    look: float = Field(default=0.001, ge=0)
+    question: float = Field(default=0.05, ge=0)
+    look: float = Field(default=0.005, ge=0)
     replan: float = Field(default=0.3, ge=0)
     person: float | None = Field(default=None, ge=0)
     failure: float = Field(default=50.0, gt=0)

@@ -25,20 +25,25 @@ def shrunk(
     """
     return AnswerRates(
         yes_if_true=_share(
-            (row.reply is Reply.YES for row in answers if row.truth), wider.yes_if_true
+            ((row, row.reply is Reply.YES) for row in answers if row.truth), wider.yes_if_true
         ),
         yes_if_false=_share(
-            (row.reply is Reply.YES for row in answers if not row.truth), wider.yes_if_false
+            ((row, row.reply is Reply.YES) for row in answers if not row.truth),
+            wider.yes_if_false,
         ),
         abstain_if_true=_share(
-            (row.reply not in ANSWERS for row in every if row.truth), wider.abstain_if_true
+            ((row, row.reply not in ANSWERS) for row in every if row.truth), wider.abstain_if_true
         ),
         abstain_if_false=_share(
-            (row.reply not in ANSWERS for row in every if not row.truth), wider.abstain_if_false
+            ((row, row.reply not in ANSWERS) for row in every if not row.truth),
+            wider.abstain_if_false,
         ),
     )
 
 
-def _share(hits: Iterable[bool], wider: float) -> float:
-    found = list(hits)
-    return (sum(found) + PSEUDO * wider) / (len(found) + PSEUDO)
+def _share(cases: Iterable[tuple[LabelledAnswer, bool]], wider: float) -> float:
+    hits = total = 0.0
+    for row, hit in cases:
+        total += row.weight
+        hits += row.weight * hit
+    return (hits + PSEUDO * wider) / (total + PSEUDO)

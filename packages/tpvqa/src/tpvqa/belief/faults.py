@@ -1,9 +1,11 @@
 """What an action can lead to: the action model with failures and disturbances."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from hashlib import blake2b
+from itertools import groupby
+from operator import itemgetter
 from typing import Any, Protocol, runtime_checkable
 
 from tpvqa.belief.undoing import BackToBefore
@@ -85,17 +87,31 @@ class JointState:
 class Outcomes:
     """What an action can lead to from one joint state, by number.
 
+    What is undone is worked out where it is asked for: of states that are hardly possible nobody
+    asks.
+
     Attributes:
+        number: That state.
         intended: What its effects say; None where a precondition does not hold.
         achieved: Whether nothing is left to do, so that nothing can fail.
-        undone: What a disturbance of the failed action leads to, each with its share.
-        undone_after: The same after a success.
     """
 
+    number: int
     intended: int | None
     achieved: bool
-    undone: tuple[tuple[float, int], ...]
-    undone_after: tuple[tuple[float, int], ...]
+    model: "FaultModel" = field(repr=False, compare=False)
+
+    @property
+    def undone(self) -> tuple[tuple[float, int], ...]:
+        """What a disturbance of the failed action leads to, each with its share."""
+        return () if self.achieved else self.model.undone(self.number)
+
+    @property
+    def undone_after(self) -> tuple[tuple[float, int], ...]:
+        """The same after a success."""
+        if self.achieved or self.intended is None:
+            return ()
+        return self.model.undone(self.intended)
 
 
 class Truth(dict[int, bool]):
@@ -145,8 +161,20 @@ class FaultModel:
         )
         self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
         self._keep = _Keep(self._undo, task)
+        self._clear()
+
+    def renewed(self) -> "FaultModel":
+        """The same without the joint states that were met."""
+        new = FaultModel.__new__(FaultModel)
+        new.__dict__.update(self.__dict__)
+        new._clear()
+        return new
+
+    def _clear(self) -> None:
         self.joint_states: list[JointState] = []
-        self.keys: list[bytes] = []
+        self._keys: dict[int, bytes] = {}
+        self._bits: dict[Atom, int] = {}
+        self._holding: dict[int, int] = {}
         self.facts = 0
         self._numbers: dict[JointState, int] = {}
         self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
@@ -161,12 +189,45 @@ class FaultModel:
             number = self._numbers[joint_state] = len(self.joint_states)
             self.facts += len(joint_state.state)
             self.joint_states.append(joint_state)
-            self.keys.append(_key(joint_state))
         return number
+
+    def ranked(self, weights: Mapping[int, float]) -> list[tuple[int, float]]:
+        """Joint states by their weight, the greatest first, the same in every process."""
+        found = sorted(weights.items(), key=itemgetter(1), reverse=True)
+        for _, ties in groupby(range(len(found)), key=lambda place: found[place][1]):
+            places = list(ties)
+            if len(places) > 1:
+                first, last = places[0], places[-1] + 1
+                found[first:last] = sorted(found[first:last], key=lambda each: self._key(each[0]))
+        return found
+
+    def _key(self, number: int) -> bytes:
+        known = self._keys.get(number)
+        if known is None:
+            known = self._keys[number] = _key(self.joint_states[number])
+        return known
 
     def state(self, number: int) -> State:
         """The atoms that hold in a joint state."""
         return self.joint_states[number].state
+
+    def bits(self, atoms: Iterable[Atom]) -> int:
+        """Facts as bits of a number, one for each fact that was ever asked for."""
+        known, found = self._bits, 0
+        for atom in atoms:
+            bit = known.get(atom)
+            if bit is None:
+                bit = known[atom] = 1 << len(known)
+            found |= bit
+        return found
+
+    def holding(self, number: int) -> int:
+        """What holds in a joint state, as `bits`; derived facts too, static ones not."""
+        known = self._holding.get(number)
+        if known is None:
+            full = self.task.extend(self.state(number)) - self.task.static
+            known = self._holding[number] = self.bits(full)
+        return known
 
     def truth(self, atoms: tuple[Atom, ...]) -> Truth:
         """In which joint states any of some facts holds, by number."""
@@ -186,13 +247,12 @@ class FaultModel:
     def _work_out(self, action: Action, number: int) -> Outcomes:
         state = self.state(number)
         if self.task.apply(state, action) == state:
-            return Outcomes(number, True, (), ())
+            return Outcomes(number, number, True, self)
         truly = self._truly(action, state)
-        undone = self.undone(number)
         if not self.task.applicable(state, truly):
-            return Outcomes(None, False, undone, ())
+            return Outcomes(number, None, False, self)
         intended = self.become(number, self.task.apply(state, truly))
-        return Outcomes(intended, False, undone, self.undone(intended))
+        return Outcomes(number, intended, False, self)
 
     def applicable(self, action: Action, state: State) -> bool:
         """Whether the preconditions of what an action truly is hold."""
@@ -222,7 +282,10 @@ class FaultModel:
         """The joint state after a change of its atoms."""
         before = self.joint_states[number]
         ended = self._keep(before.ended, before.state - after)
-        return self.number(JointState(after, ended))
+        there = self.number(JointState(after, ended))
+        if there not in self._holding and not self.task.derived:
+            self._holding[there] = self.holding(number) ^ self.bits(before.state ^ after)
+        return there
 
     def undone(self, number: int) -> tuple[tuple[float, int], ...]:
         """What a disturbance leads to: an achieved fact is undone, each as probable."""

@@ -56,14 +56,14 @@ def fit(rows: Iterable[LabelledAnswer], vlm: str, *, chosen_looks: bool = True) 
         return Group(
             way=key[0],
             predicate=key[1],
-            rows=sum(_belongs(row, key) for row in every),
+            rows=round(sum(row.weight for row in every if _belongs(row, key))),
             rates=rates(key),
             curve=None if curves is None else curves.of(key),
         )
 
     found = Calibration(
         vlm=vlm,
-        rows=len(placed),
+        rows=round(sum(each.row.weight for each in placed)),
         groups=tuple(map(group, sorted({(row.way, row.predicate) for row in every}))),
         ways=tuple(group((way, None)) for way in sorted({row.way for row in every})),
         whole=group(WHOLE),

@@ -58,6 +58,10 @@ class Inquirer:
     def __init__(self, model: FaultModel, evidence: Evidence, costs: Costs):
         self._model, self._evidence, self._costs = model, evidence, costs
 
+    def renumbered(self, model: FaultModel) -> None:
+        """Go on with a model that gives joint states other numbers."""
+        self._model = model
+
     def best(
         self,
         questions: Sequence[FactQuestion],

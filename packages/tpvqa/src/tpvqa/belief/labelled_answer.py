@@ -20,6 +20,9 @@ class LabelledAnswer:
         trial: Tells trials apart; answers of different trials are independent.
         look: Number of the look within the trial.
         view: Where the picture was taken from, where known.
+        part: Tells apart stretches of a trial that are labelled by themselves: answers of two of
+            them are never taken for answers about one unchanged fact.
+        weight: How many answers it counts for.
     """
 
     way: Way
@@ -31,3 +34,5 @@ class LabelledAnswer:
     trial: str
     look: int
     view: str | None = None
+    part: str = ""
+    weight: float = 1.0

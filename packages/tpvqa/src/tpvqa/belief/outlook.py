@@ -1,6 +1,7 @@
 """What lies ahead of a joint state: the rest of the cheapest known plan, and what it costs."""
 
 from collections.abc import Callable, Sequence
+from math import inf
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.costs import Costs
@@ -11,7 +12,7 @@ from tpvqa.pddl import Action, State
 
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
-PLANS = 24
+PLANS = 12
 """Plans that are kept, the latest ones."""
 
 SkillOf = Callable[[Action], SkillState]
@@ -32,6 +33,7 @@ class Outlook:
         left: Actions that the trial still allows; None for any number. Where they are fewer than
             what a state needs, the task fails there.
         hopeless: States that no plan leads out of.
+        version: Grows whenever costs change.
     """
 
     def __init__(self, model: FaultModel, costs: Costs, sight: Sight):
@@ -42,7 +44,9 @@ class Outlook:
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
         self._rates = Rates()
         self._lost: float | None = None
-        self._places: dict[int, list[tuple[int, AnnotatedPlan]]] = {}
+        self._places: dict[AnnotatedPlan, dict[int, int | None]] = {}
+        self._wanted: dict[AnnotatedPlan, list[tuple[int, int]]] = {}
+        self.version = 0
         self._goals: dict[int, bool] = {}
         self._forget()
 
@@ -51,8 +55,10 @@ class Outlook:
         if plan in self.plans:
             self.plans.remove(plan)
         self.plans.insert(0, plan)
+        for old in self.plans[PLANS:]:
+            self._places.pop(old, None)
+            self._wanted.pop(old, None)
         del self.plans[PLANS:]
-        self._places.clear()
         self._forget()
 
     def learned(self, skill: SkillOf, rates: Rates) -> None:
@@ -70,32 +76,52 @@ class Outlook:
         if actions != self.left:
             self.left = actions
             self._to_go.clear()
+            self.version += 1
 
     def give_up_on(self, state: State) -> None:
         """Note that no plan exists from a state."""
         self.hopeless.add(state)
         self._to_go.clear()
+        self.version += 1
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
         self._model = model
-        self._places.clear()
-        self._goals.clear()
+        for known in (self._places, self._wanted, self._goals):
+            known.clear()
         self._forget()
 
     def best(self, number: int) -> tuple[int, AnnotatedPlan] | None:
         """The cheapest known way from a joint state: a place in a plan, and that plan."""
         known = self._best.get(number, _UNKNOWN)
         if isinstance(known, _Unknown):
-            places = self._places.get(number)
-            if places is None:
-                state = self._model.state(number)
-                found = ((plan.place(state), plan) for plan in self.plans)
-                places = [(place, plan) for place, plan in found if place is not None]
-                self._places[number] = places
-            known = min(places, key=lambda each: self.rest(*each), default=None)
+            known, least = None, inf
+            for plan in self.plans:
+                place = self._place(plan, number)
+                if place is not None and (rest := self.rest(place, plan)) < least:
+                    known, least = (place, plan), rest
             self._best[number] = known
         return known
+
+    def _place(self, plan: AnnotatedPlan, number: int) -> int | None:
+        known = self._places.setdefault(plan, {})
+        if number not in known:
+            known[number] = self._latest(plan, number)
+        return known[number]
+
+    def _latest(self, plan: AnnotatedPlan, number: int) -> int | None:
+        """`AnnotatedPlan.place`, faster."""
+        if self.is_goal(number):
+            return len(plan.actions)
+        wanted = self._wanted.get(plan)
+        if wanted is None:
+            wanted = self._wanted[plan] = plan.wanted(self._model.bits)
+        holding = self._model.holding(number)
+        for index in range(len(wanted) - 1, -1, -1):
+            needed, barred = wanted[index]
+            if not (needed & ~holding or barred & holding):
+                return index
+        return None
 
     def next(self, number: int) -> Action | None:
         """The first action of that way; None at the goal, or where no way is known."""
@@ -163,7 +189,9 @@ class Outlook:
             if self._model.state(number) in self.hopeless:
                 return self.failure
             steps = self._longest() + 2
-            cost = steps * self._usual_step()
+            works = 1 - self._rates.failure
+            unchecked = steps * self._costs.action + (1 - works**steps) * self.failure
+            cost = min(steps * self._usual_step(), unchecked)
         else:
             place, plan = found
             steps = len(plan.actions) - place
@@ -210,6 +238,7 @@ class Outlook:
 
     def _forget(self) -> None:
         """What was worked out holds for other plans or rates."""
+        self.version += 1
         self._best: dict[int, tuple[int, AnnotatedPlan] | None] = {}
         self._rests: dict[int, list[float]] = {}
         self._steps: dict[Action, float] = {}

@@ -1,8 +1,9 @@
 """What P(yes) is worth: Platt scaling with partial pooling over ways of asking and predicates."""
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from math import erf, exp, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,8 @@ deviations of the normal priors that an L2 penalty is. A way's curve is drawn ar
 group's around its way's."""
 SURE = 3.0
 """Standard errors from which on a user is told that yes and no seem to be swapped."""
+_BOTH = {1, 2}
+"""Slope and sign."""
 _LOOSE = 10.0
 """Standard deviation of what all groups share; the default's pseudo-answers hold it."""
 
@@ -51,7 +54,9 @@ def fit_curves(answers: Sequence[LabelledAnswer]) -> Curves:
     one of the two ever was right tells none, and follows the others. `Calibration.default` counts
     as `PSEUDO` answers. A slope or a sign that points the wrong way is left out, and the rest
     fitted again: of dozens of groups one or two do so by chance, and hardly any VLM means no by
-    yes. The curve of a way, and that of all, is the mean of its groups'.
+    yes. Where both are left out of a group, its words are worth what they are expected to be worth,
+    given that it is not less than nothing: much where few answers say so, next to nothing where
+    many do. The curve of a way, and that of all, is the mean of its groups'.
 
     Args:
         answers: Yes and no with their P(yes).
@@ -63,24 +68,30 @@ def fit_curves(answers: Sequence[LabelledAnswer]) -> Curves:
     ways: list[Key] = [(way, None) for way in sorted({row.way for row in answers})]
     place = {key: k for k, key in enumerate([*ways, *groups])}
     without: dict[Key, set[int]] = {}
-    notices: list[str] | None = None
+    first = fitted = _fit(answers, place, without)
     while True:
-        fitted = _fit(answers, place, without)
-        if notices is None:
-            notices = [_swapped(key) for key, each in fitted.items() if each.gain < -SURE]
         astray = {key: found for key in groups if (found := fitted[key].astray())}
         if not astray:
             break
         without = {key: without.get(key, set()) | astray.get(key, set()) for key in groups}
-    curves = {key: fitted[key].curve for key in groups}
-    count: Counter[Key] = Counter((row.way, row.predicate) for row in answers)
+        fitted = _fit(answers, place, without)
+    notices = [_swapped(key) for key, each in first.items() if each.gain < -SURE]
+    curves = {
+        key: Curve(slope=0.0, sign=first[key].least / 2)
+        if without.get(key) == _BOTH
+        else fitted[key].curve
+        for key in groups
+    }
+    count: defaultdict[Key, float] = defaultdict(float)
+    for row in answers:
+        count[row.way, row.predicate] += row.weight
     for wider in (*ways, WHOLE):
         within = {key: count[key] for key in groups if wider[0] in (None, key[0])}
         curves[wider] = _mean(curves, within)
     return Curves(curves, tuple(notices))
 
 
-def _mean(curves: Mapping[Key, Curve], rows: Mapping[Key, int]) -> Curve:
+def _mean(curves: Mapping[Key, Curve], rows: Mapping[Key, float]) -> Curve:
     """What an answer of a group that is not known is worth: as much as in those that are."""
     total = sum(rows.values())
     slope, intercept, sign = (
@@ -96,11 +107,27 @@ class _Fitted:
 
     Attributes:
         curve: It.
-        gain: By how much more its yeses speak for yes than its noes, in standard errors.
+        apart: By how much more its yeses speak for yes than its noes, in nats.
+        error: The standard error of that.
     """
 
     curve: Curve
-    gain: float
+    apart: float = 0.0
+    error: float = 0.0
+
+    @property
+    def gain(self) -> float:
+        """By how much more its yeses speak for yes than its noes, in standard errors."""
+        return self.apart / self.error if self.error else 0.0
+
+    @property
+    def least(self) -> float:
+        """`apart` as it is expected, given that it is not negative: the mean of a normal
+        distribution that is cut off at 0."""
+        if self.gain < -8:
+            return self.error / -self.gain
+        density = exp(-(self.gain**2) / 2) / sqrt(2 * pi)
+        return self.apart + self.error * density / ((1 + erf(self.gain / sqrt(2))) / 2)
 
     def astray(self) -> set[int]:
         """Which of intercept (0), slope (1) and sign (2) point the wrong way."""
@@ -152,21 +179,21 @@ def _fit(
         parts = [_combination(key, place, which, design.shape[1]) for which in range(3)]
         own = members[key]
         yes, no = (terms[[n for n in own if sign[n] == said]] for said in (1, -1))
-        gain = 0.0
+        apart = error = 0.0
         if len(yes) and len(no):
-            apart = yes.mean(axis=0) - no.mean(axis=0)
-            vector = apart @ np.array(parts)
-            gain = float(vector @ found / np.sqrt(vector @ covariance @ vector + 1e-12))
+            vector = (yes.mean(axis=0) - no.mean(axis=0)) @ np.array(parts)
+            apart = float(vector @ found)
+            error = float(np.sqrt(vector @ covariance @ vector + 1e-12))
         intercept, slope, worth = (float(part @ found) for part in parts)
         left_out = without.get(key, set())
-        if left_out == {1, 2}:  # neither the word nor P(yes) tells anything
+        if left_out == _BOTH:  # neither the word nor P(yes) tells anything
             intercept = 0.0
         curve = Curve(
             slope=0.0 if 1 in left_out else slope,
             intercept=intercept,
             sign=0.0 if 2 in left_out else worth,
         )
-        fitted[key] = _Fitted(curve, gain)
+        fitted[key] = _Fitted(curve, apart, error)
     return fitted
 
 
@@ -191,12 +218,14 @@ def _balance(answers: Sequence[LabelledAnswer]) -> list[float]:
     The sum of a group is that of its answers where they are in balance already, and about four
     times the rarer kind where they are not: more than that the rarer kind cannot tell.
     """
-    count = Counter((row.way, row.predicate, row.truth) for row in answers)
+    count: defaultdict[tuple[Way, str, bool], float] = defaultdict(float)
+    for row in answers:
+        count[row.way, row.predicate, row.truth] += row.weight
     weights = []
     for row in answers:
         own = count[row.way, row.predicate, row.truth]
         other = count[row.way, row.predicate, not row.truth]
-        weights.append(2 * other / (own + other))
+        weights.append(2 * other / (own + other) * row.weight)
     return weights
 
 

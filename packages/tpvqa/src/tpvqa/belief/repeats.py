@@ -21,6 +21,15 @@ class Repeats(NamedTuple):
     pairs: int
 
 
+class _Pair(NamedTuple):
+    """Two answers in a row: whether they are the same, P(the later one | truth) of one that is
+    drawn afresh, and how many pairs it counts for."""
+
+    same: bool
+    fresh: float
+    weight: float
+
+
 def fit_repeats(
     placed: Iterable[Placed],
     rates: Callable[[LabelledAnswer], AnswerRates],
@@ -42,14 +51,15 @@ def fit_repeats(
     Returns:
         ρ of the same view, and ρ of another.
     """
-    pairs: dict[bool, list[tuple[bool, float]]] = {True: [], False: []}
+    pairs: dict[bool, list[_Pair]] = {True: [], False: []}
     for each in placed:
         row, last = each.row, each.last
         if last is not None:
-            pairs[last.view == row.view].append((last.reply is row.reply, _fresh(row, rates(row))))
+            pair = _Pair(last.reply is row.reply, _fresh(row, rates(row)), row.weight)
+            pairs[last.view == row.view].append(pair)
     return (
-        Repeats(_mode(pairs[True], same_view), len(pairs[True])),
-        Repeats(_mode(pairs[False], other_view), len(pairs[False])),
+        Repeats(_mode(pairs[True], same_view), _count(pairs[True])),
+        Repeats(_mode(pairs[False], other_view), _count(pairs[False])),
     )
 
 
@@ -59,11 +69,15 @@ def _fresh(row: LabelledAnswer, rates: AnswerRates) -> float:
     return yes if row.reply is Reply.YES else 1 - yes
 
 
-def _mode(pairs: list[tuple[bool, float]], prior: float) -> float:
+def _count(pairs: list[_Pair]) -> int:
+    return round(sum(pair.weight for pair in pairs))
+
+
+def _mode(pairs: list[_Pair], prior: float) -> float:
     if not pairs:
         return prior
     rho = np.linspace(0, 1, 1001)[1:-1]
     total = STRENGTH * (prior * np.log(rho) + (1 - prior) * np.log1p(-rho))
-    for same, fresh in pairs:
-        total += np.log(rho + (1 - rho) * fresh) if same else np.log1p(-rho)
+    for same, fresh, weight in pairs:
+        total += weight * (np.log(rho + (1 - rho) * fresh) if same else np.log1p(-rho))
     return round(float(rho[np.argmax(total)]), 3)

@@ -36,9 +36,9 @@ class _Run:
 
 def runs(rows: Iterable[LabelledAnswer]) -> Iterator[Placed]:
     """Place answers in their runs; rows of a trial stand in the order of asking."""
-    open_runs: dict[tuple[str, str], _Run] = {}
+    open_runs: dict[tuple[str, str, str], _Run] = {}
     for row in rows:
-        key = (row.trial, row.text)
+        key = (row.trial, row.part, row.text)
         run = open_runs.get(key)
         first = run is None or run.truth != row.truth
         if run is None or first:

@@ -20,17 +20,28 @@ class Sight:
         self._looks: dict[int, int] = {}
         self._kinds: dict[frozenset[Atom], int] = {}
         self._hidden: dict[Action, bool] = {}
+        self._complete: bool | None = None
 
     def by(self, seen: Callable[[Atom], bool]) -> None:
         """Note what shows facts."""
         self._seen = seen
         for known in (self._known, self._looks, self._kinds, self._hidden):
             known.clear()
+        self._complete = None
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
         self._model = model
         self._looks.clear()
+
+    @property
+    def complete(self) -> bool:
+        """Whether everything is shown."""
+        if self._seen is None:
+            return True
+        if self._complete is None:
+            self._complete = all(map(self.sees, self._model.task.atoms()))
+        return self._complete
 
     def sees(self, atom: Atom) -> bool:
         """Whether anything shows a fact."""

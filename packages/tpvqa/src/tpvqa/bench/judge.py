@@ -2,10 +2,11 @@
 
 from collections import Counter
 
-from tpvqa.bench.right_answers import subject_of, yes_is_right
+from tpvqa.bench.right_answers import yes_is_right
 from tpvqa.drivers import SteppingTrial
 from tpvqa.events import Decision, Event, TrialState
 from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided
+from tpvqa.labelling.recorded import subject_of
 from tpvqa.pddl import Action
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import Simulation

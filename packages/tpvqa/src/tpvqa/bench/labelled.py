@@ -5,11 +5,12 @@ from collections.abc import Callable, Iterable, Mapping
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.own_task import OwnTask
-from tpvqa.bench.right_answers import subject_of, yes_is_right
+from tpvqa.bench.right_answers import yes_is_right
 from tpvqa.bench.stage import stage, true_simulation
 from tpvqa.config import TrialConfig
 from tpvqa.events import Event, TrialState
 from tpvqa.events.events import Answered, Asked, Observed, QuestionRecord
+from tpvqa.labelling.recorded import subject_of, view_of
 from tpvqa.pddl import Action
 from tpvqa.worlds.simulation import Simulation
 
@@ -38,7 +39,7 @@ class Labeller:
         self._state = self._state.after(event)
         match event:
             case Observed():
-                self._views[event.look] = _view(event)
+                self._views[event.look] = view_of(event)
             case Asked():
                 self._truths = [self._truth(question) for question in event.questions]
             case Answered():
@@ -62,14 +63,6 @@ class Labeller:
 
     def _truth(self, question: QuestionRecord) -> bool:
         return yes_is_right(question, self._simulation, self._actions)
-
-
-def _view(observed: Observed) -> str | None:
-    """The view of a look; None where there is no picture, or several."""
-    if observed.view is not None:
-        return observed.view
-    views = [frame.view for frame in observed.frames]
-    return views[0] if len(views) == 1 else None
 
 
 def gather(

@@ -1,4 +1,4 @@
-"""Answers beside the truth, from recorded episodes in a simulated world."""
+"""Answers beside the truth, from recorded episodes: a world's, a person's, or what is probable."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -6,17 +6,29 @@ from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tpvqa.belief import LabelledAnswer
+from tpvqa.belief import Calibration, LabelledAnswer
+from tpvqa.belief.fitting import fit
 from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
+from tpvqa.episodes.log import episode_folder
 from tpvqa.errors import CalibrationError
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.events import Acted
+from tpvqa.labelling import LABELS, RecordedEpisode, read_recorded
+from tpvqa.labelling.inferring import inferred_rows, likelier
+from tpvqa.labelling.recorded import said_in_trial
+from tpvqa.labelling.rows import labelled_rows
+from tpvqa.labelling.session import check_vlm
 from tpvqa.pddl import Atom, Task, task_from_text
 from tpvqa.worlds import Report
 from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
+
+_INFERRED = (
+    "nobody has labelled these answers: what was right is inferred from what came before and "
+    "after, and counts for a quarter. `tpvqa label` on some of these episodes tells it better."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,11 +37,42 @@ class Labelled:
 
     Attributes:
         vlm: Whose answers they are.
-        rows: The answers.
+        rows: The answers. One whose truth was inferred stands there twice: as far as yes was
+            right, and as far as no.
+        by_hand: Labels that a person gave; each holds for all answers of its moment.
+        inferred: Answers of which later steps told what was probably right.
+        unused: Episodes without truth and without labels, where there are labels elsewhere.
     """
 
     vlm: str
     rows: list[LabelledAnswer]
+    by_hand: int = 0
+    inferred: int = 0
+    unused: int = 0
+
+    @property
+    def plain(self) -> list[LabelledAnswer]:
+        """The answers, each once: to be counted and drawn."""
+        return likelier(self.rows) if self.inferred else self.rows
+
+    def fit(self) -> Calibration:
+        """What the answers are worth, and who said what was right.
+
+        Raises:
+            CalibrationError: There is no answer among them.
+            MissingExtraError: scikit-learn is needed and not installed.
+        """
+        found = fit(self.rows, self.vlm)
+        notices = list(found.notices)
+        if self.inferred:
+            notices.append(_INFERRED)
+        if self.unused:
+            said = "1 episode has" if self.unused == 1 else f"{self.unused} episodes have"
+            notices.append(f"{said} neither labels nor the truth, and taught nothing.")
+        # A label holds for many answers of a moment, which say little more than the first.
+        rows = found.whole.rows if self.by_hand or self.inferred else found.rows
+        told = {"rows": rows, "by_hand": self.by_hand, "inferred": self.inferred}
+        return found.model_copy(update={**told, "notices": tuple(notices)})
 
 
 def label_episodes(
@@ -38,7 +81,11 @@ def label_episodes(
     vlm: str | None = None,
     done: Callable[[], None] = lambda: None,
 ) -> Labelled:
-    """Label the answers of recorded episodes, by what the log says truly came of every action.
+    """Label the answers of recorded episodes.
+
+    What a person has labelled goes before what a simulated world's log says truly came of every
+    action. A robot's log says nothing of that; where there are no labels at all, what was right is
+    inferred from what came before and after (`labelling.inferring`).
 
     Args:
         folders: The episodes' folders.
@@ -46,29 +93,38 @@ def label_episodes(
         done: Called after each episode.
 
     Raises:
-        CalibrationError: An episode does not hold the truth, or another VLM answered in it.
+        CalibrationError: An episode holds the truth of some actions only, another VLM answered in
+            it, or its labels are damaged.
         EpisodeError: There is no episode, or it is damaged.
     """
     rows: list[LabelledAnswer] = []
-    for folder in folders:
+    labelled: list[RecordedEpisode] = []
+    untold: list[RecordedEpisode] = []
+    for folder in map(str, dict.fromkeys(map(episode_folder, folders))):
         events = read_episode(folder)
         started = events[0]
         assert isinstance(started, Started)
         vlm = vlm or started.vlm
-        if started.vlm != vlm:
-            raise CalibrationError(
-                f"{folder}: {started.vlm} answered in it, not {vlm}. A calibration is of one VLM: "
-                "give the episodes of each apart"
-            )
-        rows += _label(events, started, str(folder))
+        check_vlm(folder, started.vlm, vlm)
+        recorded = read_recorded(folder)
+        if (recorded.folder / LABELS).exists():
+            labelled.append(recorded)
+        elif any(map(_tells_truth, events)):
+            rows += _label(events, started, folder)
+        else:
+            asked = any(said_in_trial(each) for each in recorded.askings)
+            (labelled if asked else untold).append(recorded)
         done()
-    return Labelled(vlm or "", rows)
+    by_hand, labels = labelled_rows(labelled)
+    rows += by_hand
+    if rows or not untold:
+        return Labelled(vlm or "", rows, by_hand=labels, unused=len(untold))
+    inferred = inferred_rows(untold, vlm or "")
+    return Labelled(vlm or "", inferred, inferred=len(inferred) // 2)
 
 
 def _label(events: list[Event], started: Started, name: str) -> list[LabelledAnswer]:
     """Play the truth of an episode back beside its answers."""
-    if not any(map(_tells_truth, events)):
-        raise _untold(name)
     task, rules = _stage(started.domain, started.problem, started.rules)
     simulation = Simulation(task, rules)
     simulation.state = frozenset(map(Atom.parse, started.initial))
@@ -96,9 +152,8 @@ def _tells_truth(event: Event) -> bool:
 
 def _untold(name: str) -> CalibrationError:
     return CalibrationError(
-        f"{name}: the log does not say what was true, as in a simulated world it would. Calibrate "
-        "from episodes in a simulated world, from trials (--trials) or from labelled pictures "
-        "(--pictures)"
+        f"{name}: the log says of some actions what was true, and of others not. Label it "
+        f"(`tpvqa label {name}`), or leave it out"
     )
 
 

@@ -4,11 +4,10 @@ from collections.abc import Mapping
 from functools import lru_cache
 
 from tpvqa.events.events import QuestionRecord
+from tpvqa.labelling.recorded import OF_FACTS
 from tpvqa.pddl import Action, Atom
 from tpvqa.questions import Way
 from tpvqa.worlds.simulation import Simulation
-
-OF_FACTS = (Way.PRECONDITION, Way.EFFECT, Way.ALTERNATIVE)
 
 
 def yes_is_right(
@@ -35,9 +34,3 @@ def yes_is_right(
 
 
 _atom = lru_cache(maxsize=4096)(Atom.parse)
-
-
-def subject_of(question: QuestionRecord) -> str:
-    """The predicate or the action that a question is about."""
-    text = question.atom if question.way in OF_FACTS else question.action
-    return (text or "").strip("()").split(" ")[0]

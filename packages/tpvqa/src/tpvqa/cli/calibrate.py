@@ -17,6 +17,7 @@ from tpvqa.config.layers import Key, Layer, combined
 
 if TYPE_CHECKING:
     from tpvqa.belief import LabelledAnswer
+    from tpvqa.bench.labelled_episodes import Labelled
     from tpvqa.cli.progress import CountBar
     from tpvqa.questions import QuestionBook
 
@@ -48,7 +49,10 @@ def register(app: typer.Typer) -> None:
 def calibrate(
     episodes: Annotated[
         list[Path] | None,
-        typer.Argument(help="Folders of recorded episodes in a simulated world."),
+        typer.Argument(
+            help="Folders of recorded episodes: labelled ones (`tpvqa label`), or in a simulated "
+            "world; of others it is inferred what was right."
+        ),
     ] = None,
     *,
     layers: Sequence[Layer],
@@ -145,8 +149,10 @@ def calibrate(
     _check(out, image)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
+    found: Labelled | None = None
     if episodes:
-        name, rows = _from_episodes(episodes, vlm)
+        found = _from_episodes(episodes, vlm)
+        name, rows = found.vlm, found.plain
         if experience is not None:
             experience_from(episodes).save(experience)
     elif pictures is not None:
@@ -171,7 +177,7 @@ def calibrate(
                 common=combined(layers),
                 progress=bar,
             )
-    calibration = fit(rows, name, chosen_looks=chosen_looks)
+    calibration = found.fit() if found else fit(rows, name, chosen_looks=chosen_looks)
     judged = held_out(rows, name, chosen_looks=chosen_looks)
     calibration.save(out)
     draw(image, judged, name)
@@ -196,12 +202,11 @@ def _check(out: Path, image: Path) -> None:
             raise CalibrationError(f"{path} is a folder; name a file with {option}")
 
 
-def _from_episodes(folders: Sequence[Path], vlm: str | None) -> tuple[str, "list[LabelledAnswer]"]:
+def _from_episodes(folders: Sequence[Path], vlm: str | None) -> "Labelled":
     from tpvqa.bench.labelled_episodes import label_episodes
 
     with _counting("episodes", len(folders)) as done:
-        found = label_episodes(folders, vlm=vlm, done=done)
-    return found.vlm, found.rows
+        return label_episodes(folders, vlm=vlm, done=done)
 
 
 def _from_pictures(

@@ -44,6 +44,8 @@ def plain(
     return {
         "vlm": calibration.vlm,
         "rows": calibration.rows,
+        "by_hand": calibration.by_hand,
+        "inferred": calibration.inferred,
         "file": str(out),
         "curves": str(image),
         "repeat_same_view": calibration.repeat_same_view,

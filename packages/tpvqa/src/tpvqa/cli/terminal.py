@@ -13,6 +13,7 @@ from tpvqa.cli.belief_bars import BeliefBars
 from tpvqa.cli.brief import brief
 from tpvqa.cli.saying import marked, plain, rendered
 from tpvqa.episodes.agreement import Agreement
+from tpvqa.episodes.answers_worth import AnswersWorth, calibration_used
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.events import Decision, Ended, Event, Exchange, TrialState
 from tpvqa.events.events import (
@@ -74,7 +75,7 @@ class EpisodeView:
         self._words = None if book is None else FactWords(book)
         self._agreement: Agreement | None = None
         self._bars = BeliefBars(bars=console.is_terminal)
-        self._state = TrialState()
+        self._state, self._worth = TrialState(), AnswersWorth()
         self._headed: tuple[PlanMade | None, int, int] | None = None
         self._told = False
         self._gathered: dict[str, list[_Told]] = {}
@@ -105,6 +106,7 @@ class EpisodeView:
     def __call__(self, event: Event) -> None:
         """Show an event."""
         before, self._state = self._state, self._state.after(event)
+        self._worth.take(event)
         thinking = isinstance(event, PlanMade) and event.considered
         if not (thinking or isinstance(event, Observed | Asked | Answered)):
             self._show_gathered()
@@ -116,6 +118,8 @@ class EpisodeView:
                     f"[dim]monitor[/] {marked(event.monitor)}  "
                     f"[dim]VLM[/] {marked(event.vlm)}{noise}  [dim]seed[/] {event.config.seed}"
                 )
+                if used := calibration_used(event):
+                    self._line(f"[dim]calibration[/] {marked(used)}")
             case PlanMade():
                 if not event.considered:
                     self._show_plan(event, again=before.plan is not None)
@@ -255,6 +259,8 @@ class EpisodeView:
             )
         )
         self._line(f"{headline} [dim]({counts})[/]")
+        if saves := self._worth.more_would_save():
+            self._line(f"[dim]{marked(saves)}[/]")
 
     def _why(self, event: Ended) -> str:
         """Why a trial ended short of its goal, and where."""

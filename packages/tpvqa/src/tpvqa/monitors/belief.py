@@ -30,6 +30,8 @@ from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWay, FactWords, QuestionBook, Way
 from tpvqa.vlm import Answer, Reply
 
+MOST_FACTS = 100_000
+"""In all joint states that were met; those that are not possible any more are forgotten then."""
 SAME = 3
 """Looks in a row that may show a picture which the question was asked of already."""
 
@@ -168,6 +170,10 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _acted(self, step: Step) -> None:
         self._learn(self._now.action)
+        if self.belief.model.facts > MOST_FACTS:
+            numbers = self.belief.renew()
+            self._chooser.renumbered(self.belief.model, numbers)
+            self._inquirer.renumbered(self.belief.model)
         self._chooser.acted(self.belief, step.action)
         self.belief.act(step.action, self.chances.rates_of(step.action))
         self.evidence.acted(troubled=bool(step.trouble))

@@ -5,6 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from tpvqa.episodes.answers_worth import AnswersWorth, calibration_used
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.log import episode_folder, read_episode
 from tpvqa.episodes.notable_facts import probability
@@ -77,7 +78,9 @@ def render_report(events: list[Event], folder: Path) -> str:
 
     first = events[0] if events else None
     words = words_of(first) if isinstance(first, Started) else FactWords()
-    story = tell(events, words)
+    story, worth = tell(events, words), AnswersWorth()
+    for event in events:
+        worth.take(event)
     return (
         _environment()
         .get_template("report.html.j2")
@@ -87,6 +90,8 @@ def render_report(events: list[Event], folder: Path) -> str:
             chart=chart(story, words.say),
             say=words.say,
             probability=probability,
+            calibration=calibration_used(story.started),
+            saves=worth.more_would_save(),
         )
     )
 

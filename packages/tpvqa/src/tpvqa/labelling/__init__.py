@@ -1,0 +1,17 @@
+"""Labelling recorded episodes: what to ask a person next, and what their labels teach."""
+
+from tpvqa.labelling.labels import LABELS, Label, Labels, read_labels
+from tpvqa.labelling.recorded import Asking, Given, RecordedEpisode, read_recorded
+from tpvqa.labelling.session import Session
+
+__all__ = [
+    "LABELS",
+    "Asking",
+    "Given",
+    "Label",
+    "Labels",
+    "RecordedEpisode",
+    "Session",
+    "read_labels",
+    "read_recorded",
+]

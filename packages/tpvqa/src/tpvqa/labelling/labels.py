@@ -1,0 +1,165 @@
+"""The labels of an episode, `labels.jsonl` beside its log: appended to, never changed."""
+
+import fcntl
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from tpvqa.episodes.log import whole_lines
+from tpvqa.episodes.strict_json import check_json
+from tpvqa.errors import CalibrationError, WriteError
+from tpvqa.files import open_plain, opened_plain, write_all
+from tpvqa.labelling.recorded import Asking, RecordedEpisode
+
+LABELS = "labels.jsonl"
+SCHEMA: Literal[1] = 1
+Said = Literal["yes", "no", "cannot see"]
+
+
+class Label(BaseModel):
+    """One line of the file: what a person says is the right answer.
+
+    Attributes:
+        schema_number: Of the file's format.
+        log: Tells the log that it is of from others (`RecordedEpisode.log`).
+        stretch: Actions that had begun when it was asked.
+        text: The question.
+        label: The right answer; "cannot see" where the pictures do not tell.
+        at: When it was given, in UTC.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    schema_number: Literal[1] = Field(
+        default=SCHEMA, validation_alias="schema", serialization_alias="schema"
+    )
+    log: str
+    stretch: int = Field(ge=0)
+    text: str
+    label: Said
+    at: str = ""
+
+
+def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
+    """The labels beside an episode's log: of several for the same question the last one.
+
+    A line that was torn by a kill is left out.
+
+    Raises:
+        CalibrationError: The file is damaged, of another version, or of another episode.
+    """
+    path = episode.folder / LABELS
+    try:
+        with opened_plain(path) as descriptor:
+            lines = list(whole_lines(descriptor))
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise CalibrationError(f"{path}: cannot be read ({error.strerror})") from error
+    found: dict[tuple[int, str], Said] = {}
+    for number, line in enumerate(lines, 1):
+        label = _label(path, number, line)
+        if label.log != episode.log:
+            raise CalibrationError(
+                f"{path}:{number}: labels of another episode. Put them beside the log that they "
+                f"are of, or remove them and label {episode.folder} anew"
+            )
+        found[label.stretch, label.text] = label.label
+    return found
+
+
+def _label(path: Path, number: int, line: bytes) -> Label:
+    try:
+        check_json(line)
+        return Label.model_validate_json(line, strict=True)
+    except ValidationError as error:
+        first = error.errors(include_input=False, include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))[:200]
+        said = f"{where}: {first['msg'][:300]}"
+    except ValueError as error:
+        said = str(error)
+    raise CalibrationError(
+        f"{path}:{number}: no label of this version ({said}). Remove the line, or the file"
+    ) from None
+
+
+class Labels:
+    """Appends labels to an episode's file, each on disk before `append` returns.
+
+    Args:
+        episode: Whose.
+
+    Attributes:
+        known: The labels so far, by stretch and question.
+
+    Raises:
+        CalibrationError: The file is damaged, or another process labels this episode.
+        WriteError: The file cannot be written.
+    """
+
+    def __init__(self, episode: RecordedEpisode):
+        self.known: dict[tuple[int, str], Said] = read_labels(episode)
+        self._episode, self._path = episode, episode.folder / LABELS
+        self._file = -1
+
+    def append(self, asking: Asking, said: Said) -> None:
+        """Keep a label.
+
+        Raises:
+            WriteError: It cannot be written; those before it are kept.
+            CalibrationError: Another process labels this episode.
+        """
+        if self._file < 0:
+            self._open()
+        label = Label(
+            log=self._episode.log,
+            stretch=asking.stretch,
+            text=asking.text,
+            label=said,
+            at=datetime.now(UTC).isoformat(timespec="seconds"),
+        )
+        line = label.model_dump_json(by_alias=True).encode() + b"\n"
+        size, before = os.fstat(self._file).st_size, dict(self.known)
+        try:
+            write_all(self._file, line)
+            self.known[asking.key] = said  # by now Ctrl-C takes nothing back
+            os.fsync(self._file)
+        except OSError as error:
+            self.known = before
+            with suppress(OSError):
+                os.ftruncate(self._file, size)
+            raise self._unwritten(error) from error
+
+    def _open(self) -> None:
+        """Open the file when there is something to write: to look at questions leaves no trace."""
+        try:
+            self._file = open_plain(self._path, os.O_RDWR | os.O_APPEND | os.O_CREAT)
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            whole = sum(len(line) + 1 for line in whole_lines(self._file))
+            os.ftruncate(self._file, whole)  # what a kill tore
+        except BlockingIOError:
+            self.close()
+            raise CalibrationError(
+                f"{self._path} is being written by another process; wait for it or end it"
+            ) from None
+        except OSError as error:
+            self.close()
+            raise self._unwritten(error) from error
+
+    def _unwritten(self, error: OSError) -> WriteError:
+        return WriteError.of(self._path, error, "The labels before are kept: make room, and go on")
+
+    def close(self) -> None:
+        """Close the file. Can be called twice."""
+        if self._file >= 0:
+            os.close(self._file)
+        self._file = -1
+
+
+Known = Mapping[tuple[int, str], Said]
+"""Labels by stretch and question."""

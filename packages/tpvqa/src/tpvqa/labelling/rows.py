@@ -1,0 +1,63 @@
+"""From labels, and from what a person answered in a trial, to labelled answers."""
+
+from collections.abc import Iterator, Sequence
+
+from tpvqa.belief import LabelledAnswer
+from tpvqa.labelling.labels import Said, read_labels
+from tpvqa.labelling.order import Order
+from tpvqa.labelling.recorded import Asking, RecordedEpisode, said_in_trial
+
+
+def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAnswer], int]:
+    """The answers that a person has told the truth about, and how many labels told it.
+
+    A label holds for every answer to the same words between two actions. Where there is none, what
+    a person answered in the trial itself counts as one.
+
+    Raises:
+        CalibrationError: A file of labels is damaged.
+    """
+    known: dict[int, Said] = {}
+    for episode in episodes:
+        told = read_labels(episode)
+        for asking in episode.askings:
+            said = told.get(asking.key) or said_in_trial(asking)
+            if said is not None:
+                known[id(asking)] = said
+    order = Order([asking for episode in episodes for asking in episode.askings])
+    weights = order.weights(lambda asking: known.get(id(asking)))
+    rows: list[LabelledAnswer] = []
+    labels = 0
+    for asking in order.askings:
+        said = known.get(id(asking))
+        if said in ("yes", "no"):
+            labels += 1
+            rows += rows_of(asking, truth=said == "yes", weight=weights[id(asking)])
+    return rows, labels
+
+
+def rows_of(
+    asking: Asking, *, truth: bool, weight: float, part: str = ""
+) -> Iterator[LabelledAnswer]:
+    """The VLM's answers to a question beside the truth.
+
+    Args:
+        asking: The question.
+        truth: Whether yes is right.
+        weight: How many answers each counts for.
+        part: See `LabelledAnswer`.
+    """
+    for answer in asking.of_vlm:
+        yield LabelledAnswer(
+            way=answer.way,
+            predicate=asking.subject,
+            text=asking.text,
+            truth=truth,
+            reply=answer.reply,
+            p_yes=answer.p_yes,
+            trial=str(asking.episode),
+            look=answer.look,
+            view=answer.view,
+            part=part,
+            weight=weight,
+        )
