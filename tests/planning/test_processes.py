@@ -182,13 +182,17 @@ def test_grounding_out_of_memory_is_said_and_the_next_task_is_grounded() -> None
         "(define (domain big) (:predicates (p ?a) (q ?a ?b ?c ?d)) (:action go :parameters (?a ?b "
         "?c ?d) :precondition (and (p ?a) (p ?b) (p ?c) (p ?d)) :effect (q ?a ?b ?c ?d)))"
     )
+    fours = [" ".join(f"o{first + more}" for more in range(4)) for first in range(0, 24, 4)]
+    goal = f"(and {' '.join(f'(q {four})' for four in fours)})"  # so that no object is left out
     problem = (
-        f"(define (problem all) (:domain big) (:objects {names}) (:init {facts}) "
-        "(:goal (q o0 o1 o2 o3)))"
+        f"(define (problem all) (:domain big) (:objects {names}) (:init {facts}) (:goal {goal}))"
     )
     with pytest.raises(PlannerError, match=r"more memory than 0.195 GB; make the problem smaller"):
         task_from_text(domain, problem, memory=200)
-    assert task_from_text(domain, problem.replace(names, "o0 o1 o2 o3").replace(facts, "(p o0)"))
+    few = {names: fours[0], facts: "(p o0)", goal: f"(q {fours[0]})"}
+    for written, instead in few.items():
+        problem = problem.replace(written, instead)
+    assert task_from_text(domain, problem)
 
 
 def test_running_out_of_memory_is_said(hard: Task, monkeypatch: pytest.MonkeyPatch) -> None:

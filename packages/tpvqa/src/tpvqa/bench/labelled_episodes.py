@@ -10,7 +10,7 @@ from tpvqa.belief import Calibration, LabelledAnswer
 from tpvqa.belief.fitting import fit
 from tpvqa.belief.own_words import OwnWords
 from tpvqa.bench.labelled import Labeller
-from tpvqa.bench.named_actions import NamedActions
+from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
 from tpvqa.errors import CalibrationError
@@ -134,8 +134,7 @@ def _label(events: list[Event], started: Started, name: str) -> Labeller:
     task, rules = _stage(started.domain, started.problem, started.rules)
     simulation = Simulation(task, rules)
     simulation.state = frozenset(map(Atom.parse, started.true_start or started.initial))
-    actions = NamedActions(task)
-    labeller = Labeller(simulation, actions, name)
+    labeller = Labeller(simulation, WrittenActions(task), name)
     for event in events:
         if not isinstance(event, Acted):
             labeller(event)

@@ -16,9 +16,9 @@ from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
-from tpvqa.bench.named_actions import NamedActions
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.config import TrialConfig
 from tpvqa.drivers import run
 from tpvqa.episodes import MemoryWriter
@@ -69,7 +69,7 @@ class Stage:
             self.task: Task = load_task(files.domain, files.problem)
             self.book = QuestionBook.load(files.questions, self.task)
             self.rules: WorldRules = load_world_file(files.world, self.task)
-        self.actions = NamedActions(self.task)
+        self.actions = WrittenActions(self.task)
         self._model: FaultModel | None = None
 
     @property

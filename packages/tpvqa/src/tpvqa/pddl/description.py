@@ -89,6 +89,7 @@ def grounded_fields(description: Description) -> dict[str, Any]:
             MutexGroup(frozenset(map(_atom, atoms)), exactly_one)
             for atoms, exactly_one in description["mutex_groups"]
         ),
+        "left_out": frozenset(description["left_out"]),
     }
 
 

@@ -40,6 +40,9 @@ class Task:
         functions: The values that action costs refer to.
         reachable_atoms: See `atoms`.
         reachable_actions: Name and arguments of the actions of `ground_actions`.
+        left_out: Objects that grounding left out, as they seem not to matter for the goal; atoms,
+            actions and groups say nothing of what only they bring about. Empty but for large tasks
+            (see `tpvqa.pddl.worker.known_task.LARGE`).
         domain_path: Where the domain was read from; None where it was not a file.
         problem_path: Where the problem was read from.
         domain_text: The text of the domain.
@@ -63,6 +66,7 @@ class Task:
     functions: Mapping[tuple[str, ...], int] = field(repr=False)
     reachable_atoms: frozenset[Atom] = field(repr=False)
     reachable_actions: tuple[tuple[str, ...], ...] = field(repr=False)
+    left_out: frozenset[str] = field(repr=False)
     domain_path: Path | None = field(repr=False)
     problem_path: Path | None = field(repr=False)
     domain_text: str = field(repr=False)

@@ -8,6 +8,7 @@ from tpvqa.pddl import State, Task, literals, validate
 from tpvqa.pddl.description import MEMORY, to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
 from tpvqa.pddl.time_limit import limit_of
+from tpvqa.pddl.validation import Validation
 from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.plugins import PlainArguments
@@ -26,6 +27,10 @@ _FF_AND_LANDMARKS = (
 _LMCUT = "astar(lmcut())"
 _HMAX = "astar(hmax())"
 
+_EFFORTS = 2
+"""The number of the last effort of `tpvqa.pddl.worker.relevance`."""
+_BLAMED = 12
+"""Of more objects that a plan failed at it is not said that they matter."""
 _GRACE = 1.0  # seconds that the worker gets to say itself that the time is over
 
 
@@ -105,31 +110,50 @@ class FastDownward(PlainArguments):
             state = task.init
         else:
             task.check_state(state)
+        leaving: dict[str, Any] | None = None
+        if self.search != "optimal":
+            leaving = {"keep": [], "effort": 0}
+        while True:
+            left = None if limit is None else max(0.0, limit - (time.perf_counter() - start))
+            reply = self._reply(task, state, left, leaving)
+            result = self._result(task, state, reply, limit, start)
+            if not isinstance(result, Validation):
+                return result
+            if leaving is None or not reply["outcome"].get("left_out"):
+                reason = f"the plan that came back does not work: {result}"
+                return Crashed(reason, self.name, time.perf_counter() - start)
+            leaving = _leaving_less(leaving, result)
+
+    def _reply(
+        self, task: Task, state: State, seconds: float | None, leaving: dict[str, Any] | None
+    ) -> dict[str, Any]:
+        """What a worker says, `leaving` being what it may leave out of a large task."""
         request = {
             "do": "plan",
             "state": to_lists(state),
             "searches": _searches(self.search, task),
-            "seconds": limit,
+            "seconds": seconds,
             "memory": self.memory,
             "grounding_memory": self.grounding_memory,
+            "leaving": leaving,
         }
         try:
-            reply = ask_worker(
+            return ask_worker(
                 request,
                 key=task.key,
                 domain=task.domain_text,
                 problem=task.problem_text,
-                seconds=None if limit is None else limit + _GRACE,
+                seconds=None if seconds is None else seconds + _GRACE,
             )
         except WorkerTimedOut:
-            reply = {"outcome": {"kind": "timeout"}}
+            return {"outcome": {"kind": "timeout"}}
         except PlannerError as error:
-            reply = {"outcome": {"kind": "crash", "reason": str(error)}}
-        return self._result(task, state, reply, limit, start)
+            return {"outcome": {"kind": "crash", "reason": str(error)}}
 
     def _result(
         self, task: Task, state: State, reply: dict[str, Any], limit: float | None, start: float
-    ) -> PlanningResult:
+    ) -> PlanningResult | Validation:
+        """What came of a call, or how a plan fails in the task."""
         if "error" in reply:
             raise PDDLError(reply["error"][0], line=reply["error"][2])
         outcome = reply["outcome"]
@@ -138,8 +162,7 @@ class FastDownward(PlainArguments):
             cost = sum(action.cost for action in actions)
             replay = validate(task, actions, state)
             if not replay.valid:
-                reason = f"the plan that came back does not work: {replay}"
-                return Crashed(reason, self.name, time.perf_counter() - start)
+                return replay
             return Plan(actions, cost, self.name, time.perf_counter() - start)
         seconds = time.perf_counter() - start
         if outcome["kind"] == "timeout":
@@ -160,6 +183,20 @@ def _searches(search: str | None, task: Task) -> dict[str, str]:
     unit_cost = all(schema.cost == 1 for schema in task.schemas)
     chosen = _FF if search is None and unit_cost else _FF_AND_LANDMARKS
     return {"simple": chosen, "other": chosen}
+
+
+def _leaving_less(leaving: dict[str, Any], replay: Validation) -> dict[str, Any] | None:
+    """What may be left out after a plan that fails in the whole task; None for nothing.
+
+    What the plan failed at is kept, if that is little and new; else more is kept from the start.
+    """
+    named = {name for literal in replay.failed for name in literal.atom.arguments}
+    new = named.difference(leaving["keep"])
+    if new and len(named) <= _BLAMED:
+        return {**leaving, "keep": sorted(named.union(leaving["keep"]))}
+    if leaving["effort"] < _EFFORTS:
+        return {**leaving, "effort": leaving["effort"] + 1}
+    return None
 
 
 def _hint(task: Task, state: State) -> str:

@@ -27,6 +27,8 @@ def obstacle(task: Task, state: State) -> str:
         task: The task.
         state: From where there is no plan.
     """
+    if task.left_out:
+        return ""  # what they can bring about is not known
     possible = task.reachable_atoms | state
     for goal in _unmet(task.goal, possible):
         roots = list(islice(_roots(task, goal, possible), _COMPARED))

@@ -1,6 +1,6 @@
 """A plan regressed to what each of its steps, and all later ones, need."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from tpvqa.errors import PlannerError
 from tpvqa.pddl import Action, Condition, Conjunction, Disjunction, Literal, State, Task, holds
@@ -34,10 +34,13 @@ def regress(task: Task, actions: Sequence[Action], state: State | None = None) -
     result = [_Support(task, replay.states[-1]).of(task.goal)]
     for action, before in zip(reversed(actions), reversed(replay.states[:-1]), strict=True):
         support = _Support(task, before)
-        needs = support.of(action.precondition)
+        conditions: dict[Literal, list[Condition]] = {}
+        for effect in action.effects:
+            conditions.setdefault(effect.literal, []).append(effect.condition)
+        needs = set(support.of(action.precondition))
         for literal in result[-1]:
-            needs |= _before(literal, action, support)
-        result.append(needs)
+            needs |= _before(literal, conditions, support)
+        result.append(frozenset(needs))
     return tuple(reversed(result))
 
 
@@ -72,21 +75,21 @@ class _Support:
         return frozenset(part for part in literals if part.atom.predicate in self._task.fluents)
 
 
-def _before(literal: Literal, action: Action, support: _Support) -> Needs:
-    """What has to hold before an action for a literal to hold after it."""
+def _before(
+    literal: Literal, conditions: Mapping[Literal, Sequence[Condition]], support: _Support
+) -> Needs:
+    """What has to hold before an action for a literal to hold after it.
+
+    `conditions` are those under which each literal is an effect of the action.
+    """
     adds, deletes = (
-        [
-            effect.condition
-            for effect in action.effects
-            if effect.literal == Literal(literal.atom, positive)
-        ]
-        for positive in (True, False)
+        conditions.get(Literal(literal.atom, positive), ()) for positive in (True, False)
     )
     causes = adds if literal.positive else deletes
     ways = [support.of(condition) for condition in causes if support.holds(condition)]
     if support.holds(literal):
         # It held before and nothing ended it; what is both added and deleted holds.
-        ends = deletes if literal.positive else []
+        ends = deletes if literal.positive else ()
         if not any(support.holds(condition) for condition in ends):
             ways.append(support.of(literal) | support.of_none(ends))
     chosen = min(ways, key=len)

@@ -18,7 +18,7 @@ import threading
 from collections import OrderedDict
 from typing import Any
 
-from tpvqa.pddl.worker.known_task import KnownTask
+from tpvqa.pddl.worker.known_task import KnownTask, Leaving
 from tpvqa.pddl.worker.reading import ReadingError
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
@@ -108,12 +108,14 @@ class Worker:
                 return {"unknown": True}
             if request["do"] == "describe":
                 return {"task": task.describe(request["init"])}
+            leaving = request.get("leaving")
             outcome = task.plan(
                 request["state"],
                 self._searcher,
                 searches=request["searches"],
                 seconds=request["seconds"],
                 memory=request["memory"],
+                leaving=leaving and Leaving(frozenset(leaving["keep"]), leaving["effort"]),
             )
             return {"outcome": _as_json(outcome), "groundings": task.groundings}
         except ReadingError as error:
@@ -178,6 +180,7 @@ def _as_json(outcome: SearchOutcome) -> dict[str, Any]:
         "steps": outcome.steps,
         "cost": outcome.cost,
         "reason": outcome.reason,
+        "left_out": outcome.left_out,
     }
 
 

@@ -30,16 +30,34 @@ def described_groups(
         grounding: The grounding from this state.
         state: Its fluent atoms.
     """
-    kept: list[Group] = []
-    for atoms, exactly_one in sorted(_laws(task, grounding.atoms), key=_size):
-        if not any(atoms <= other and (one or not exactly_one) for other, one in kept):
-            kept.append((atoms, exactly_one))
+    kept = _widest(_laws(task, grounding.atoms), [])
     proved = [atoms for atoms, exactly_one in kept if exactly_one]
     others = [group for group in grounding.mutex_groups if not any(group <= p for p in proved)]
-    for atoms, exactly_one in sorted(_reached(grounding, others, state), key=_size):
+    return _listed(_widest(_reached(grounding, others, state), kept))
+
+
+def lawful_groups(task: Any, reachable: Set[AtomKey]) -> list[tuple[list[AtomKey], bool]]:
+    """The laws of the domain alone, for the things that the initial state speaks of.
+
+    They hold whatever objects there are, and name those that it does not speak of, too.
+
+    Args:
+        task: The translator's normalised task, with all its objects.
+        reachable: The atoms that can be reached.
+    """
+    return _listed(_widest(_laws(task, reachable), []))
+
+
+def _widest(groups: Iterable[Group], kept: list[Group]) -> list[Group]:
+    """Adds to groups that are kept those that lie within none of them."""
+    for atoms, exactly_one in sorted(groups, key=_size):
         if not any(atoms <= other and (one or not exactly_one) for other, one in kept):
             kept.append((atoms, exactly_one))
-    return sorted((sorted(atoms), exactly_one) for atoms, exactly_one in kept)
+    return kept
+
+
+def _listed(groups: Iterable[Group]) -> list[tuple[list[AtomKey], bool]]:
+    return sorted((sorted(atoms), exactly_one) for atoms, exactly_one in groups)
 
 
 def _size(group: Group) -> tuple[int, list[AtomKey]]:

@@ -28,12 +28,14 @@ class SearchOutcome:
         steps: The plan, each step a name and its arguments.
         cost: Its cost.
         reason: What happened, in words.
+        left_out: How many objects of the task were left out.
     """
 
     kind: str
     steps: tuple[tuple[str, ...], ...] = ()
     cost: int = 0
     reason: str = ""
+    left_out: int = 0
 
 
 def find_downward() -> Path:
