@@ -7,6 +7,7 @@ from typing import Any
 
 from tpvqa.errors import GroundingTimedOut, PDDLError, PlannerError
 from tpvqa.pddl.atoms import Atom, State
+from tpvqa.pddl.atoms import Literal
 from tpvqa.pddl.ground import MutexGroup
 from tpvqa.pddl.processes import WorkerTimedOut, ask_worker
 
@@ -88,6 +89,18 @@ def grounded_fields(description: Description) -> dict[str, Any]:
         "mutex_groups": tuple(
             MutexGroup(frozenset(map(_atom, atoms)), exactly_one)
             for atoms, exactly_one in description["mutex_groups"]
+        ),
+    }
+
+
+def unsure_fields(description: Description) -> dict[str, Any]:
+    """The fields of a `Task` that say what its problem leaves open."""
+    return {
+        "unknown": frozenset(map(_atom, description["unknown"])),
+        "oneof": tuple(frozenset(map(_atom, group)) for group in description["oneof"]),
+        "clauses": tuple(
+            tuple(Literal(_atom(words), positive) for positive, words in clause)
+            for clause in description["clauses"]
         ),
     }
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import PDDLError, a, suggestion_or_list
-from tpvqa.pddl.atoms import Atom, State
+from tpvqa.pddl.atoms import Atom, Literal, State
 from tpvqa.pddl.conditions import Condition, holds
 from tpvqa.pddl.derivation import Derivation
 from tpvqa.pddl.description import described, grounded_fields, key_of
@@ -28,7 +28,8 @@ class Task:
         types: The parent of each type; None for `object` and other roots.
         predicates: The types of each predicate's arguments; `a|b` for `(either a b)`.
         predicate_variables: The variables that each predicate is declared with, e.g. `?x`.
-        init: The initial state, static facts included, derived ones not.
+        init: The initial state, static facts included, derived ones not; one of the possible ones
+            where the problem leaves something open.
         goal: The goal.
         fluents: The predicates that actions change.
         derived: The predicates that follow from axioms.
@@ -44,6 +45,9 @@ class Task:
         problem_path: Where the problem was read from.
         domain_text: The text of the domain.
         problem_text: The text of the problem.
+        unknown: Facts that the problem says may hold at first or not: `(unknown …)`.
+        oneof: Facts of which exactly one holds at first: `(oneof …)`.
+        clauses: Literals of which at least one holds at first: `(or …)`.
     """
 
     name: str
@@ -67,6 +71,9 @@ class Task:
     problem_path: Path | None = field(repr=False)
     domain_text: str = field(repr=False)
     problem_text: str = field(repr=False)
+    unknown: frozenset[Atom] = field(default=frozenset(), repr=False)
+    oneof: tuple[frozenset[Atom], ...] = field(default=(), repr=False)
+    clauses: tuple[tuple[Literal, ...], ...] = field(default=(), repr=False)
 
     @cached_property
     def key(self) -> str:
@@ -159,13 +166,20 @@ class Task:
         return self.reachable_atoms
 
     @cached_property
+    def left_open(self) -> frozenset[Atom]:
+        """The facts of which the problem does not say whether they hold at first."""
+        return self.unknown.union(
+            *self.oneof, (literal.atom for clause in self.clauses for literal in clause)
+        )
+
+    @cached_property
     def static(self) -> State:
         """The facts of the initial state that no action changes."""
         return frozenset(atom for atom in self.init if atom.predicate not in self.fluents)
 
     def changes(self, atom: Atom) -> bool:
-        """Whether an action of any objects could change an atom, or it is derived."""
-        if atom.predicate in self.derived:
+        """Whether an action of any objects could change an atom, it is derived, or left open."""
+        if atom.predicate in self.derived or atom in self.left_open:
             return True
         return any(
             all(

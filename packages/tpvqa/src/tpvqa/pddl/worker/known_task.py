@@ -11,8 +11,9 @@ from fast_downward.translate import normalize, options, pddl
 from tpvqa.pddl.worker.describing import static_description
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
 from tpvqa.pddl.worker.invariants import described_groups
-from tpvqa.pddl.worker.reading import read
+from tpvqa.pddl.worker.reading import ReadingError, read
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome
+from tpvqa.pddl.worker.unsure import UnsureError, chosen, give_room
 
 _KEPT_STATES = 8
 """So many states outside the first grounding widen the second one before it starts anew."""
@@ -45,9 +46,10 @@ class KnownTask:
 
     def __init__(self, domain_text: str, problem_text: str):
         with _quiet():
-            task = read(domain_text, problem_text)
+            task, unsure = read(domain_text, problem_text)
             self.description = static_description(task)
             normalize.normalize(task)
+            hidden = give_room(task, unsure)
         self._task = task
         self._numeric = [fact for fact in task.init if isinstance(fact, pddl.Assign)]
         self._changing = {
@@ -59,6 +61,15 @@ class KnownTask:
             for fact in task.init
             if isinstance(fact, pddl.Atom) and fact.predicate != "="
         ]
+        if unsure.atoms:
+            try:
+                with _quiet():
+                    self._initial += chosen(task, self._initial, unsure)
+            except UnsureError as error:
+                raise ReadingError(error.message, "problem", error.line) from None
+        self._left_open = unsure.atoms
+        self.description["fluents"] = sorted({*self.description["fluents"], *hidden})
+        self.description |= unsure.described()
         self._home: Grounding | None = None
         self._away: Grounding | None = None
         self._away_states: list[frozenset[AtomKey]] = []
@@ -140,7 +151,9 @@ class KnownTask:
     ) -> Grounding:
         self.groundings += 1
         with _quiet():
-            return Grounding(self._task, self._numeric, static, fluent, also)
+            return Grounding(
+                self._task, self._numeric, static, fluent, {*also, *self._left_open}
+            )
 
     def _at_home(self, static: frozenset[AtomKey], fluent: frozenset[AtomKey]) -> Grounding:
         if self._home is None:
