@@ -12,6 +12,7 @@ from tpvqa import __version__
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.priors import Priors, drawn_start, load_priors
 from tpvqa.belief.shipped import shipped_calibration
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.defaults import default_vlm, default_world
@@ -58,6 +59,7 @@ class Trial:
         vlm: A VLM to share between trials.
         book: The task's questions, where they have been loaded already.
         rules: What the world file says, where it has been loaded already.
+        priors: What is said of the initial state, likewise.
         model: The action model, where trials one after the other share it.
         calibration: What the VLM's answers are worth; goes before the file that `config` names,
             and that before the one that is shipped for this VLM.
@@ -83,6 +85,7 @@ class Trial:
         vlm: VLM | None = None,
         book: QuestionBook | None = None,
         rules: WorldRules | None = None,
+        priors: Priors | None = None,
         model: FaultModel | None = None,
         calibration: Calibration | None = None,
         experience: Experience | None = None,
@@ -101,6 +104,8 @@ class Trial:
                 config.wording
             )
             self.rules = rules or load_world_file(self.world_file, self.task)
+            start = config.start
+            self.priors = priors or load_priors(start.priors, self.task, start=start.what)
             if reading:
                 calibration, experience = self._read(calibration, experience)
             self._make(planner, vlm, model, calibration, experience, person)
@@ -142,6 +147,7 @@ class Trial:
             "book": self.book,
             "planner": planner,
             "rules": self.rules,
+            "priors": self.priors,
             "script_file": None if files is None else files.script,
             "simulation": self.simulation,
             "model": model,
@@ -193,6 +199,7 @@ class Trial:
             **faults.model_dump(),
             seed=config.seed,
             episode=config.episode,
+            start=drawn_start(self.task, self.priors, self.rules, config.seed, config.episode),
         )
 
     def _read(
@@ -239,6 +246,7 @@ class Trial:
             problem=self.task.problem_text,
             questions=_text(self.questions),
             rules=_text(self.world_file),
+            priors=_text(self.config.start.priors),
             initial=atoms(self.task.init),
             goal=", ".join(goal),
             calibration=_plain(self.calibration),

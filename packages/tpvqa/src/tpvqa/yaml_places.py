@@ -126,6 +126,18 @@ class Place:
             raise self.wrong(f"expected a number that counts from 1, found {_kind(self.node)}")
         return int(said)
 
+    def probability(self) -> float:
+        """The value as a number between 0 and 1."""
+        said = str(self.node.value) if isinstance(self.node, yaml.ScalarNode) else ""
+        try:
+            value = float(said)
+        except ValueError:
+            value = -1.0
+        if not 0 <= value <= 1:
+            found = shown(said) if said else _kind(self.node)
+            raise self.wrong(f"expected a probability between 0 and 1, found {found}")
+        return value
+
     def is_text(self) -> bool:
         """Whether it is a single value, not a list or a mapping."""
         return isinstance(self.node, yaml.ScalarNode) and not _is_empty(self.node)

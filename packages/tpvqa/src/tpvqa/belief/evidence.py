@@ -1,10 +1,10 @@
 """Answers as evidence: each weighs the belief by what it adds to those before."""
 
-from collections.abc import Collection, Hashable
+from collections.abc import Collection, Hashable, Iterable
 from dataclasses import dataclass
 from math import exp, log
+from typing import Protocol
 
-from tpvqa.belief.belief import Belief
 from tpvqa.belief.calibration import Apart, Calibration, Group
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.counts import PSEUDO
@@ -54,6 +54,22 @@ class _Last:
     settled: bool = True
 
 
+class Weighed(Protocol):
+    """What answers weigh: a belief, or what was believed before anything was done."""
+
+    def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
+        """The probability of a fact, or of it or any fact alike."""
+
+    def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
+        """Weigh by an answer about a fact (or any of several alike)."""
+
+    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
+        """Take in that a fact may have changed without the action model knowing."""
+
+    def weigh_outcome(self, *, succeeded: float, failed: float) -> None:
+        """Weigh by how probable something is where the last action succeeded, and where not."""
+
+
 class Evidence:
     """Takes answers into a belief.
 
@@ -70,7 +86,7 @@ class Evidence:
 
     def __init__(
         self,
-        belief: Belief,
+        belief: Weighed,
         calibration: Calibration,
         trust: Trust | None,
         *,
@@ -85,6 +101,10 @@ class Evidence:
         self._last: dict[str, _Last] = {}
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
+
+    def weigh(self, belief: Weighed) -> None:
+        """Weigh something else from now on; what was answered before stays known."""
+        self._belief = belief
 
     def acted(self, *, troubled: bool = False) -> None:
         """Note that an action was executed: facts may have changed, other things are in view.

@@ -8,7 +8,8 @@ RATES = ("failure", "disturbance", "spontaneous")
 LIMITS = ("repeats", "replans", "actions", "seconds")
 UNBOUND = {"repeats": "none", "replans": "none", "actions": "50x"}
 """What `limits=none` stands for: who does not come to an end with these has failed."""
-OTHERS = ("redo", "limits", "planner", "wording", "believed", "carried")
+STARTS = {"start": "what", "priors": "priors"}
+OTHERS = ("redo", "limits", "planner", "wording", "believed", "carried", *STARTS)
 
 
 def settings_of(condition: str) -> dict[str, str]:
@@ -47,6 +48,9 @@ def changes_of(condition: str) -> dict[str, Any]:
     if "redo" in settings:
         simulation["redo"] = settings["redo"]
     changes: dict[str, Any] = {"simulation": simulation, "limits": limits}
+    start = {key: settings[name] for name, key in STARTS.items() if name in settings}
+    if start:
+        changes["start"] = start
     if "wording" in settings:
         changes["wording"] = settings["wording"]
     if "planner" in settings:
@@ -69,6 +73,6 @@ def not_understood(condition: str, meant: str = "") -> BenchError:
     return BenchError(
         f"The condition {shown(condition)} is not understood{meant or '.'} Write settings with "
         f"commas: rates of faults ({', '.join(RATES)}), redo=free, risky or refused, limits "
-        f"({', '.join(LIMITS)}; limits=none), planner=PLANNER, wording=paper, believed=VLM, "
-        "carried=EPISODES; for example failure=0.4,actions=30"
+        f"({', '.join(LIMITS)}; limits=none), planner=PLANNER, wording=paper, start=unknown, "
+        "priors=FILE, believed=VLM, carried=EPISODES; for example failure=0.4,actions=30"
     )

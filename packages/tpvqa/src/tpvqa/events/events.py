@@ -44,7 +44,8 @@ class Started(_Event):
         world: Specification of the world.
         planner: Specification of the planner.
         noise_model: Whether the VLM answers from the truth, for experiments; it is no VLM then.
-        domain: Text of the file, as are `problem`, `questions` and `rules` (the world file).
+        domain: Text of the file, as are `problem`, `questions`, `rules` (the world file) and
+            `priors`.
         initial: The facts that hold at first.
         goal: The goal in words.
         calibration: What the monitor was told of the VLM's answers, where it weighs them.
@@ -71,6 +72,7 @@ class Started(_Event):
     problem: str
     questions: str | None = None
     rules: str | None = None
+    priors: str | None = None
     initial: tuple[str, ...]
     goal: str
     calibration: dict[str, Any] | None = None

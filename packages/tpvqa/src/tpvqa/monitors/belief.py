@@ -12,12 +12,15 @@ from tpvqa.belief.choices import Choice, Chooser, Table
 from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
+from tpvqa.belief.first import Prior
 from tpvqa.belief.inquiry import Budget, Inquirer, Inquiry
+from tpvqa.belief.priors import Priors
 from tpvqa.belief.trust import Trust
 from tpvqa.errors import PlannerError
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.monitors.capabilities import Learning
+from tpvqa.monitors.first_look import first_look, first_verdict
 from tpvqa.monitors.inspection import Inspection, Replies
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
@@ -50,6 +53,7 @@ class BeliefMonitor(Learning, PlainArguments):
         views: The views that the world can be looked at from, the default one first.
         experience: What was learned in earlier trials; goes before the rates of `settings`.
         noise_model: Whether answers do not depend on the picture, but on the look.
+        priors: How probable facts are at first, besides what the problem says.
         model: The action model, where trials one after the other share it.
         name: What the log calls it.
 
@@ -68,6 +72,7 @@ class BeliefMonitor(Learning, PlainArguments):
         views: Sequence[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
+        priors: Priors | None = None,
         model: FaultModel | None = None,
         name: str = "belief",
     ):
@@ -95,6 +100,8 @@ class BeliefMonitor(Learning, PlainArguments):
         self._plans: dict[State, Plan] = {}
         self._followed: Plan | None = None
         self._settled: Action | None = None
+        self._priors = priors or Priors()
+        self._undo = () if rules is None else rules.undo
         self._stepped: Step | None = None
         self._now = self._begin(None)
 
@@ -109,6 +116,7 @@ class BeliefMonitor(Learning, PlainArguments):
         views: Sequence[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
+        priors: Priors | None = None,
         model: FaultModel | None = None,
     ) -> "BeliefMonitor":
         """Make it from `belief`, or `belief:question=0.05:failure=200`; see `BeliefSettings`.
@@ -124,6 +132,7 @@ class BeliefMonitor(Learning, PlainArguments):
             views=views,
             experience=experience,
             noise_model=noise_model,
+            priors=priors,
             model=model,
             name=f"belief:{arguments}" if arguments else "belief",
         )
@@ -136,6 +145,30 @@ class BeliefMonitor(Learning, PlainArguments):
         chances = deepcopy(self.chances)
         chances.learn(self.belief.outcome_shares())  # of the last action
         return Experience.of(chances, self.trust, self._trials + 1)
+
+    @property
+    def unsure(self) -> bool:
+        """Whether the problem or the priors leave open how the world is at first."""
+        return bool(self.task.left_open) or self._priors.opens
+
+    def first(self, book: QuestionBook) -> Check:
+        """Look, where there are too many initial states to weigh; and plan from a likely one."""
+        prior = Prior(self.task, self._priors, self._undo)
+        now = self._now = self._begin(None)
+        self.evidence.weigh(prior)
+        yield from first_look(
+            prior,
+            self.evidence,
+            book,
+            now,
+            views=self._open_views,
+            budget=self._budget,
+            picture=lambda seen: seen.look if self._blind else _picture(seen),
+        )
+        self._looks, self._questions = now.looks, now.questions
+        self.evidence.weigh(self.belief)
+        self.belief.begin(prior.states())
+        return (yield from first_verdict(self.belief, prior, FactWords(book), now))
 
     def before(self, step: Step) -> Check:
         """Act where this is the step to take; otherwise go to what is."""

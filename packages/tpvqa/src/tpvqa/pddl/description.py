@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import GroundingTimedOut, PDDLError, PlannerError
-from tpvqa.pddl.atoms import Atom, State
-from tpvqa.pddl.atoms import Literal
+from tpvqa.pddl.atoms import Atom, Literal, State
 from tpvqa.pddl.ground import MutexGroup
 from tpvqa.pddl.processes import WorkerTimedOut, ask_worker
 

@@ -39,6 +39,7 @@ class Simulation:
         redo: What comes of an action whose effects hold already.
         seed: With `episode`, the action and its attempt, decides every fault.
         episode: Number of the episode under this seed.
+        start: The true initial state; None for the task's.
     """
 
     def __init__(
@@ -46,6 +47,7 @@ class Simulation:
         task: Task,
         rules: WorldRules | None = None,
         *,
+        start: State | None = None,
         failure: float = FAILURE,
         disturbance: float = DISTURBANCE,
         spontaneous: float = 0.0,
@@ -57,14 +59,15 @@ class Simulation:
         self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
         self.redo = Redo(redo)
         self.seed, self.episode = seed, episode
-        self.state: State = task.init
+        self.start: State = task.init if start is None else start
+        self.state: State = self.start
         self.attempts: Counter[str] = Counter()
         self.ended: list[Atom] = []
 
     def undoable(self) -> dict[Atom, list[tuple[str, State]]]:
         """The achieved facts that a disturbance could end now, with what each would lead to."""
         found = {}
-        for atom in sorted(self.state - self.task.init):
+        for atom in sorted(self.state - self.start):
             results = [
                 result
                 for rule in self.rules.undo

@@ -151,9 +151,7 @@ class KnownTask:
     ) -> Grounding:
         self.groundings += 1
         with _quiet():
-            return Grounding(
-                self._task, self._numeric, static, fluent, {*also, *self._left_open}
-            )
+            return Grounding(self._task, self._numeric, static, fluent, {*also, *self._left_open})
 
     def _at_home(self, static: frozenset[AtomKey], fluent: frozenset[AtomKey]) -> Grounding:
         if self._home is None:

@@ -94,9 +94,7 @@ def taken_out(problem: Block) -> Unsure:
             )
         keys = [_key(block) for _, block in parts]
         if len(set(keys)) < len(keys):
-            raise UnsureError(
-                f"{_said(entry)} names a fact twice; expected each once", entry.line
-            )
+            raise UnsureError(f"{_said(entry)} names a fact twice; expected each once", entry.line)
         if head == "unknown":
             found.unknown += keys
         elif head == "oneof":
