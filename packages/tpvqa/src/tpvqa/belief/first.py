@@ -49,9 +49,9 @@ class Prior:
         priors = priors or Priors()
         self.task = task
         fluents = task.fluents - task.derived
-        can_hold = {a for a in task.atoms() | task.init if a.predicate in fluents}
+        constraints, further, never = _constraints(task, undo)
+        can_hold = {a for a in task.atoms() | task.init if a.predicate in fluents} - never
         stated = priors.stated(can_hold, task)
-        constraints, further = _constraints(task, undo)
         if priors.nothing_known:
             opened = frozenset(can_hold)
         else:
@@ -181,14 +181,17 @@ class Prior:
         return state
 
 
-def _constraints(task: Task, undo: Sequence[Any]) -> tuple[Constraints, Sequence[Any]]:
-    """What every possible state keeps, and what can happen besides actions."""
+def _constraints(
+    task: Task, undo: Sequence[Any]
+) -> tuple[Constraints, Sequence[Any], frozenset[Atom]]:
+    """What every possible state keeps, what can happen besides actions, and what never holds."""
     try:
         further = tuple(disturbances(task, undo)) if undo else ()
         found = h2_mutexes(task, further)
-        return Constraints.of(task, found.pairs, never=found.never, further=further), further
+        kept = Constraints.of(task, found.pairs, never=found.never, further=further)
+        return kept, further, found.never
     except (PlannerError, AttributeError):  # rules of another kind than a world file's
-        return Constraints.of(task), ()
+        return Constraints.of(task), (), frozenset()
 
 
 def _variables(
