@@ -78,7 +78,8 @@ class Prior:
             keeps=Origins(task, further) if priors.nothing_known else None,
         )
         self._found: Found | None = None
-        if not self._search.best(self._scores, 1, nodes=TRIES * 10).states:
+        known = self._search.bits(task.init)
+        if not (self._search.allows(known) or self._search.best(self._scores, 1).states):
             raise BeliefError(
                 "no initial state was found that keeps the mutex groups, what the problem leaves "
                 "open and what the priors say is certain; make one of them less sure"
