@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import exp, fsum, log, prod
 from random import Random
 from typing import Any, Self
@@ -46,44 +47,12 @@ class Prior:
     """
 
     def __init__(self, task: Task, priors: Priors | None = None, undo: Sequence[Any] = ()):
-        priors = priors or Priors()
         self.task = task
-        fluents = task.fluents - task.derived
-        constraints, further, never = _constraints(task, undo)
-        can_hold = {a for a in task.atoms() | task.init if a.predicate in fluents} - never
-        stated = priors.stated(can_hold, task)
-        if priors.nothing_known:
-            opened = frozenset(can_hold)
-        else:
-            opened = task.left_open & can_hold | stated.keys()
-            for group in constraints.exactly_one:
-                if group & stated.keys():  # then what the problem says of it is not sure either
-                    opened |= group & task.init
-        named = () if priors.nothing_known else task.oneof
-        said = frozenset() if priors.nothing_known else task.init - task.left_open
-        certain = task.init - opened
-        groups = [*constraints.groups, *(Group(tuple(sorted(each)), True) for each in named)]
-        self._choices = tuple(
-            _Choice.of(variable, stated, said)
-            for variable in _variables(opened, named, constraints, certain)
-        )
+        self._choices, self._search = _space(task, priors or Priors(), tuple(undo))
         self._choice_of = {a: each for each in self._choices for a in each.variable.atoms}
         self._scores = {a: each.score(a) for a, each in self._choice_of.items()}
         self._factors: dict[tuple[Atom, ...], float] = {}
-        self._search = Likeliest(
-            [each.variable for each in self._choices],
-            groups,
-            () if priors.nothing_known else task.clauses,
-            certain=certain,
-            keeps=Origins(task, further) if priors.nothing_known else None,
-        )
         self._found: Found | None = None
-        known = self._search.bits(task.init)
-        if not (self._search.allows(known) or self._search.best(self._scores, 1).states):
-            raise BeliefError(
-                "no initial state was found that keeps the mutex groups, what the problem leaves "
-                "open and what the priors say is certain; make one of them less sure"
-            )
 
     @property
     def atoms(self) -> tuple[Atom, ...]:
@@ -180,6 +149,44 @@ class Prior:
         states = self.states()
         (state,) = random.choices([s for s, _ in states], [weight for _, weight in states])
         return state
+
+
+@lru_cache(maxsize=4)
+def _space(
+    task: Task, priors: Priors, undo: tuple[Any, ...]
+) -> "tuple[tuple[_Choice, ...], Likeliest]":
+    """The choices there are and what keeps them together; shared by trials one after the other."""
+    fluents = task.fluents - task.derived
+    constraints, further, never = _constraints(task, undo)
+    can_hold = {a for a in task.atoms() | task.init if a.predicate in fluents} - never
+    stated = priors.stated(can_hold, task)
+    if priors.nothing_known:
+        opened = frozenset(can_hold)
+    else:
+        opened = task.left_open & can_hold | stated.keys()
+        for group in constraints.exactly_one:
+            if group & stated.keys():  # then what the problem says of it is not sure either
+                opened |= group & task.init
+    named = () if priors.nothing_known else task.oneof
+    said = frozenset() if priors.nothing_known else task.init - task.left_open
+    certain = task.init - opened
+    choices = tuple(
+        _Choice.of(variable, stated, said)
+        for variable in _variables(opened, named, constraints, certain)
+    )
+    search = Likeliest(
+        [each.variable for each in choices],
+        [*constraints.groups, *(Group(tuple(sorted(each)), True) for each in named)],
+        () if priors.nothing_known else task.clauses,
+        certain=certain,
+        keeps=Origins(task, further) if priors.nothing_known else None,
+    )
+    if not (search.allows(search.bits(task.init)) or search.best({}, 1).states):
+        raise BeliefError(
+            "no initial state was found that keeps the mutex groups, what the problem leaves open "
+            "and what the priors say is certain; make one of them less sure"
+        )
+    return choices, search
 
 
 def _constraints(
