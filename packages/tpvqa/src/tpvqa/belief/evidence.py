@@ -8,6 +8,7 @@ from typing import Protocol
 from tpvqa.belief.calibration import Apart, Calibration, Group
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.counts import PSEUDO
+from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.trust import Trust
 from tpvqa.pddl import Atom
@@ -82,6 +83,7 @@ class Evidence:
         calibration: What answers are worth.
         trust: Whether they are worth that; None to take the calibration at its word.
         unexplained: Chance that a fact changed without the action model knowing.
+        doubts: Chances that things were elsewhere from the start; none by default.
     """
 
     def __init__(
@@ -91,9 +93,10 @@ class Evidence:
         trust: Trust | None,
         *,
         unexplained: float = UNEXPLAINED,
+        doubts: Doubts | None = None,
     ):
         self._belief, self._calibration, self._trust = belief, calibration, trust
-        self._unexplained = unexplained
+        self._unexplained, self._doubts = unexplained, doubts
         self._repeats = {
             apart: _cases(calibration.repeat(apart), PAIRS + calibration.pairs(apart))
             for apart in Apart
@@ -210,7 +213,10 @@ class Evidence:
         probable = true * if_true + (1 - true) * if_false
         if probable < SURPRISING and atoms not in self._opened and self._unexplained:
             self._opened.add(atoms)
-            self._belief.open(atoms, self._unexplained)
+            elsewhere = self._doubts.taken(atoms, held=true >= 0.5) if self._doubts else 0.0
+            self._belief.open(atoms, max(self._unexplained, elsewhere))
+        elif self._doubts is not None:
+            self._doubts.learn(atoms, if_true, if_false)
         self._belief.see(atoms, if_true, if_false)
         if self._trust is not None:
             self._trust.learn(

@@ -9,6 +9,7 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Choice, Chooser, Table
+from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
@@ -90,7 +91,9 @@ class BeliefMonitor(Learning, PlainArguments):
             learned = None if experience is None else experience.trusting()
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
-        self.evidence = Evidence(self.belief, calibration, self.trust)
+        self._priors, elsewhere = priors or Priors(), None if priors is None else priors.elsewhere
+        doubts = Doubts(task, elsewhere) if elsewhere else None
+        self.evidence = Evidence(self.belief, calibration, self.trust, doubts=doubts)
         self._chooser = Chooser(self.belief.model, self.costs)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
@@ -100,7 +103,6 @@ class BeliefMonitor(Learning, PlainArguments):
         self._plans: dict[State, Plan] = {}
         self._followed: Plan | None = None
         self._settled: Action | None = None
-        self._priors = priors or Priors()
         self._undo = () if rules is None else rules.undo
         self._stepped: Step | None = None
         self._now = self._begin(None)
