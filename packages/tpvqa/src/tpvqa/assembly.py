@@ -12,7 +12,7 @@ from tpvqa import __version__
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.priors import Priors, drawn_start, load_priors
+from tpvqa.belief.priors import Priors, drawn_start, load_priors, opened
 from tpvqa.belief.shipped import shipped_calibration
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.defaults import default_vlm, default_world
@@ -106,6 +106,8 @@ class Trial:
             self.rules = rules or load_world_file(self.world_file, self.task)
             start = config.start
             self.priors = priors or load_priors(start.priors, self.task, start=start.what)
+            known, self.task = self.task, opened(self.task, self.priors)
+            model = model if self.task is known else None  # that is of what was reachable before
             if reading:
                 calibration, experience = self._read(calibration, experience)
             self._make(planner, vlm, model, calibration, experience, person)

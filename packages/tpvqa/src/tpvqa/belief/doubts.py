@@ -8,6 +8,23 @@ from tpvqa.belief.surprise import Surprise
 from tpvqa.pddl import Atom, State, Task
 
 
+def further_places(task: Task) -> frozenset[Atom]:
+    """Where things may be although no action brings them there: where another thing may be.
+
+    Bread may lie in the fridge as the apple does, although no action puts anything into it.
+    """
+    can_hold = task.atoms() | task.init
+    known = {(atom.predicate, atom.arguments[1:]) for atom in can_hold}
+    return frozenset(
+        atom
+        for thing in things(task)
+        for group in task.groups_of(thing.stated)
+        if thing.places <= group.atoms
+        for atom in group.atoms - can_hold
+        if (atom.predicate, atom.arguments[1:]) in known and task.fits(atom)
+    )
+
+
 class Thing(NamedTuple):
     """Something that can be moved.
 

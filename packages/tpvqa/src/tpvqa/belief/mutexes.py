@@ -78,10 +78,11 @@ def h2_mutexes(task: Task, further: Iterable[Transition] = (), *, limit: int = L
 
 def _at_first(task: Task, index: Mapping[Atom, int]) -> NDArray[np.bool_]:
     """Whether two atoms may hold together initially, what the problem leaves open counted in."""
-    holding = [index[atom] for atom in task.init | task.left_open if atom in index]
+    first = task.left_open | task.besides
+    holding = [index[atom] for atom in task.init | first if atom in index]
     together = np.zeros((len(index), len(index)), dtype=np.bool_)
     together[np.ix_(holding, holding)] = True
-    if task.left_open:
+    if first:
         for group in (*task.oneof, *(each.atoms for each in task.mutex_groups)):
             members = [index[atom] for atom in group if atom in index]
             own = together.diagonal()[members].copy()

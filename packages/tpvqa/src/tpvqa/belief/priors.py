@@ -80,6 +80,24 @@ def load_priors(path: Path | str | None, task: Task, *, start: str = "known") ->
     return Priors(tuple(facts), elsewhere, nothing_known)
 
 
+def opened(task: Task, priors: Priors) -> Task:
+    """The task in which all that the priors name may hold at first.
+
+    Raises:
+        PlannerError: The worker could not ground it.
+    """
+    if priors.nothing_known or not (priors.facts or priors.elsewhere):
+        return task
+    from tpvqa.belief.doubts import further_places
+
+    can_hold = task.atoms() | task.init
+    everything = {atom for group in task.mutex_groups for atom in group.atoms} - can_hold
+    more = {atom for atom in priors.stated(everything, task) if task.fits(atom)}
+    if priors.elsewhere:
+        more |= further_places(task)
+    return task.opened_to(more) if more else task
+
+
 def drawn_start(
     task: Task, priors: Priors, rules: FaultRules, seed: int, episode: int
 ) -> State | None:

@@ -30,6 +30,7 @@ def described(
     problem: str,
     *,
     state: State | None = None,
+    also: State = frozenset(),
     domain_path: Path | None = None,
     problem_path: Path | None = None,
     timeout: float | None = 300.0,
@@ -41,6 +42,7 @@ def described(
         domain: The text of the domain.
         problem: The text of the problem.
         state: The initial state; None for the problem's own.
+        also: Facts that may hold at first besides.
         domain_path: What errors name.
         problem_path: The same.
         timeout: Seconds that it may take; None for no limit.
@@ -56,6 +58,7 @@ def described(
             {
                 "do": "describe",
                 "init": None if state is None else to_lists(state),
+                "also": to_lists(also),
                 "grounding_memory": memory,
             },
             key=key_of(domain, problem),

@@ -48,6 +48,7 @@ class Task:
         unknown: Facts that the problem says may hold at first or not: `(unknown …)`.
         oneof: Facts of which exactly one holds at first: `(oneof …)`.
         clauses: Literals of which at least one holds at first: `(or …)`.
+        besides: Further facts that may hold at first, see `opened_to`.
     """
 
     name: str
@@ -74,6 +75,7 @@ class Task:
     unknown: frozenset[Atom] = field(default=frozenset(), repr=False)
     oneof: tuple[frozenset[Atom], ...] = field(default=(), repr=False)
     clauses: tuple[tuple[Literal, ...], ...] = field(default=(), repr=False)
+    besides: frozenset[Atom] = field(default=frozenset(), repr=False)
 
     @cached_property
     def key(self) -> str:
@@ -291,6 +293,11 @@ class Task:
             above = self.types.get(above)
         return found
 
+    def fits(self, atom: Atom) -> bool:
+        """Whether an atom's arguments are of the types that its predicate is declared with."""
+        wanted = self.predicates[atom.predicate]
+        return all(map(self.is_a, atom.arguments, wanted))
+
     def check_atom(self, atom: Atom) -> None:
         """See that an atom speaks of this task's predicates and objects, each of a fitting type.
 
@@ -323,6 +330,26 @@ class Task:
                     f"{atom.pddl()}: {argument} is {a(self.objects[argument])}, but {variable} of "
                     f"{atom.predicate} must be {' or '.join(map(a, kind.split('|')))}"
                 )
+
+    def opened_to(self, atoms: Iterable[Atom]) -> "Task":
+        """The same task in which some facts may hold at first although no action adds them.
+
+        What they make reachable is reachable then.
+
+        Raises:
+            PDDLError: They speak of unknown predicates or objects.
+            PlannerError: The worker could not ground it.
+        """
+        besides = self.besides.union(atoms)
+        self.check_state(besides)
+        description = described(
+            self.domain_text,
+            self.problem_text,
+            also=besides,
+            domain_path=self.domain_path,
+            problem_path=self.problem_path,
+        )
+        return replace(self, besides=besides, **grounded_fields(description))
 
     def with_init(self, state: State) -> "Task":
         """The same task from another initial state, with the mutex groups that hold from there.

@@ -75,11 +75,21 @@ class KnownTask:
         self._away_states: list[frozenset[AtomKey]] = []
         self.groundings = 0
 
-    def describe(self, initial: list[list[str]] | None) -> dict[str, Any]:
-        """Everything about the task, with another initial state if one is given."""
+    def describe(
+        self, initial: list[list[str]] | None, also: list[list[str]] | None = None
+    ) -> dict[str, Any]:
+        """Everything about the task.
+
+        Args:
+            initial: Another initial state.
+            also: Facts that may hold at first besides; only what is reachable depends on them.
+        """
         static, fluent = self._split(self._initial if initial is None else map(tuple, initial))
-        here = self._at_home if initial is None else self._ground
-        grounding = here(static, fluent)
+        _, more = self._split(map(tuple, also or ()))
+        if initial is None and not more:
+            grounding = self._at_home(static, fluent)
+        else:
+            grounding = self._ground(static, fluent, more)
         with _quiet():
             self._task.init = grounding.initial
             groups = described_groups(self._task, grounding, fluent)
