@@ -23,7 +23,7 @@ UNKNOWN = Priors(nothing_known=True)
 def priors_of(tmp_path: Path, text: str, task: Task) -> Priors:
     path = tmp_path / "priors.yaml"
     path.write_text(text)
-    return load_priors(path, task)
+    return load_priors(task, path)
 
 
 @pytest.fixture(scope="module")

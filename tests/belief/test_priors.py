@@ -15,16 +15,16 @@ NIGHT = ward()
 def test_what_a_file_says(tmp_path: Path) -> None:
     path = tmp_path / "priors.yaml"
     path.write_text("elsewhere: 0.02\nnothing_known: false\n(in ?t - tool hall): 0.1\n")
-    priors = load_priors(path, NIGHT)
+    priors = load_priors(NIGHT, path)
     assert (priors.elsewhere, priors.nothing_known, priors.opens) == (0.02, False, True)
     hall = Atom.parse("(in lamp hall)")
     assert priors.stated({hall, Atom.parse("(in lamp store)")}, NIGHT) == {hall: 0.1}
 
 
 def test_without_a_file_the_problem_is_believed() -> None:
-    assert load_priors(None, NIGHT) == Priors()
+    assert load_priors(NIGHT, None) == Priors()
     assert not Priors().opens
-    assert load_priors(None, NIGHT, start="unknown") == Priors(nothing_known=True)
+    assert load_priors(NIGHT, None, "unknown") == Priors(nothing_known=True)
 
 
 @pytest.mark.parametrize(
@@ -47,6 +47,6 @@ def test_what_is_wrong_is_said_with_its_line(
     path = tmp_path / "priors.yaml"
     path.write_text(text)
     with pytest.raises(PriorsError) as caught:
-        load_priors(path, NIGHT)
+        load_priors(NIGHT, path)
     assert str(caught.value).startswith(f"{path}:{line}: ")
     assert says in str(caught.value)

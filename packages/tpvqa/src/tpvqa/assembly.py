@@ -6,14 +6,13 @@ from threading import Event as Flag
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, cast
 
-from pydantic import BaseModel
-
 from tpvqa import __version__
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.priors import Priors, drawn_start, load_priors, opened
+from tpvqa.belief.priors import Priors, load_priors
 from tpvqa.belief.shipped import shipped_calibration
+from tpvqa.belief.starts import drawn_start, opened
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.defaults import default_vlm, default_world
 from tpvqa.drivers import Journal, Listener, Parts, Performer, SteppingTrial
@@ -33,6 +32,7 @@ from tpvqa.planning.making import make_planner
 from tpvqa.plugins import Checked, Closing, Kind, load_spec, see_free, see_taken
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
+from tpvqa.text_files import kept_text
 from tpvqa.trial import trial
 from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
@@ -104,10 +104,9 @@ class Trial:
                 config.wording
             )
             self.rules = rules or load_world_file(self.world_file, self.task)
-            start = config.start
-            self.priors = priors or load_priors(start.priors, self.task, start=start.what)
+            self.priors = priors or load_priors(self.task, config.start.priors, config.start.what)
             known, self.task = self.task, opened(self.task, self.priors)
-            model = model if self.task is known else None  # that is of what was reachable before
+            model = model if self.task is known else None  # that of what was reachable before
             if reading:
                 calibration, experience = self._read(calibration, experience)
             self._make(planner, vlm, model, calibration, experience, person)
@@ -191,10 +190,9 @@ class Trial:
 
     def _simulate(self) -> Simulation | None:
         """The true state, where the world is one that keeps it."""
-        config = self.config
         if not is_simulated(load_spec(Kind.WORLD, self.world_spec)):
             return None
-        faults = config.simulation or SimulationConfig()
+        config, faults = self.config, self.config.simulation or SimulationConfig()
         return Simulation(
             self.task,
             self.rules,
@@ -228,12 +226,12 @@ class Trial:
         """The first event of the trial's episode."""
         if self._begun_as is not None:
             return self._begun_as.model_copy(update={"number": -1, "time": 0.0})
-        simulated = self.simulation is not None
-        faults = self.config.simulation or SimulationConfig()
+        faults = self.simulation and (self.config.simulation or SimulationConfig())
         goal = (self.book.fact(literal).text for literal in literals(self.task.goal))
+        told, known = self.calibration, self.known
         return Started(
             version=__version__,
-            config=self.config.model_copy(update={"simulation": faults if simulated else None}),
+            config=self.config.model_copy(update={"simulation": faults}),
             task=self.task.name,
             monitor=self.config.monitor.named,
             vlm=self.vlm_spec,
@@ -246,13 +244,13 @@ class Trial:
             world_file=None if self.world_file is None else str(self.world_file),
             domain=self.task.domain_text,
             problem=self.task.problem_text,
-            questions=_text(self.questions),
-            rules=_text(self.world_file),
-            priors=_text(self.config.start.priors),
+            questions=kept_text(self.questions),
+            rules=kept_text(self.world_file),
+            priors=kept_text(self.config.start.priors),
             initial=atoms(self.task.init),
             goal=", ".join(goal),
-            calibration=_plain(self.calibration),
-            experience=_plain(self.known),
+            calibration=told and told.model_dump(mode="json"),
+            experience=known and known.model_dump(mode="json"),
         )
 
     def check(self) -> None:
@@ -399,12 +397,3 @@ class Trial:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def _plain(model: BaseModel | None) -> dict[str, Any] | None:
-    return None if model is None else model.model_dump(mode="json")
-
-
-def _text(path: Path | str | None) -> str | None:
-    """What a file says, to be compared with what it says later."""
-    return None if path is None else Path(path).read_bytes().decode(errors="replace")

@@ -4,10 +4,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from tpvqa.belief.faults import FaultRules
-from tpvqa.chance import chance
 from tpvqa.errors import PDDLError, PriorsError
-from tpvqa.pddl import Atom, State, Task
+from tpvqa.pddl import Atom, Task
 from tpvqa.pddl.pattern import Pattern
 from tpvqa.yaml_places import Place, read_yaml
 
@@ -45,12 +43,12 @@ class Priors:
         return bool(self.facts) or self.nothing_known
 
 
-def load_priors(path: Path | str | None, task: Task, *, start: str = "known") -> Priors:
+def load_priors(task: Task, path: Path | str | None, start: str = "known") -> Priors:
     """Read a file of priors.
 
     Args:
-        path: The file; None for none.
         task: The task that it is about.
+        path: The file; None for none.
         start: "unknown" where nothing is known, whatever the file says.
 
     Example:
@@ -78,46 +76,6 @@ def load_priors(path: Path | str | None, task: Task, *, start: str = "known") ->
                 "as '(in ?thing fridge): 0.1'."
             )
     return Priors(tuple(facts), elsewhere, nothing_known)
-
-
-def opened(task: Task, priors: Priors) -> Task:
-    """The task in which all that the priors name may hold at first.
-
-    Raises:
-        PlannerError: The worker could not ground it.
-    """
-    if priors.nothing_known or not (priors.facts or priors.elsewhere):
-        return task
-    from tpvqa.belief.doubts import further_places
-
-    can_hold = task.atoms() | task.init
-    everything = {atom for group in task.mutex_groups for atom in group.atoms} - can_hold
-    more = {atom for atom in priors.stated(everything, task) if task.fits(atom)}
-    if priors.elsewhere:
-        more |= further_places(task)
-    return task.opened_to(more) if more else task
-
-
-def drawn_start(
-    task: Task, priors: Priors, rules: FaultRules, seed: int, episode: int
-) -> State | None:
-    """The true initial state of a simulated world; None for the problem's own.
-
-    It is drawn as the problem and the priors say. Where nothing is known it is the problem's own:
-    that says what the robot knows, not how the world came about.
-    """
-    opened = task.left_open or priors.opens
-    if priors.nothing_known or not (opened or priors.elsewhere):
-        return None
-    from tpvqa.belief.doubts import moved  # late, as all that they need takes a while
-    from tpvqa.belief.first import Prior
-    from tpvqa.belief.surprise import Surprise
-
-    random = chance(seed, episode, "start")
-    state = Prior(task, priors, rules.undo).drawn(random) if opened else task.init
-    if priors.elsewhere:
-        state = moved(task, state, priors.elsewhere, Surprise(task, rules.undo), random)
-    return state
 
 
 def _pattern(key: Place, name: str, task: Task) -> Pattern:

@@ -144,7 +144,7 @@ def _texts(started: Started, task: Task, place: str) -> dict[str, Any]:
             return {
                 "book": QuestionBook.load(questions, task),
                 "rules": load_world_file(rules, task),
-                "priors": load_priors(priors, task, start=started.config.start.what),
+                "priors": load_priors(task, priors, started.config.start.what),
             }
         except PlacedError as error:
             said = str(error).replace(f"{folder}/", "")
