@@ -249,8 +249,8 @@ class Trial:
             priors=kept_text(self.config.start.priors),
             initial=atoms(self.task.init),
             goal=", ".join(goal),
-            calibration=told and told.model_dump(mode="json"),
-            experience=known and known.model_dump(mode="json"),
+            calibration=None if told is None else told.model_dump(mode="json"),
+            experience=None if known is None else known.model_dump(mode="json"),
         )
 
     def check(self) -> None:
