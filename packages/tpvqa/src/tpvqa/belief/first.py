@@ -122,6 +122,10 @@ class Prior:
             return True
         return len(found.states) >= most and found.states[-1][1] - found.states[0][1] < log(TAIL)
 
+    def spread(self) -> float:
+        """So many states would have the same weight each (Simpson's index, inverted)."""
+        return 1 / fsum(weight * weight for _, weight in self.states())
+
     def _best(self, most: int) -> Found:
         if self._found is None or not (self._found.complete or len(self._found.states) >= most):
             factors = [(self._search.bits(atoms), r) for atoms, r in self._factors.items()]

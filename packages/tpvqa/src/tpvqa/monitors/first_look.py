@@ -21,6 +21,10 @@ from tpvqa.vlm import Answer, Reply
 
 SAME = 3
 """Looks in a row at which nothing new is seen, before no more are taken."""
+FEW = 20
+"""Initial states, of equal weight, that are weighed instead of looked for."""
+PLANNED = 6
+"""Initial states from which a first plan is sought, at most."""
 SAID = 2
 """Facts that a reason names, at most."""
 
@@ -37,8 +41,8 @@ def first_look(
 ) -> Generator[Request, Any, None]:
     """Ask about all that may hold or not, and again about what is still in doubt.
 
-    It ends when few states carry nearly all probability, from which on a belief can weigh what is
-    worth asking; or when nothing more can be seen, or the budget is used up.
+    It ends when few states carry nearly all probability: then a belief weighs what is worth
+    asking; or it ends when nothing more can be seen, or the budget is used up.
 
     Args:
         prior: How probable the initial states are; weighed with the answers.
@@ -57,7 +61,7 @@ def first_look(
     # With fewer answers there are too many states for a search to be worth its time.
     enough = evidence.answers_to_be_sure() / 2 if prior.combinations > 10 * MOST else 0
     rounds = barren = 0
-    while barren < SAME and not (rounds >= enough and prior.covered()):
+    while barren < SAME and (rounds < enough or not prior.covered() or prior.spread() > FEW):
         wanted = [each for each in questions.values() if _in_doubt(each, prior) and views(each)]
         allowed = budget()
         if not wanted or allowed.looks < 1 or allowed.questions < 1:
@@ -101,14 +105,15 @@ def first_verdict(belief: Belief, prior: Prior, words: FactWords, seen: Inspecti
         seen: What was looked at and answered.
     """
     done = belief.where(belief.model.task.goal_holds) >= 1 - LIKELY
-    begun, plan = belief.most_probable()[0], None
-    for state, weight in belief.states():
-        if weight < LIKELY or plan is not None:
+    states = [state for state, _ in belief.states()]
+    begun, plan = states[0], None
+    if not done:
+        states = [state for state in states if not belief.model.task.goal_holds(state)]
+    for state in states[:PLANNED]:
+        result = yield PlanFrom(state)
+        if isinstance(result, Plan):
+            begun, plan = state, result
             break
-        if done or not belief.model.task.goal_holds(state):
-            result = yield PlanFrom(state)
-            if isinstance(result, Plan):
-                begun, plan = state, result
     chances = {atom: belief.probability(atom) for atom in sorted(prior.atoms)}
     return Verdict(
         Decision.GO_ON, _reason(belief, chances, words, begun, seen), begun, None, chances, plan
