@@ -32,15 +32,15 @@ def drawn_start(
     It is drawn as the problem and the priors say. Where nothing is known it is the problem's own:
     that says what the robot knows, not how the world came about.
     """
-    opened = task.left_open or priors.opens
-    if priors.nothing_known or not (opened or priors.elsewhere):
+    unsure = task.left_open or priors.opens
+    if priors.nothing_known or not (unsure or priors.elsewhere):
         return None
     from tpvqa.belief.doubts import moved  # late, as all that they need takes a while
     from tpvqa.belief.first import Prior
     from tpvqa.belief.surprise import Surprise
 
     random = chance(seed, episode, "start")
-    state = Prior(task, priors, rules.undo).drawn(random) if opened else task.init
+    state = Prior(task, priors, rules.undo).drawn(random) if unsure else task.init
     if priors.elsewhere:
         state = moved(task, state, priors.elsewhere, Surprise(task, rules.undo), random)
     return state
