@@ -33,6 +33,16 @@ def test_a_problem_that_leaves_facts_open_is_run_and_read_again(
     assert "before the first plan" in Path("night/report.html").read_text(encoding="utf-8")
 
 
+def test_who_cannot_weigh_what_is_open_says_so(tpvqa: Run, night: tuple[str, ...]) -> None:
+    code, _, err = tpvqa("plan", *night[:4])
+    assert code == 0
+    assert "the problem leaves 7 facts open; the plan is one from a state that may be" in err
+    _, _, err = tpvqa("run", *night, "--monitor", "tpvqa")
+    assert "this monitor knows no probabilities" in err
+    _, _, err = tpvqa("run", "build_tower", *night[4:], "--monitor", "tpvqa")
+    assert "probabilities" not in err
+
+
 def test_nothing_known_and_a_file_of_priors(
     tpvqa: Run, night: tuple[str, ...], tmp_path: Path
 ) -> None:

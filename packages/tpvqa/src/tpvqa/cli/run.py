@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tpvqa.cli.notices import about_calibration, about_vlm, about_words
+from tpvqa.cli.notices import about_calibration, about_start, about_vlm, about_words
 from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_options
 from tpvqa.cli.plan import Problem, Task
 from tpvqa.cli.saying import tell
@@ -83,6 +83,7 @@ def run(
             *about_words(trial.book),
             *about_vlm(trial.config, trial.vlm_spec),
             *_about_calibration(trial),
+            *about_start(trial.task, trial.priors, trial.monitor),
         )
         for notice in told:
             tell(f"note: {notice}", error=True)
