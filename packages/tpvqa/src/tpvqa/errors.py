@@ -5,6 +5,7 @@ TpvqaError
 │   ├── PDDLError          the domain or problem cannot be read
 │   ├── QuestionsError     a questions file is broken
 │   ├── WorldFileError     a world file or a script is broken
+│   ├── PriorsError        a file of priors is broken
 │   ├── ConfigError        a trial's configuration is wrong
 │   └── PhotosError        a photo, its label or a file of prompts is wrong
 ├── PlannerError           the planner itself could not be run (never "there is no plan")
@@ -127,6 +128,10 @@ class ConfigError(PlacedError):
 
 class WorldFileError(PlacedError):
     """A world file or a script is broken."""
+
+
+class PriorsError(PlacedError):
+    """A file of priors is broken."""
 
 
 class WorldError(TpvqaError):

@@ -60,3 +60,8 @@ def read_text(
             file=path,
             line=data.count(b"\n", 0, strange.start) + 1,
         ) from strange
+
+
+def kept_text(path: Path | str | None) -> str | None:
+    """What a file says, to be compared with what it says later; None where there is none."""
+    return None if path is None else Path(path).read_bytes().decode(errors="replace")

@@ -6,14 +6,14 @@ from threading import Event as Flag
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from pydantic import BaseModel
-
 from tpvqa import __version__
 from tpvqa.assembly.simulating import simulate
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.priors import Priors, load_priors
 from tpvqa.belief.shipped import shipped_calibration
+from tpvqa.belief.starts import opened
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.defaults import default_vlm, default_world
 from tpvqa.drivers import Journal, Listener, Parts, Performer, SteppingTrial
@@ -34,6 +34,7 @@ from tpvqa.planning.making import make_planner
 from tpvqa.plugins import Checked, Closing, Kind, load_spec, see_free, see_taken
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
+from tpvqa.text_files import kept_text
 from tpvqa.trial import trial
 from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
@@ -58,6 +59,7 @@ class Trial:
         vlm: A VLM to share between trials.
         book: The task's questions, where they have been loaded already.
         rules: What the world file says, where it has been loaded already.
+        priors: What is said of the initial state, likewise.
         model: The action model, where trials one after the other share it.
         calibration: What the VLM's answers are worth; goes before the file that `config` names,
             and that before the one that is shipped for this VLM.
@@ -83,6 +85,7 @@ class Trial:
         vlm: VLM | None = None,
         book: QuestionBook | None = None,
         rules: WorldRules | None = None,
+        priors: Priors | None = None,
         model: FaultModel | None = None,
         calibration: Calibration | None = None,
         experience: Experience | None = None,
@@ -101,6 +104,9 @@ class Trial:
                 config.wording
             )
             self.rules = rules or load_world_file(self.world_file, self.task)
+            self.priors = priors or load_priors(self.task, config.start.priors, config.start.what)
+            known, self.task = self.task, opened(self.task, self.priors)
+            model = model if self.task is known else None  # that of what was reachable before
             if reading:
                 calibration, experience = self._read(calibration, experience)
             self._make(planner, vlm, model, calibration, experience, person)
@@ -142,6 +148,7 @@ class Trial:
             "book": self.book,
             "planner": planner,
             "rules": self.rules,
+            "priors": self.priors,
             "script_file": None if files is None else files.script,
             "simulation": self.simulation,
             "model": model,
@@ -186,7 +193,7 @@ class Trial:
         """The true state, where the world is one that keeps it."""
         if not is_simulated(load_spec(Kind.WORLD, self.world_spec)):
             return None
-        return simulate(self.task, self.rules, self.config, planner, self._begun_as)
+        return simulate(self.task, self.rules, self.config, planner, self._begun_as, self.priors)
 
     def _read(
         self, calibration: Calibration | None, experience: Experience | None
@@ -212,12 +219,12 @@ class Trial:
         """The first event of the trial's episode."""
         if self._begun_as is not None:
             return self._begun_as.model_copy(update={"number": -1, "time": 0.0})
-        simulated = self.simulation is not None
-        faults = self.config.simulation or SimulationConfig()
+        faults = self.simulation and (self.config.simulation or SimulationConfig())
         goal = (self.book.fact(literal).text for literal in literals(self.task.goal))
+        told, known = self.calibration, self.known
         return Started(
             version=__version__,
-            config=self.config.model_copy(update={"simulation": faults if simulated else None}),
+            config=self.config.model_copy(update={"simulation": faults}),
             task=self.task.name,
             monitor=self.config.monitor.named,
             vlm=self.vlm_spec,
@@ -230,13 +237,14 @@ class Trial:
             world_file=None if self.world_file is None else str(self.world_file),
             domain=self.task.domain_text,
             problem=self.task.problem_text,
-            questions=_text(self.questions),
-            rules=_text(self.world_file),
+            questions=kept_text(self.questions),
+            rules=kept_text(self.world_file),
+            priors=kept_text(self.config.start.priors),
             initial=atoms(self.task.init),
             true_start=self._true_start,
             goal=", ".join(goal),
-            calibration=_plain(self.calibration),
-            experience=_plain(self.known),
+            calibration=None if told is None else told.model_dump(mode="json"),
+            experience=None if known is None else known.model_dump(mode="json"),
         )
 
     @property
@@ -389,12 +397,3 @@ class Trial:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def _plain(model: BaseModel | None) -> dict[str, Any] | None:
-    return None if model is None else model.model_dump(mode="json")
-
-
-def _text(path: Path | str | None) -> str | None:
-    """What a file says, to be compared with what it says later."""
-    return None if path is None else Path(path).read_bytes().decode(errors="replace")

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from tpvqa.belief.priors import Priors
+from tpvqa.belief.starts import drawn_start
 from tpvqa.belief.undoing import BackToBefore
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.events import Started
@@ -21,6 +23,7 @@ def simulate(
     config: TrialConfig,
     planner: Planner,
     begun_as: Started | None,
+    priors: Priors,
 ) -> Simulation:
     """The simulation of a trial.
 
@@ -33,6 +36,7 @@ def simulate(
         config: What the trial is.
         planner: Tells what a plan handles, and whether there is one.
         begun_as: The first event, where the trial was begun before: it says the true first state.
+        priors: How probable facts are at first, where the problem does not say.
 
     Raises:
         TpvqaError: A skill or a first state that is named does not fit the task.
@@ -43,6 +47,8 @@ def simulate(
         start = None if told is None else frozenset(map(Atom.parse, told))
     else:
         start = _start(task, config, faults, planner)
+        if start is None:
+            start = drawn_start(task, priors, rules, config.seed, config.episode)
     return Simulation(
         task,
         rules,

@@ -49,6 +49,7 @@ class Belief:
         self.model, self._smallest, self._most = model, smallest, most
         self._surprise = model.surprise
         first = model.task.init if state is None else state
+        model.begin(model.task.init)
         self.weights: dict[int, float] = {model.number(JointState(first)): 1.0}
         self.outcome_weights: OutcomeWeights | None = None
         self._predicted: dict[int, float] = {}
@@ -69,6 +70,15 @@ class Belief:
         self._marginals.clear()
         self._ranked = None
         return numbers
+
+    def begin(self, states: Sequence[tuple[State, float]]) -> None:
+        """Begin anew from several initial states, each with its weight.
+
+        What disturbances undo is what was not so in the most probable one.
+        """
+        self.model.begin(max(states, key=lambda each: each[1])[0])
+        self.outcome_weights = None
+        self._become({self.model.number(JointState(state)): weight for state, weight in states})
 
     def states(self) -> list[tuple[State, float]]:
         """The joint states with their probabilities, the most probable first."""

@@ -1,13 +1,15 @@
 """Answers as evidence: each weighs the belief by what it adds to those before."""
 
-from collections.abc import Collection, Hashable
+from collections.abc import Collection, Hashable, Iterable
 from dataclasses import dataclass
 from math import exp, log
+from typing import Protocol
 
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.calibration import Apart, Calibration, Group
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.counts import PSEUDO
+from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
 from tpvqa.belief.readings import Readings
@@ -56,6 +58,19 @@ class _Last:
     settled: bool = True
 
 
+class Weighed(Protocol):
+    """What answers weigh: a belief, or what was believed before anything was done."""
+
+    def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
+        """The probability of a fact, or of it or any fact alike."""
+
+    def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
+        """Weigh by an answer about a fact (or any of several alike)."""
+
+    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
+        """Take in that a fact may have changed without the action model knowing."""
+
+
 class Evidence:
     """Takes answers into a belief.
 
@@ -69,6 +84,7 @@ class Evidence:
         trust: Whether they are worth that; None to take the calibration at its word.
         unexplained: Chance that a fact changed without the action model knowing.
         skill: What the report of any skill is worth; by default what the calibration says.
+        doubts: Chances that things were elsewhere from the start; none by default.
     """
 
     def __init__(
@@ -79,9 +95,11 @@ class Evidence:
         *,
         unexplained: float = UNEXPLAINED,
         skill: SkillWorth | None = None,
+        doubts: Doubts | None = None,
     ):
         self._belief, self._calibration, self._trust = belief, calibration, trust
-        self._unexplained = unexplained
+        self._weighed: Weighed = belief
+        self._unexplained, self._doubts = unexplained, doubts
         self._skills = calibration.skills if skill is None else (skill,)
         self._sensors = calibration.sensors
         self._readings = Readings(belief, calibration.sensors)
@@ -92,6 +110,10 @@ class Evidence:
         self._last: dict[str, _Last] = {}
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
+
+    def weigh(self, belief: Weighed) -> None:
+        """Weigh something else from now on; what was answered before stays known."""
+        self._weighed = belief
 
     def acted(self, action: str = "", *, failed: bool | None = None) -> None:
         """Note that an action was executed: facts may have changed, other things are in view.
@@ -141,14 +163,16 @@ class Evidence:
         """
         stated = atom.predicate not in self._belief.model.task.derived
         if stated and self._readings.expected(atom, probability) < SURPRISING:
-            self._open((atom,))
+            self._open((atom,), held=probability < 0.5)
         self._readings.take(atom, probability)
 
-    def _open(self, atoms: tuple[Atom, ...]) -> None:
-        """Take in, once between two actions, that a fact may have changed unexplained."""
+    def _open(self, atoms: tuple[Atom, ...], *, held: bool) -> None:
+        """Take in, once between two actions, that a fact may have changed unexplained, or that it
+        never was as the problem says."""
         if atoms not in self._opened and self._unexplained:
             self._opened.add(atoms)
-            self._belief.open(atoms, self._unexplained)
+            elsewhere = self._doubts.taken(atoms, held=held) if self._doubts else 0.0
+            self._weighed.open(atoms, max(self._unexplained, elsewhere))
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action: once more is worth
@@ -214,7 +238,7 @@ class Evidence:
             return 1.0
         group = self._calibration.group(question)
         raw = group.log_ratio(answer.reply, answer.p_yes)
-        true = self._belief.probability(question.atom, question.alike)
+        true = self._weighed.probability(question.atom, question.alike)
         ratio = raw if self._trust is None else self._trust.ratio(raw)
         if_true = _sigmoid(ratio)
         if_false = 1 - if_true
@@ -238,13 +262,15 @@ class Evidence:
             if_false = again_false * same + (1 - again_false) * if_false
         probable = true * if_true + (1 - true) * if_false
         if probable < SURPRISING:
-            self._open(atoms)
-        self._belief.see(atoms, if_true, if_false)
+            self._open(atoms, held=true >= 0.5)
+        elif self._doubts is not None:
+            self._doubts.learn(atoms, if_true, if_false)
+        self._weighed.see(atoms, if_true, if_false)
         if self._trust is not None:
             self._trust.learn(
                 true, raw, same=bool(same), again_true=again_true, again_false=again_false
             )
-        after = self._belief.probability(question.atom, question.alike)
+        after = self._weighed.probability(question.atom, question.alike)
         if last is None:
             last = self._last[question.text] = _Last(answer.reply, set(), view, after)
         last.reply, last.view, last.true, last.settled = answer.reply, view, after, True
@@ -258,8 +284,8 @@ class Evidence:
             self.silence(question.text, PERSONS_VIEW)
         if reply in (Reply.YES, Reply.NO):
             right = PERSON if reply is Reply.YES else 1 - PERSON
-            self._belief.open(question.atoms, self._unexplained)
-            self._belief.see(question.atoms, right, 1 - right)
+            self._weighed.open(question.atoms, self._unexplained)
+            self._weighed.see(question.atoms, right, 1 - right)
 
 
 def _with_history(

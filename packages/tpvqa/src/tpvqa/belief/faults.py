@@ -161,6 +161,7 @@ class FaultModel:
         )
         self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
         self._keep = _Keep(self._undo, task)
+        self._begun: State = task.init
         self._clear()
 
     def renewed(self) -> "FaultModel":
@@ -181,6 +182,13 @@ class FaultModel:
         self._truths: dict[tuple[Atom, ...], Truth] = {}
         self._bound: dict[tuple[Action, State], Action] = {}
         self._undone: dict[int, tuple[tuple[float, int], ...]] = {}
+
+    def begin(self, state: State) -> None:
+        """Note with what state a trial begins: a disturbance undoes only what was not so then."""
+        if state != self._begun:
+            self._begun = state
+            self._undone.clear()
+            self._outcomes.clear()
 
     def number(self, joint_state: JointState) -> int:
         """The number of a joint state, the same for equal ones."""
@@ -292,7 +300,7 @@ class FaultModel:
         found = self._undone.get(number)
         if found is None:
             joint_state, results = self.joint_states[number], []
-            for atom in sorted(joint_state.state - self.task.init):
+            for atom in sorted(joint_state.state - self._begun):
                 states = [
                     after
                     for rule in self._undo

@@ -64,7 +64,7 @@ def h2_mutexes(task: Task, further: Iterable[Transition] = (), *, limit: int = L
         )
     transitions = [of_action(action, task) for action in actions]
     able = [t for t in (*transitions, *further) if t.needed | t.earlier <= index.keys()]
-    together = _together(able, index, [index[atom] for atom in task.init if atom in index])
+    together = _together(able, index, _at_first(task, index))
     possible = together.diagonal()
     first, second = np.nonzero(np.triu(~together & possible & possible[:, None]))
     return Mutexes(
@@ -76,13 +76,32 @@ def h2_mutexes(task: Task, further: Iterable[Transition] = (), *, limit: int = L
     )
 
 
+def _at_first(task: Task, index: Mapping[Atom, int]) -> NDArray[np.bool_]:
+    """Whether two atoms may hold together initially, what the problem leaves open counted in."""
+    first = task.left_open | task.besides
+    holding = [index[atom] for atom in task.init | first if atom in index]
+    together = np.zeros((len(index), len(index)), dtype=np.bool_)
+    together[np.ix_(holding, holding)] = True
+    if first:
+        for group in (*task.oneof, *(each.atoms for each in task.mutex_groups)):
+            members = [index[atom] for atom in group if atom in index]
+            own = together.diagonal()[members].copy()
+            together[np.ix_(members, members)] = False
+            together[members, members] = own
+    return together
+
+
 def _together(
-    transitions: Sequence[Transition], index: Mapping[Atom, int], initial: Sequence[int]
+    transitions: Sequence[Transition], index: Mapping[Atom, int], together: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """Whether two atoms hold together in some state; on the diagonal, whether one ever holds."""
+    """Whether two atoms hold together in some state; on the diagonal, whether one ever holds.
+
+    Args:
+        transitions: What can happen.
+        index: The number of each atom.
+        together: Whether two atoms may hold together initially, shape (atoms, atoms).
+    """
     size = len(index)
-    together = np.zeros((size, size), dtype=np.bool_)
-    together[np.ix_(initial, initial)] = True
     added = _numbers((t.added for t in transitions), index)
     adding = _packed(_table(added, size))
     kept = ~_packed(_table(_numbers((t.deleted for t in transitions), index), size))

@@ -9,7 +9,9 @@ RATES = ("failure", "disturbance", "spontaneous")
 LIMITS = ("repeats", "replans", "actions", "seconds")
 UNBOUND = {"repeats": "none", "replans": "none", "actions": "50x"}
 """What `limits=none` stands for: who does not come to an end with these has failed."""
-OTHERS = ("redo", "dead", "elsewhere", "limits", "planner", "wording", "believed", "carried")
+STARTS = {"start": "what", "priors": "priors"}
+FAULTS = ("redo", "dead", "elsewhere")
+OTHERS = (*FAULTS, "limits", "planner", "wording", "believed", "carried", *STARTS)
 
 
 def settings_of(condition: str) -> dict[str, str]:
@@ -45,9 +47,11 @@ def changes_of(condition: str) -> dict[str, Any]:
         raise not_understood(condition)
     limits = {**(UNBOUND if "limits" in settings else {})}
     limits |= {name: settings[name] for name in LIMITS if name in settings}
-    others = ("redo", "dead", "elsewhere")
-    simulation |= {name: settings[name] for name in others if name in settings}
+    simulation |= {name: settings[name] for name in FAULTS if name in settings}
     changes: dict[str, Any] = {"simulation": simulation, "limits": limits}
+    start = {key: settings[name] for name, key in STARTS.items() if name in settings}
+    if start:
+        changes["start"] = start
     if "wording" in settings:
         changes["wording"] = settings["wording"]
     if "planner" in settings:
@@ -72,6 +76,6 @@ def not_understood(condition: str, meant: str = "") -> BenchError:
         f"The condition {shown(condition)} is not understood{meant or '.'} Write settings with "
         f"commas: rates of faults ({', '.join(RATES)}), redo=free, risky or refused, "
         "dead=SKILL, elsewhere=THINGS, limits "
-        f"({', '.join(LIMITS)}; limits=none), planner=PLANNER, wording=paper, believed=VLM, "
-        "carried=EPISODES; for example failure=0.4,actions=30"
+        f"({', '.join(LIMITS)}; limits=none), planner=PLANNER, wording=paper, start=unknown, "
+        "priors=FILE, believed=VLM, carried=EPISODES; for example failure=0.4,actions=30"
     )

@@ -67,7 +67,7 @@ class Judge:
                     p = "" if answer.p_yes is None else f"{answer.p_yes:.2f}"
                     key = f"{question.way}|{subject_of(question)}|{truth:d}|{answer.reply}|{p}"
                     self.answers[key] += 1
-            case Decided():
+            case Decided() if event.action:  # not of the look before the first plan
                 action = self._actions[event.action]
                 if event.when == "before":
                     truth = self._simulation.possible(action)

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tpvqa.belief.calibration import Calibration
+    from tpvqa.belief.priors import Priors
     from tpvqa.config import TrialConfig
+    from tpvqa.pddl import Task
     from tpvqa.questions import QuestionBook
     from tpvqa.tasks import TaskFiles
 
@@ -49,6 +51,31 @@ def about_words(book: "QuestionBook") -> list[str]:
         f"{len(book.fallbacks)} predicates and actions are put into words by their names in the "
         "PDDL; `tpvqa questions` lists them, and a questions file gives better ones",
         *others,
+    ]
+
+
+def about_start(task: "Task", priors: "Priors | None" = None, monitor: object = None) -> list[str]:
+    """What to know where it is not sure how the world is at first.
+
+    Args:
+        task: The task.
+        priors: What a trial is told of it besides.
+        monitor: The trial's monitor; None where there is only a plan.
+    """
+    from tpvqa.monitors.capabilities import LooksFirst
+
+    open_facts = len(task.left_open)
+    if monitor is None and open_facts:
+        return [
+            f"the problem leaves {open_facts} facts open; the plan is one from a state that may be "
+            "the case (--from-state names another)"
+        ]
+    told = priors is not None and (priors.opens or priors.elsewhere)
+    if isinstance(monitor, LooksFirst) or monitor is None or not (open_facts or told):
+        return []
+    return [
+        "this monitor knows no probabilities: what is not known at first, it is told as if it were "
+        "known; --monitor belief weighs it"
     ]
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tpvqa.cli.notices import about_start
 from tpvqa.cli.options import task_config
 from tpvqa.cli.saying import tell
 
@@ -89,6 +90,8 @@ def plan(
     try:
         loaded = load_task(wanted.name or wanted.domain or "", wanted.problem, timeout=timeout)
         state = None if from_state is None else read_state(from_state, loaded)
+        for notice in about_start(loaded) if state is None else ():
+            tell(f"note: {notice}", error=True)
         left = max(0.0, timeout - (time.perf_counter() - start))
         result = chosen.plan(loaded, state, timeout=left)
     except GroundingTimedOut:

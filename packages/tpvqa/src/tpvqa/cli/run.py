@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tpvqa.cli.no_effect import without_effect
-from tpvqa.cli.notices import about_calibration, about_vlm, about_words
+from tpvqa.cli.notices import about_calibration, about_start, about_vlm, about_words
 from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_options
 from tpvqa.cli.plan import Problem, Task
 from tpvqa.cli.saying import tell
@@ -85,6 +85,7 @@ def run(
             *about_vlm(trial.config, trial.vlm_spec),
             *_about_calibration(trial),
             *without_effect(trial, {key for layer in layers for key in layer.values}),
+            *about_start(trial.task, trial.priors, trial.monitor),
         )
         for notice in told:
             tell(f"note: {notice}", error=True)

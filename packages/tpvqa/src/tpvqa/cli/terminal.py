@@ -196,7 +196,7 @@ class EpisodeView:
         self._line(f"[bold]{step + 1}. {marked(state.plan.plan[step].said)}[/]{again}")
 
     def _show_decision(self, event: Decided) -> None:
-        explained = bool(event.belief) and event.when == "after"
+        explained = bool(event.belief) and (event.when == "after" or not event.action)
         if self._told or explained or event.decision is not Decision.GO_ON:
             style, reason = _COURSE_STYLE[event.course], event.reason
             if not self._verbose:

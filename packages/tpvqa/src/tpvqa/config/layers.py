@@ -28,7 +28,11 @@ NAMEABLE: tuple[Key, ...] = (
 """What whoever goes on with an episode may name. All else is the log's: its texts are used instead
 of the files that it names, and so is the calibration that it holds."""
 DEFAULT = "default"
-SPECS = {"task": "name", "world": "spec", "vlm": "spec", "monitor": "spec", "planner": "spec"}
+SPECS = {
+    "task": "name",
+    "start": "what",
+    **dict.fromkeys(("world", "vlm", "monitor", "planner"), "spec"),
+}
 """The setting of a part for which a name alone stands."""
 
 

@@ -78,6 +78,20 @@ class TaskConfig(_Part):
         return self
 
 
+class StartConfig(_Part):
+    """What is known before anything was done."""
+
+    what: Literal["known", "unknown"] = setting(
+        "--start",
+        "known: the problem says how the world is at first (the default); unknown: nothing is "
+        "known but the objects and what no action changes, so a monitor that can looks first.",
+        "known",
+    )
+    priors: str | None = setting(
+        "--priors", "How probable facts are at first, where that is not sure.", file=True
+    )
+
+
 class WorldConfig(_Part):
     """Where the robot acts and looks."""
 
@@ -246,6 +260,10 @@ def _named_task(value: Any) -> Any:
     return _named(value, "name")
 
 
+def _named_start(value: Any) -> Any:
+    return _named(value, "what")
+
+
 Named = BeforeValidator(_named)
 
 
@@ -264,6 +282,7 @@ class TrialConfig(_Part):
         default=1, validation_alias="schema", serialization_alias="schema"
     )
     task: Annotated[TaskConfig, BeforeValidator(_named_task)] = TaskConfig()
+    start: Annotated[StartConfig, BeforeValidator(_named_start)] = StartConfig()
     world: Annotated[WorldConfig, Named] = WorldConfig()
     vlm: Annotated[VLMConfig, Named] = VLMConfig()
     monitor: Annotated[MonitorConfig, Named] = MonitorConfig()
@@ -288,6 +307,7 @@ class TrialConfig(_Part):
             self,
             *,
             task: TaskConfig | str = ...,
+            start: StartConfig | str = ...,
             world: WorldConfig | str = ...,
             vlm: VLMConfig | str = ...,
             monitor: MonitorConfig | Mapping[str, Any] | str = ...,

@@ -106,7 +106,8 @@ class LogShape:
                     raise _wrong("a probability is not between 0 and 1")
                 if event.onto is not None and not 0 <= event.onto <= len(self._plan or ()):
                     raise _wrong(f"there is no step {event.onto} in the plan")
-                self._step(event.step, event.action)
+                if event.action or self._plan is not None:  # else of the look before there is one
+                    self._step(event.step, event.action)
             case Acting():
                 self._step(event.step, event.action.pddl())
                 if event.attempt < 0:

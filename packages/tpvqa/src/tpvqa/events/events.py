@@ -44,7 +44,8 @@ class Started(_Event):
         world: Specification of the world.
         planner: Specification of the planner.
         noise_model: Whether the VLM answers from the truth, for experiments; it is no VLM then.
-        domain: Text of the file, as are `problem`, `questions` and `rules` (the world file).
+        domain: Text of the file, as are `problem`, `questions`, `rules` (the world file) and
+            `priors`.
         initial: The facts that hold at first, as the problem says.
         true_start: Those that truly hold where a simulated world begins otherwise; for judges.
         goal: The goal in words.
@@ -72,6 +73,7 @@ class Started(_Event):
     problem: str
     questions: str | None = None
     rules: str | None = None
+    priors: str | None = None
     initial: tuple[str, ...]
     true_start: tuple[str, ...] | None = None
     goal: str

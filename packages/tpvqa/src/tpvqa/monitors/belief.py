@@ -8,15 +8,20 @@ from tpvqa.belief.ablations import belief_without
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Choice, Chooser, Table
+from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
+from tpvqa.belief.first import Prior
 from tpvqa.belief.inquiry import DOUBT, Budget, Inquirer, Inquiry
+from tpvqa.belief.priors import Priors
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.trust import Trust
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.monitors.capabilities import Learning
+from tpvqa.monitors.feeling import Feeling
+from tpvqa.monitors.first_look import first_look, first_verdict
 from tpvqa.monitors.inspection import REPORTED, SENSED, Inspection, Replies
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
@@ -24,9 +29,9 @@ from tpvqa.monitors.requests import Ask, AskPerson, Look, Request
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.monitors.ways import Ways
 from tpvqa.observation import Observation, SensedFact
-from tpvqa.pddl import Action, Atom, Literal, Task
+from tpvqa.pddl import Action, Atom, Task
 from tpvqa.plugins import PlainArguments
-from tpvqa.questions import FactQuestion, FactWay, FactWords, QuestionBook, Way
+from tpvqa.questions import FactQuestion, FactWords, QuestionBook
 from tpvqa.vlm import Answer, Reply
 
 MOST_FACTS = 100_000
@@ -51,6 +56,7 @@ class BeliefMonitor(Learning, PlainArguments):
         senses: The predicates of facts that the robot is said to sense itself.
         experience: What was learned in earlier trials; goes before the rates of `settings`.
         noise_model: Whether answers do not depend on the picture, but on the look.
+        priors: How probable facts are at first, besides what the problem says.
         model: The action model, where trials one after the other share it.
         name: What the log calls it.
 
@@ -70,6 +76,7 @@ class BeliefMonitor(Learning, PlainArguments):
         senses: Collection[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
+        priors: Priors | None = None,
         model: FaultModel | None = None,
         name: str = "belief",
     ):
@@ -87,21 +94,23 @@ class BeliefMonitor(Learning, PlainArguments):
             learned = None if experience is None else experience.trusting()
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
-        self.evidence = Evidence(self.belief, calibration, self.trust, skill=settings.skill)
+        self._priors, elsewhere = priors or Priors(), None if priors is None else priors.elsewhere
+        doubts = Doubts(task, elsewhere) if elsewhere else None
+        self.evidence = Evidence(
+            self.belief, calibration, self.trust, skill=settings.skill, doubts=doubts
+        )
         self._sight = Sight(self.belief.model)
         self._chooser = Chooser(self.belief.model, self.costs, self._sight)
         self._ways = Ways(task, self._chooser, self.chances)
         self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
-        self._felt = {*senses, *self.evidence.noticed(task)}
-        self._sensed: set[str] = set()
-        self._at_looks = set(senses)  # until a look has told
+        self._feeling = Feeling(self._sight, senses, self.evidence.noticed(task))
         self._looks = self._questions = 0
         self._words: FactWords | None = None
-        self._book: QuestionBook | None = None
         self._person = self.costs.person is not None
         self._settled: Action | None = None
+        self._undo = () if rules is None else rules.undo
         self._stepped: Step | None = None
         self._now = self._begin(None)
 
@@ -117,6 +126,7 @@ class BeliefMonitor(Learning, PlainArguments):
         senses: Collection[str] = (),
         experience: Experience | None = None,
         noise_model: bool = False,
+        priors: Priors | None = None,
         model: FaultModel | None = None,
     ) -> "BeliefMonitor":
         """Make it from `belief`, or `belief:question=0.05:failure=200`; see `BeliefSettings`.
@@ -133,6 +143,7 @@ class BeliefMonitor(Learning, PlainArguments):
             senses=senses,
             experience=experience,
             noise_model=noise_model,
+            priors=priors,
             model=model,
             name=f"belief:{arguments}" if arguments else "belief",
         )
@@ -145,6 +156,30 @@ class BeliefMonitor(Learning, PlainArguments):
         chances = deepcopy(self.chances)
         chances.learn(self.belief.outcome_shares(), self._now.action)
         return Experience.of(chances, self.trust, self._trials + 1)
+
+    @property
+    def unsure(self) -> bool:
+        """Whether the problem or the priors leave open how the world is at first."""
+        return bool(self.task.left_open) or self._priors.opens
+
+    def first(self, book: QuestionBook) -> Check:
+        """Look, where there are too many initial states to weigh; and plan from a likely one."""
+        prior = Prior(self.task, self._priors, self._undo)
+        now = self._now = self._begin(None)
+        self.evidence.weigh(prior)
+        yield from first_look(
+            prior,
+            self.evidence,
+            book,
+            now,
+            views=self._open_views,
+            budget=self._budget,
+            picture=self._telling,
+        )
+        self._looks, self._questions = now.looks, now.questions
+        self.evidence.weigh(self.belief)
+        self.belief.begin(prior.states())
+        return (yield from first_verdict(self.belief, prior, FactWords(book), now))
 
     def before(self, step: Step) -> Check:
         """Act where this is the step to take; otherwise go to what is."""
@@ -167,9 +202,8 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _know(self, step: Step) -> None:
         """Annotate the plan that is being followed, and know what the trial still allows."""
-        if self._book is not step.book:
-            self._book = step.book
-            self._see_by(step.book)
+        if self._feeling.asked_by(step.book):
+            self._learn(None)
         self._chooser.ahead.allow(step.actions_left)
         self._chooser.changes_left = step.replans_left
         self._ways.follow(step)
@@ -189,23 +223,10 @@ class BeliefMonitor(Learning, PlainArguments):
             self._now.notice(atom, was, self.belief.probability(atom), REPORTED)
         self._sense(step.sensed)
 
-    def _see_by(self, book: QuestionBook) -> None:
-        """Note what shows facts: questions, and what the robot notices itself."""
-        sensed, felt = frozenset(self._sensed), frozenset(self._felt)
-        self._sight.by(
-            lambda atom: book.asked(Literal(atom)) or atom.predicate in sensed,
-            lambda atom: atom.predicate in felt,
-        )
-        self._chooser.ahead.learned(self.chances.skill, self.chances.rates)
-
     def _sense(self, facts: Sequence[SensedFact]) -> None:
         """Take in what the robot itself has measured."""
-        told, effects = len(self._sensed) + len(self._felt), self._now.effects
-        for fact in facts:  # what an action did is perhaps felt then and never after
-            kind = self._felt if fact.atom in effects else self._sensed
-            kind.add(fact.atom.predicate)
-        if self._book is not None and len(self._sensed) + len(self._felt) > told:
-            self._see_by(self._book)
+        if self._feeling.take(facts, self._now.effects):
+            self._learn(None)
         for fact in facts:
             was = self.belief.probability(fact.atom)
             self.evidence.take_sensed(fact.atom, fact.probability)
@@ -218,7 +239,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self._chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
     def _begin(self, action: Action | None) -> Inspection:
-        return Inspection(action, self._views[0] if self._views else None)
+        return Inspection(action, next(iter(self._views), None))
 
     def _choose(self, step: Step, barred: Action | None = None) -> Generator[Request, Any, Choice]:
         while True:
@@ -238,10 +259,8 @@ class BeliefMonitor(Learning, PlainArguments):
         budget = self._budget()
         questions = self._about_needs(step.book)
         if self._asks_all and budget.questions > 0:
-            fresh = [
-                q for q in questions if q.text not in self._now.replies and self._open_views(q)
-            ]
-            doubted = [each for each in fresh if 1e-3 < self._likely(each) < 1 - 1e-3]
+            new = (q for q in questions if q.text not in self._now.replies and self._open_views(q))
+            doubted = [each for each in new if DOUBT < self._likely(each) < 1 - DOUBT]
             if doubted:
                 return Inquiry(doubted[0], 1, 0.0)
         return self._inquirer.best(
@@ -254,13 +273,12 @@ class BeliefMonitor(Learning, PlainArguments):
         )
 
     def _budget(self) -> Budget:
-        costs = self.costs
+        costs, now = self.costs, self._now
+        questions = costs.questions_per_trial - self._questions
+        looks = costs.looks_per_trial - self._looks
         return Budget(
-            min(
-                costs.questions_per_step - self._now.questions,
-                costs.questions_per_trial - self._questions,
-            ),
-            min(costs.looks_per_step - self._now.looks, costs.looks_per_trial - self._looks),
+            min(costs.questions_per_step - now.questions, questions),
+            min(costs.looks_per_step - now.looks, looks),
         )
 
     def _likely(self, question: FactQuestion) -> float:
@@ -271,19 +289,7 @@ class BeliefMonitor(Learning, PlainArguments):
         atoms: frozenset[Atom] = frozenset().union(*(p.atoms() for p in self._chooser.plans))
         if self._asks_all:
             atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
-        known = self._now.about
-        if atoms not in known:
-            questions: dict[str, FactQuestion] = {}
-            effects = self._now.effects
-            for atom in sorted(atoms):
-                effect = atom in effects
-                action = self._now.action if effect else None
-                if book.asked(Literal(atom), action):
-                    way: FactWay = Way.EFFECT if effect else Way.PRECONDITION
-                    question = book.fact(Literal(atom), way=way)
-                    questions.setdefault(question.text, question)
-            known[atoms] = list(questions.values())
-        return known[atoms]
+        return self._now.about(atoms, book)
 
     def _open_views(self, question: FactQuestion) -> list[str | None]:
         """From where a question may still find an answer, the next one first.
@@ -323,31 +329,32 @@ class BeliefMonitor(Learning, PlainArguments):
     def _look(self, view: str | None) -> Generator[Request, Any, None]:
         now = self._now
         now.view = view
-        observation: Observation = yield Look(view)
-        self._sense(observation.facts)
-        told = {fact.atom.predicate for fact in observation.facts}
-        self._at_looks = self._at_looks | told if self._looks else told
-        now.picture = observation.look if self._blind else _picture(observation)
+        seen: Observation = yield Look(view)
+        self._sense(seen.facts)
+        self._feeling.looked(seen.facts)
+        now.picture = self._telling(seen)
         self._looks += 1
         now.looks += 1
+
+    def _telling(self, seen: Observation) -> Picture:
+        """What tells one look from another: the pictures, or else the look's number."""
+        pictures = () if self._blind else tuple(frame.data for frame in seen.frames.values())
+        return pictures or seen.look
 
     def _may_feel(self) -> bool:
         """Whether a look, the first since the last action, senses what a plan needs and is in
         doubt: it costs next to nothing."""
-        if not self._at_looks or self._now.looks or self._budget().looks <= 0:
+        if self._now.looks or self._budget().looks <= 0:
             return False
-        needed = {atom for plan in self._chooser.plans for atom in plan.atoms()}
-        likely = (self.belief.probability(a) for a in needed if a.predicate in self._at_looks)
-        return any(DOUBT < p < 1 - DOUBT for p in likely)
+        felt = self._feeling.by_a_look({a for plan in self._chooser.plans for a in plan.atoms()})
+        return any(DOUBT < self.belief.probability(atom) < 1 - DOUBT for atom in felt)
 
     def _shows_something_new(self, question: FactQuestion) -> bool:
         """Whether the latest picture may tell more than what a question was answered before."""
-        now = self._now
-        return (
-            now.picture is not None
-            and not self.evidence.asked_of(question.text, now.picture)
-            and not self.evidence.silent(question.text, now.view)
-        )
+        text, now = question.text, self._now
+        if now.picture is None or self.evidence.asked_of(text, now.picture):
+            return False
+        return not self.evidence.silent(text, now.view)
 
     def _verdict(self, step: Step, choice: Choice, *, acted: bool) -> Verdict:
         state, action, place = choice.state, choice.action, None
@@ -391,8 +398,3 @@ class BeliefMonitor(Learning, PlainArguments):
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
         return {atom: self.belief.probability(atom) for atom in sorted(atoms)}
-
-
-def _picture(observation: Observation) -> Picture:
-    """What tells one look from another: the pictures, or else the look's number."""
-    return tuple(frame.data for frame in observation.frames.values()) or observation.look

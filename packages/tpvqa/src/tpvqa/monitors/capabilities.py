@@ -3,9 +3,11 @@
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from tpvqa.plugins import class_of
+from tpvqa.questions import QuestionBook
 
 if TYPE_CHECKING:
     from tpvqa.belief.experience import Experience
+    from tpvqa.monitors.protocol import Check
 
 
 class NeverAsks:
@@ -23,6 +25,18 @@ class Learning(Protocol):
     @property
     def experience(self) -> "Experience | None":
         """What is known now, for the next trial; None where nothing is learned."""
+
+
+@runtime_checkable
+class LooksFirst(Protocol):
+    """A monitor that looks before there is a plan where it is not sure how the world is."""
+
+    @property
+    def unsure(self) -> bool:
+        """Whether it is not."""
+
+    def first(self, book: QuestionBook) -> "Check":
+        """A check whose verdict says what is believed, and may bring the first plan."""
 
 
 def never_asks(monitor: object) -> bool:

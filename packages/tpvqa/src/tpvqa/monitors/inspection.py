@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 from tpvqa.belief.evidence import Picture
-from tpvqa.pddl import Action, Atom
-from tpvqa.questions import FactQuestion
+from tpvqa.pddl import Action, Atom, Literal
+from tpvqa.questions import FactQuestion, FactWay, QuestionBook, Way
 from tpvqa.vlm import Reply
 
 
@@ -51,7 +51,6 @@ class Inspection:
         questions: Questions so far.
         replies: What was answered to each question.
         noticed: What the robot's own skill and sensors told of facts.
-        about: The questions about sets of facts.
     """
 
     action: Action | None = None
@@ -61,7 +60,20 @@ class Inspection:
     questions: int = 0
     replies: dict[str, Replies] = field(default_factory=dict)
     noticed: dict[Atom, Noticed] = field(default_factory=dict)
-    about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)
+    _about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)
+
+    def about(self, atoms: frozenset[Atom], book: QuestionBook) -> list[FactQuestion]:
+        """The questions about some facts; of what the action was to change, as of its effects."""
+        if atoms not in self._about:
+            questions: dict[str, FactQuestion] = {}
+            for atom in sorted(atoms):
+                effect = atom in self.effects
+                if book.asked(Literal(atom), self.action if effect else None):
+                    way: FactWay = Way.EFFECT if effect else Way.PRECONDITION
+                    question = book.fact(Literal(atom), way=way)
+                    questions.setdefault(question.text, question)
+            self._about[atoms] = list(questions.values())
+        return self._about[atoms]
 
     def notice(self, atom: Atom, before: float, after: float, by: str) -> None:
         """Note that skill or sensors told something of a fact, where that shows in two digits."""

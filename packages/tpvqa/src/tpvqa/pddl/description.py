@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import GroundingTimedOut, PDDLError, PlannerError
-from tpvqa.pddl.atoms import Atom, State
+from tpvqa.pddl.atoms import Atom, Literal, State
 from tpvqa.pddl.ground import MutexGroup
 from tpvqa.pddl.processes import WorkerTimedOut, ask_worker
 
@@ -30,6 +30,7 @@ def described(
     problem: str,
     *,
     state: State | None = None,
+    also: State = frozenset(),
     domain_path: Path | None = None,
     problem_path: Path | None = None,
     timeout: float | None = 300.0,
@@ -41,6 +42,7 @@ def described(
         domain: The text of the domain.
         problem: The text of the problem.
         state: The initial state; None for the problem's own.
+        also: Facts that may hold at first besides.
         domain_path: What errors name.
         problem_path: The same.
         timeout: Seconds that it may take; None for no limit.
@@ -56,6 +58,7 @@ def described(
             {
                 "do": "describe",
                 "init": None if state is None else to_lists(state),
+                "also": to_lists(also),
                 "grounding_memory": memory,
             },
             key=key_of(domain, problem),
@@ -90,6 +93,18 @@ def grounded_fields(description: Description) -> dict[str, Any]:
             for atoms, exactly_one in description["mutex_groups"]
         ),
         "left_out": frozenset(description["left_out"]),
+    }
+
+
+def unsure_fields(description: Description) -> dict[str, Any]:
+    """The fields of a `Task` that say what its problem leaves open."""
+    return {
+        "unknown": frozenset(map(_atom, description["unknown"])),
+        "oneof": tuple(frozenset(map(_atom, group)) for group in description["oneof"]),
+        "clauses": tuple(
+            tuple(Literal(_atom(words), positive) for positive, words in clause)
+            for clause in description["clauses"]
+        ),
     }
 
 

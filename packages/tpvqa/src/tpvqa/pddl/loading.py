@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import PDDLError
-from tpvqa.pddl.description import MEMORY, described, grounded_fields
+from tpvqa.pddl.description import MEMORY, described, grounded_fields, unsure_fields
 from tpvqa.pddl.schema import (
     ActionSchema,
     AxiomSchema,
@@ -117,6 +117,7 @@ def task_from_text(
         domain_text=domain,
         problem_text=problem,
         **grounded_fields(description),
+        **unsure_fields(description),
     )
     if task.axioms:
         try:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import PDDLError, a, suggestion_or_list
-from tpvqa.pddl.atoms import Atom, State
+from tpvqa.pddl.atoms import Atom, Literal, State
 from tpvqa.pddl.conditions import Condition, holds
 from tpvqa.pddl.derivation import Derivation
 from tpvqa.pddl.description import described, grounded_fields, key_of
@@ -28,7 +28,8 @@ class Task:
         types: The parent of each type; None for `object` and other roots.
         predicates: The types of each predicate's arguments; `a|b` for `(either a b)`.
         predicate_variables: The variables that each predicate is declared with, e.g. `?x`.
-        init: The initial state, static facts included, derived ones not.
+        init: The initial state, static facts included, derived ones not; one of the possible ones
+            where the problem leaves something open.
         goal: The goal.
         fluents: The predicates that actions change.
         derived: The predicates that follow from axioms.
@@ -47,6 +48,10 @@ class Task:
         problem_path: Where the problem was read from.
         domain_text: The text of the domain.
         problem_text: The text of the problem.
+        unknown: Facts that the problem says may hold at first or not: `(unknown …)`.
+        oneof: Facts of which exactly one holds at first: `(oneof …)`.
+        clauses: Literals of which at least one holds at first: `(or …)`.
+        besides: Further facts that may hold at first, see `opened_to`.
     """
 
     name: str
@@ -71,6 +76,10 @@ class Task:
     problem_path: Path | None = field(repr=False)
     domain_text: str = field(repr=False)
     problem_text: str = field(repr=False)
+    unknown: frozenset[Atom] = field(default=frozenset(), repr=False)
+    oneof: tuple[frozenset[Atom], ...] = field(default=(), repr=False)
+    clauses: tuple[tuple[Literal, ...], ...] = field(default=(), repr=False)
+    besides: frozenset[Atom] = field(default=frozenset(), repr=False)
 
     @cached_property
     def key(self) -> str:
@@ -163,13 +172,20 @@ class Task:
         return self.reachable_atoms
 
     @cached_property
+    def left_open(self) -> frozenset[Atom]:
+        """The facts of which the problem does not say whether they hold at first."""
+        return self.unknown.union(
+            *self.oneof, (literal.atom for clause in self.clauses for literal in clause)
+        )
+
+    @cached_property
     def static(self) -> State:
         """The facts of the initial state that no action changes."""
         return frozenset(atom for atom in self.init if atom.predicate not in self.fluents)
 
     def changes(self, atom: Atom) -> bool:
-        """Whether an action of any objects could change an atom, or it is derived."""
-        if atom.predicate in self.derived:
+        """Whether an action of any objects could change an atom, it is derived, or left open."""
+        if atom.predicate in self.derived or atom in self.left_open:
             return True
         return any(
             all(
@@ -281,6 +297,11 @@ class Task:
             above = self.types.get(above)
         return found
 
+    def fits(self, atom: Atom) -> bool:
+        """Whether an atom's arguments are of the types that its predicate is declared with."""
+        wanted = self.predicates[atom.predicate]
+        return all(map(self.is_a, atom.arguments, wanted))
+
     def check_atom(self, atom: Atom) -> None:
         """See that an atom speaks of this task's predicates and objects, each of a fitting type.
 
@@ -313,6 +334,26 @@ class Task:
                     f"{atom.pddl()}: {argument} is {a(self.objects[argument])}, but {variable} of "
                     f"{atom.predicate} must be {' or '.join(map(a, kind.split('|')))}"
                 )
+
+    def opened_to(self, atoms: Iterable[Atom]) -> "Task":
+        """The same task in which some facts may hold at first although no action adds them.
+
+        What they make reachable is reachable then.
+
+        Raises:
+            PDDLError: They speak of unknown predicates or objects.
+            PlannerError: The worker could not ground it.
+        """
+        besides = self.besides.union(atoms)
+        self.check_state(besides)
+        description = described(
+            self.domain_text,
+            self.problem_text,
+            also=besides,
+            domain_path=self.domain_path,
+            problem_path=self.problem_path,
+        )
+        return replace(self, besides=besides, **grounded_fields(description))
 
     def with_init(self, state: State) -> "Task":
         """The same task from another initial state, with the mutex groups that hold from there.

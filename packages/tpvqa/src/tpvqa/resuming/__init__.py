@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from tpvqa.assembly import Trial
 from tpvqa.belief import Calibration
 from tpvqa.belief.experience import Experience
+from tpvqa.belief.priors import load_priors
 from tpvqa.drivers import Listener
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import episode_folder
@@ -20,7 +21,7 @@ from tpvqa.pddl import Task, task_from_text
 from tpvqa.questions import QuestionBook
 from tpvqa.resuming.naming import NOTHING, config_of
 from tpvqa.vlm import VLM
-from tpvqa.worlds.world_file import WorldRules, load_world_file
+from tpvqa.worlds.world_file import load_world_file
 
 __all__ = ["config_of", "resume", "trial_of"]
 
@@ -37,8 +38,8 @@ def trial_of(
 ) -> Trial:
     """The trial that an episode was started as, with what its monitor was told then.
 
-    Domain, problem, questions and world file are those whose text the log keeps; the files that it
-    names are not read.
+    Domain, problem, questions, world file and priors are those whose text the log keeps; the files
+    that it names are not read.
 
     Args:
         started: The episode's first event.
@@ -54,9 +55,8 @@ def trial_of(
     config = config_of(started, named, place=place)
     if "task" not in shared:
         shared["task"] = _task(started, place)
-    if not {"book", "rules"} <= shared.keys():
-        book, rules = _texts(started, shared["task"], place)
-        shared = {"book": book, "rules": rules, **shared}
+    if not {"book", "rules", "priors"} <= shared.keys():
+        shared = {**_texts(started, shared["task"], place), **shared}
     return Trial(
         config,
         calibration=_read(Calibration, started.calibration, place),
@@ -129,18 +129,23 @@ def _task(started: Started, place: str) -> Task:
         raise EpisodeError(f"{place}: the log's own text of {error}") from error
 
 
-def _texts(started: Started, task: Task, place: str) -> tuple[QuestionBook, WorldRules]:
-    """Questions and world file, as their readers want them: as files."""
+def _texts(started: Started, task: Task, place: str) -> dict[str, Any]:
+    """Questions, world file and priors, as their readers want them: as files."""
+    texts = {"questions": started.questions, "world": started.rules, "priors": started.priors}
     with TemporaryDirectory() as folder:
         paths: list[Path | None] = []
-        for name, text in (("questions", started.questions), ("world", started.rules)):
+        for name, text in texts.items():
             path = Path(folder) / f"{name}.yaml"
             if text is not None:
                 path.write_text(text, encoding="utf-8")
             paths.append(None if text is None else path)
-        questions, rules = paths
+        questions, rules, priors = paths
         try:
-            return QuestionBook.load(questions, task), load_world_file(rules, task)
+            return {
+                "book": QuestionBook.load(questions, task),
+                "rules": load_world_file(rules, task),
+                "priors": load_priors(task, priors, started.config.start.what),
+            }
         except PlacedError as error:
             said = str(error).replace(f"{folder}/", "")
             raise EpisodeError(f"{place}: the log's own text of {said}") from error

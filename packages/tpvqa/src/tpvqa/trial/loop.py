@@ -9,6 +9,7 @@ from tpvqa.events import Decision, Event, Started, TrialState
 from tpvqa.events.events import Acted, Acting, Asked, Believed, Decided, QuestionRecord
 from tpvqa.events.records import action_record, atoms, plan_record, question_record
 from tpvqa.monitors import Ask, AskPerson, Check, Look, Monitor, PlanFrom, Request, Step, Verdict
+from tpvqa.monitors.capabilities import LooksFirst
 from tpvqa.observation import Observation
 from tpvqa.pddl import State, Task
 from tpvqa.planning import Crashed, Plan, TimedOut
@@ -55,7 +56,7 @@ class _Loop:
 
     def run(self) -> Steps:
         """Plan, and follow plans until the goal is believed, or the trial cannot go on."""
-        failed = yield from self._replan(None)
+        failed = yield from self._replan((yield from self._first()))
         while failed is None and self.plan is not None and self._index < len(self.plan.actions):
             step = self._step()
             verdict = yield from self._check(self.monitor.before, step, "before")
@@ -87,6 +88,25 @@ class _Loop:
             if verdict.decision is Decision.REPLAN:
                 failed = yield from self._replan(verdict.plan)
         return failed or Conclusion("goal", believes_goal=True)
+
+    def _first(self) -> Generator[Any, Any, Plan | None]:
+        """What a monitor looks at before the first plan; the plan, where it has had one made."""
+        if not isinstance(self.monitor, LooksFirst) or not self.monitor.unsure:
+            return None
+        look = self.monitor.first
+        verdict: Verdict = yield from self._persist(lambda: self._perform(look(self.book)))
+        yield from self.emit(
+            Decided(
+                when="before",
+                step=0,
+                action="",
+                decision=verdict.decision,
+                reason=verdict.reason,
+                belief={atom.pddl(): round(p, 4) for atom, p in verdict.belief.items()},
+            )
+        )
+        yield from self._believe(verdict.state)
+        return verdict.plan
 
     def _finished(self, verdict: Verdict) -> bool:
         """Whether a verdict leads beyond the plan's last step: what is over then is the plan."""

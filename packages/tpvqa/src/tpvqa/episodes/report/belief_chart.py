@@ -30,7 +30,8 @@ class Column:
     @property
     def title(self) -> str:
         """What a reader who points at it is told."""
-        return f"decision {self.number}, {self.decided.when} “{self.said}”: {self.decided.course}"
+        of = f"{self.decided.when} “{self.said}”" if self.said else "before the first plan"
+        return f"decision {self.number}, {of}: {self.decided.course}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -107,7 +107,7 @@ class Worker:
             if task is None:
                 return {"unknown": True}
             if request["do"] == "describe":
-                return {"task": task.describe(request["init"])}
+                return {"task": task.describe(request["init"], request.get("also"))}
             leaving = request.get("leaving")
             outcome = task.plan(
                 request["state"],

@@ -66,13 +66,14 @@ def _size(group: Group) -> tuple[int, list[AtomKey]]:
 
 def _laws(task: Any, reachable: Set[AtomKey]) -> Iterator[Group]:
     objects = get_objects_by_type(task.objects, task.types)
+    actions = [action for action in task.actions if not action.name.startswith("unsure@")]
     for invariant in invariant_finder.find_invariants(task, None):
-        exactly_one = all(_balances(action, invariant) for action in task.actions)
+        exactly_one = all(balances(action, invariant) for action in actions)
         for parts in invariant_finder.useful_groups([invariant], task.init):
             atoms = frozenset(
                 key for part in parts for key in _expanded(part, task, objects, reachable)
             )
-            if len(atoms) > 1 and any(_adds(action, parts, objects) for action in task.actions):
+            if len(atoms) > 1 and any(_adds(action, parts, objects) for action in actions):
                 yield atoms, exactly_one
 
 
@@ -121,11 +122,11 @@ def _conditions(condition: Any) -> set[Any]:
     return {literal for part in condition.parts for literal in _conditions(part)}
 
 
-def _balances(action: Any, invariant: Any) -> bool:
+def balances(action: Any, invariant: Any) -> bool:
     """Whether, wherever an action deletes from a group of an invariant, it adds to it as well."""
     given = _conditions(action.precondition)
     adds = [
-        (_group_key(effect.literal, invariant), _conditions(effect.condition))
+        (group_key(effect.literal, invariant), _conditions(effect.condition))
         for effect in action.effects
         if effect.literal.predicate in invariant.predicates
         and not effect.literal.negated
@@ -135,13 +136,13 @@ def _balances(action: Any, invariant: Any) -> bool:
         literal = effect.literal
         if literal.predicate in invariant.predicates and literal.negated:
             when = given | _conditions(effect.condition)
-            own = _group_key(literal, invariant)
+            own = group_key(literal, invariant)
             if not any(key == own and needed <= when for key, needed in adds):
                 return False
     return True
 
 
-def _group_key(literal: Any, invariant: Any) -> tuple[str, ...]:
+def group_key(literal: Any, invariant: Any) -> tuple[str, ...]:
     """Which group of an invariant a literal belongs to: its arguments but the counted one."""
     values = invariant.get_parameters(literal)
     return tuple(values[number] for number in range(invariant.arity()))

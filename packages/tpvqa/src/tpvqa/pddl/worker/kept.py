@@ -32,6 +32,7 @@ class KeptGroundings:
         fluent: The other facts of the first state.
         names: The objects that are there.
         numbers: The values of the functions of action costs.
+        left_open: Facts of which the problem does not say whether they hold at first.
     """
 
     def __init__(
@@ -42,6 +43,7 @@ class KeptGroundings:
         *,
         names: frozenset[str],
         numbers: Iterable[Any] = (),
+        left_open: Facts = frozenset(),
     ):
         self._task, self.names = task, names
         self._all = task.objects
@@ -49,6 +51,7 @@ class KeptGroundings:
         self._whole = len(self._things) == len(self._all)
         self._numeric = [fact for fact in numbers if names.issuperset(fact.fluent.args)]
         self._first = self.within(static), self.within(fluent)
+        self._left_open = self.within(left_open)
         self._home: Grounding | None = None
         self._away: Grounding | None = None
         self._away_states: list[Facts] = []
@@ -74,7 +77,11 @@ class KeptGroundings:
             self._task.objects = self._things
             with quiet():
                 return Grounding(
-                    self._task, self._numeric, self.within(static), self.within(fluent), also
+                    self._task,
+                    self._numeric,
+                    self.within(static),
+                    self.within(fluent),
+                    {*also, *self._left_open},
                 )
         finally:
             self._task.objects = self._all

@@ -13,10 +13,11 @@ from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
 from tpvqa.pddl.worker.invariants import described_groups, lawful_groups
 from tpvqa.pddl.worker.kept import Facts, KeptGroundings, quiet
 from tpvqa.pddl.worker.likeness import out_of_reach
-from tpvqa.pddl.worker.reading import read
+from tpvqa.pddl.worker.reading import ReadingError, read
 from tpvqa.pddl.worker.relevance import EFFORTS, relevant_objects
 from tpvqa.pddl.worker.rules import Rules, rules_of
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome
+from tpvqa.pddl.worker.unsure import UnsureError, chosen, give_room
 
 LARGE = 50_000
 """Instances of actions times their effects (see `Rules.size`) above which objects are left out."""
@@ -66,24 +67,41 @@ class KnownTask:
 
     def __init__(self, domain_text: str, problem_text: str):
         with quiet():
-            task = read(domain_text, problem_text)
+            task, unsure = read(domain_text, problem_text)
             self.description = static_description(task)
             normalize.normalize(task)
+            hidden = give_room(task, unsure)
         self._task = task
         self._changing = {
             effect.literal.predicate for action in task.actions for effect in action.effects
         }
         self._derived = {axiom.name for axiom in task.axioms}
-        self._initial = self._split(
+        initial = [
             key_of(fact)
             for fact in task.init
             if isinstance(fact, pddl.Atom) and fact.predicate != "="
-        )
+        ]
+        if unsure.atoms:
+            try:
+                with quiet():
+                    initial += chosen(task, initial, unsure)
+            except UnsureError as error:
+                raise ReadingError(error.message, "problem", error.line) from None
+        self._left_open = frozenset(unsure.atoms)
+        self._initial = self._split(initial)
+        self.description["fluents"] = sorted({*self.description["fluents"], *hidden})
+        self.description |= unsure.described()
         self._rules: Rules = rules_of(task)
         self._numbers = [fact for fact in task.init if isinstance(fact, pddl.Assign)]
         self._names = frozenset(thing.name for thing in task.objects)
-        self._whole = KeptGroundings(task, *self._initial, names=self._names, numbers=self._numbers)
-        self._large = self._rules.size > LARGE
+        self._whole = KeptGroundings(
+            task,
+            *self._initial,
+            names=self._names,
+            numbers=self._numbers,
+            left_open=self._left_open,
+        )
+        self._large = self._rules.size > LARGE and not self._left_open
         self._parts: list[KeptGroundings] = []
 
     @property
@@ -91,16 +109,25 @@ class KnownTask:
         """How often it was grounded."""
         return self._whole.count + sum(part.count for part in self._parts)
 
-    def describe(self, initial: list[list[str]] | None) -> dict[str, Any]:
-        """Everything about the task, with another initial state if one is given."""
+    def describe(
+        self, initial: list[list[str]] | None, also: list[list[str]] | None = None
+    ) -> dict[str, Any]:
+        """Everything about the task.
+
+        Args:
+            initial: Another initial state.
+            also: Facts that may hold at first besides; only what is reachable depends on them.
+        """
         static, fluent = self._initial if initial is None else self._split(map(tuple, initial))
+        _, more = self._split(map(tuple, also or ()))
         there, here = self._whole, None
-        if self._first_part is not None:
+        if self._first_part is not None and not more:
             there, here = self._first_part, self._first_part.home
             if initial is not None:
                 there, here = self._reaching(static, fluent, there.names)
         if here is None:
-            here = there.home if initial is None else there.ground(static, fluent)
+            at_home = initial is None and not more
+            here = there.home if at_home else there.ground(static, fluent, more)
         with quiet():
             self._task.init = here.initial
             if there is self._whole:

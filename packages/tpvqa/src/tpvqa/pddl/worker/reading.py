@@ -12,6 +12,7 @@ from fast_downward.translate.pddl_parser.parse_error import ParseError
 from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
 from tpvqa.pddl.worker.typing_check import ill_typed
+from tpvqa.pddl.worker.unsure import Unsure, UnsureError, taken_out
 
 _HIGHEST_COST = 1_000_000_000
 """Of one action; plans add them up in 32 bits."""
@@ -47,11 +48,12 @@ class _Context(parsing_functions.Context):  # type: ignore[misc]
 parsing_functions.Context = _Context
 
 
-def read(domain_text: str, problem_text: str) -> Any:
+def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
     """Parse a domain and a problem.
 
     Returns:
-        The translator's task, not normalised: conditions and effects as the author wrote them.
+        The translator's task, not normalised: conditions and effects as the author wrote them; and
+        what the problem leaves open of the initial state, of which the task states nothing.
 
     Raises:
         ReadingError: Something in them is wrong.
@@ -64,6 +66,10 @@ def read(domain_text: str, problem_text: str) -> Any:
             raise ReadingError(error.message, part, error.line) from None
         _check_kind(part, blocks[part])
     _check_functions(blocks["domain"])
+    try:
+        unsure = taken_out(blocks["problem"])
+    except UnsureError as error:
+        raise ReadingError(error.message, "problem", error.line) from None
     try:
         task = parsing_functions.parse_task(blocks["domain"], blocks["problem"])
         _check_types(task, blocks)
@@ -78,7 +84,14 @@ def read(domain_text: str, problem_text: str) -> Any:
         raise _not_understood(error) from None
     for wrong in ill_typed(task):
         raise ReadingError(*wrong)
-    return task
+    left_open = unsure.atoms
+    if left_open:
+        task.init = [fact for fact in task.init if not _is_one_of(fact, left_open)]
+    return task, unsure
+
+
+def _is_one_of(fact: Any, keys: frozenset[tuple[str, ...]]) -> bool:
+    return isinstance(fact, pddl.Atom) and (fact.predicate, *fact.args) in keys
 
 
 def _check_kind(part: str, block: Block) -> None:

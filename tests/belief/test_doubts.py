@@ -1,0 +1,69 @@
+"""Things that may be elsewhere than the problem says."""
+
+from math import isclose
+from random import Random
+
+from tpvqa.belief.doubts import Doubts, further_places, moved, things
+from tpvqa.belief.priors import Priors
+from tpvqa.belief.starts import drawn_start, opened
+from tpvqa.belief.surprise import Surprise
+from tpvqa.pddl import Atom, load_task
+from tpvqa.worlds.world_file import WorldRules
+
+TASK = load_task("serve_breakfast")
+COUNTER, TABLE = Atom.parse("(on bread counter)"), Atom.parse("(on bread table)")
+FRIDGE = Atom.parse("(on bread fridge)")
+
+
+def test_things_are_what_is_somewhere() -> None:
+    stated = {str(thing.stated.pddl()) for thing in things(TASK)}
+    assert stated == {
+        "(on apple fridge)",
+        "(on bread counter)",
+        "(on knife counter)",
+        "(on plate table)",
+    }
+
+
+def test_a_thing_may_be_where_another_one_is() -> None:
+    assert FRIDGE not in TASK.atoms() | TASK.init
+    assert FRIDGE in further_places(TASK)
+    assert not any("tv" in atom.arguments[1:] for atom in further_places(TASK))
+    wider = opened(TASK, Priors(elsewhere=0.02))
+    assert wider.init == TASK.init
+    assert wider.atoms() > TASK.atoms()
+    assert ("pick_up", "bread", "fridge", "left") in wider.reachable_actions
+    flips = Surprise(wider).flips(wider.init, (COUNTER,))
+    assert any(FRIDGE in state for state in flips)
+    assert opened(TASK, Priors()) is TASK
+
+
+def test_a_doubt_is_weighed_by_answers_and_given_once() -> None:
+    doubts = Doubts(TASK, 0.1)
+    doubts.learn((COUNTER,), 0.8, 0.2)
+    doubts.learn((TABLE,), 0.1, 0.9)  # says nothing of the counter
+    expected = 0.1 * 0.2 / (0.1 * 0.2 + 0.9 * 0.8)
+    assert isclose(doubts.taken((COUNTER,), held=True), expected)
+    assert doubts.taken((COUNTER,), held=True) == 0
+
+
+def test_another_place_has_its_share_of_a_doubt() -> None:
+    (bread,) = (thing for thing in things(TASK) if thing.stated == COUNTER)
+    assert isclose(Doubts(TASK, 0.1).taken((TABLE,), held=False), 0.1 / (len(bread.places) - 1))
+    assert Doubts(TASK, 0.1).taken((Atom.parse("(near sink)"),), held=True) == 0
+
+
+def test_worlds_move_things_as_often_as_they_are_doubted() -> None:
+    surprise, random = Surprise(TASK), Random(3)
+    states = [moved(TASK, TASK.init, 0.25, surprise, random) for _ in range(200)]
+    assert 0.15 < sum(COUNTER not in state for state in states) / 200 < 0.35
+    groups = [group.atoms for group in TASK.mutex_groups if group.exactly_one]
+    assert all(len(state & group) == 1 for state in states for group in groups)
+    assert moved(TASK, TASK.init, 0.0, surprise, random) == TASK.init
+
+
+def test_a_world_without_doubts_begins_as_the_problem_says() -> None:
+    assert drawn_start(TASK, Priors(), WorldRules(), 0, 0) is None
+    assert drawn_start(TASK, Priors(nothing_known=True), WorldRules(), 0, 0) is None
+    drawn = {drawn_start(TASK, Priors(elsewhere=0.3), WorldRules(), 0, n) for n in range(10)}
+    assert len(drawn) > 2
