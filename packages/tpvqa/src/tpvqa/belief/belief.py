@@ -243,6 +243,7 @@ class Belief:
         for name, masses in (
             ("success", self.outcome_weights.success),
             ("failure", self.outcome_weights.failure),
+            ("achieved", self.outcome_weights.achieved),
             ("disturbed", self.outcome_weights.disturbed),
             ("undisturbed", self.outcome_weights.could_disturb),
         ):

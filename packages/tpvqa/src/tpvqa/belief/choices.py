@@ -13,7 +13,6 @@ from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
 from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import GIVEN_UP
 from tpvqa.pddl import Action, State
 
 LIKELY = 0.02
@@ -26,7 +25,7 @@ IDLE = 0.97
 """An action that changes nothing with this probability is no choice."""
 FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
-ROUNDS = 3.0
+ROUNDS = 2.0
 """How often it is no surprise to come back to the same action, were every step of it progress."""
 DISTURBED = 0.02
 """In joint states of at least this probability it is worked out what disturbances would cost."""
@@ -294,7 +293,7 @@ class Chooser:
         was believed then, is going round in a circle. So often as faults explain it costs nothing.
         """
         times = self.returns(action, ranked[0][0]) - ROUNDS / self.ahead.progress
-        return self._costs.action * max(0.0, times) ** 2
+        return self._costs.action * max(0.0, 2 * times) ** 2
 
     def returns(self, action: Action, number: int) -> int:
         """How often an action was begun anew where the same joint state was most probable."""
@@ -329,11 +328,7 @@ class Chooser:
 
     def _worth_a_try(self, choice: Choice) -> bool:
         """Whether what one more try may win is worth an action."""
-        if choice.action is None:
-            return True
-        skill = self.ahead.skill(choice.action)
-        worth = (1 - skill.failure) * self.ahead.failure >= self._costs.action
-        return worth and skill.dead < GIVEN_UP
+        return choice.action is None or not self.ahead.given_up(choice.action)
 
     def _stuck(self, ranked: Sequence[tuple[int, float]]) -> bool:
         """Whether all ways that are known lead through something that does not work any more."""

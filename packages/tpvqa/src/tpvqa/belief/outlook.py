@@ -130,6 +130,12 @@ class Outlook:
             return None
         return found[1].actions[found[0]]
 
+    def given_up(self, action: Action) -> bool:
+        """Whether an action that seems never to work is not worth one more try."""
+        skill = self.skill(action)
+        won = (1 - skill.failure) * self.failure
+        return skill.dead >= GIVEN_UP or (skill.dead >= NAMED and won < self._costs.action)
+
     def blocked(self, number: int) -> bool:
         """Whether the way from a joint state leads through a skill that is given up."""
         found = self.best(number)
@@ -138,7 +144,7 @@ class Outlook:
         place, plan = found
         known = self._blocks.get(id(plan))
         if known is None:
-            dead = [self.skill(action).dead >= GIVEN_UP for action in plan.actions]
+            dead = [self.given_up(action) for action in plan.actions]
             known = self._blocks[id(plan)] = max(
                 (n + 1 for n, d in enumerate(dead) if d), default=0
             )

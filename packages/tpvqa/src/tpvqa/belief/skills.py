@@ -6,7 +6,7 @@ try adds a likelihood over rates, not a count.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -59,6 +59,18 @@ class Tried:
     likelihood: Floats
 
 
+class _Run:
+    """Tries of one action, one after the other.
+
+    Whether one of them has worked is judged once, by all that was seen until now: that the last
+    one was seen to fail says so of those before it, too.
+    """
+
+    def __init__(self, action: Action, before: Tried):
+        self.action, self.before = action, replace(before)
+        self.tries, self.all_fail = 0, 1.0
+
+
 class Skills:
     """The failure rates of single skills under a common one."""
 
@@ -66,6 +78,7 @@ class Skills:
         self._tried: dict[str, dict[Action, Tried]] = {}
         self._known: dict[tuple[Action | str, float, float], SkillState] = {}
         self._causes: dict[tuple[str, float, float], dict[Cause, float]] = {}
+        self._run: _Run | None = None
 
     def of(self, action: Action, mean: float, strength: float) -> SkillState:
         """What is known of an action.
@@ -129,18 +142,28 @@ class Skills:
             shares: How it came out.
             predicted: The probability of failure with which that was predicted.
         """
+        again = self._run is not None and self._run.action == action
         failed, worked = shares.get("failure", 0.0), shares.get("success", 0.0)
-        if failed + worked < 0.05 or not 0 < predicted < 1:
+        if again:  # what an earlier try of the run has done is its success
+            worked += shares.get("achieved", 0.0)
+        possible = failed + worked
+        if possible < 0.05 or not 0 < predicted < 1:
             return
-        rest = max(0.0, 1 - failed - worked)
-        if_failed, if_worked = failed / predicted, worked / (1 - predicted)
-        likelihood = rest + _RATES * if_failed + (1 - _RATES) * if_worked
         tried = self._tried.setdefault(action.name, {}).setdefault(
             action, Tried(0.0, 0.0, np.ones_like(_RATES))
         )
-        tried.times += failed + worked
-        tried.failed += failed
-        tried.likelihood = tried.likelihood * likelihood
+        if not again or self._run is None:
+            self._run = _Run(action, tried)
+        run = self._run
+        run.tries, run.all_fail = run.tries + 1, run.all_fail * predicted
+        # By how much what was seen speaks for a success, the belief in it beforehand taken out.
+        speaks = (worked / (1 - run.all_fail)) / max(failed / run.all_fail, _EDGE)
+        none = _RATES**run.tries
+        likely = none + (1 - none) * speaks
+        likely /= run.all_fail + (1 - run.all_fail) * speaks
+        tried.times = run.before.times + run.tries * possible
+        tried.failed = run.before.failed + run.tries * possible - worked
+        tried.likelihood = run.before.likelihood * (max(0.0, 1 - possible) + possible * likely)
         tried.likelihood /= tried.likelihood.max()
         self._known.clear()
         self._causes.clear()
