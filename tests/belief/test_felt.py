@@ -7,7 +7,7 @@ from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.sight import Sight
 from tpvqa.pddl import load_task
 
-WARD = Path(__file__).parents[1] / "fixtures" / "ward"
+WARD = Path(__file__).parents[1] / "fixtures" / "drawers"
 TASK = load_task(WARD / "domain.pddl", WARD / "problem.pddl")
 OPEN, DISINFECT = (TASK.action(name, ["upper"]) for name in ("open_drawer", "disinfect"))
 

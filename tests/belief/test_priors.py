@@ -31,9 +31,9 @@ def test_without_a_file_the_problem_is_believed() -> None:
     ("text", "line", "says"),
     [
         ("elsewhere: 1", 1, "expected less than 1"),
-        ("elsewhere: often", 1, "expected a probability between 0 and 1, found 'often'"),
-        ("\n(in ?t hall): 1.5", 2, "expected a probability between 0 and 1, found '1.5'"),
-        ("(in ?t hall): nan", 1, "expected a probability between 0 and 1"),
+        ("elsewhere: often", 1, "expected a number from 0 to 1, found 'often'"),
+        ("\n(in ?t hall): 1.5", 2, "expected a number from 0 to 1, found '1.5'"),
+        ("(in ?t hall): nan", 1, "expected a number from 0 to 1"),
         ("(in ?t hal): 0.5", 1, "this problem has no object 'hal'. Did you mean 'hall'?"),
         ("(lies anna hall): 0.5", 1, "no action changes 'lies'"),
         ("in: 0.5", 1, "'in' is not known here. Known: elsewhere, nothing_known, and facts"),

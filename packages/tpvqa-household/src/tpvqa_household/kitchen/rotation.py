@@ -29,18 +29,32 @@ def about_z(angle: float) -> Array:
 def quaternion(matrix: Array) -> Array:
     """The unit quaternion of a rotation matrix."""
     m = np.asarray(matrix, float)
-    w, x, y, z = (
-        math.sqrt(max(0.0, 1 + a * m[0, 0] + b * m[1, 1] + c * m[2, 2])) / 2
-        for a, b, c in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
+    # From the greatest of the four, as the others lose their digits near half a turn.
+    products = np.array(
+        [
+            [1 + np.trace(m), m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]],
+            [
+                m[2, 1] - m[1, 2],
+                1 + m[0, 0] - m[1, 1] - m[2, 2],
+                m[0, 1] + m[1, 0],
+                m[0, 2] + m[2, 0],
+            ],
+            [
+                m[0, 2] - m[2, 0],
+                m[0, 1] + m[1, 0],
+                1 - m[0, 0] + m[1, 1] - m[2, 2],
+                m[1, 2] + m[2, 1],
+            ],
+            [
+                m[1, 0] - m[0, 1],
+                m[0, 2] + m[2, 0],
+                m[1, 2] + m[2, 1],
+                1 - m[0, 0] - m[1, 1] + m[2, 2],
+            ],
+        ]
     )
-    x = math.copysign(x, m[2, 1] - m[1, 2])
-    y = math.copysign(y, m[0, 2] - m[2, 0])
-    z = math.copysign(z, m[1, 0] - m[0, 1])
-    if w < 1e-4:  # half a turn: signs come from the products instead
-        k = int(np.argmax(np.diag(m)))
-        v = m[:, k] + np.eye(3)[k]
-        x, y, z = v / np.linalg.norm(v)
-    q = np.array([w, x, y, z])
+    q = products[np.argmax(np.diag(products))]
+    q = q if q[0] >= 0 else -q
     return np.asarray(q / np.linalg.norm(q))
 
 
