@@ -100,7 +100,7 @@ class Chooser:
         self._worked_out_for: tuple[int, Rates] | None = None
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
-        self._postponed: set[State] = set()
+        self._sought: set[State] = set()
         self._unlikely = 0
         self._done: list[tuple[int, Action]] = []
         self.changes_left: int | None = None
@@ -110,13 +110,9 @@ class Chooser:
         """The known plans."""
         return self.ahead.plans
 
-    def postpone(self, state: State) -> None:
-        """Note that the planner found no plan in time; it may be asked after the next action."""
-        self._postponed.add(state)
-
     def acted(self, belief: Belief, action: Action) -> None:
         """Note that an action is executed, before the belief predicts what it leads to."""
-        self._postponed.clear()
+        self._sought.clear()
         self._unlikely = 0
         self._done.append((belief.ranked()[0][0], action))
 
@@ -135,7 +131,8 @@ class Chooser:
     def unplanned(self, belief: Belief) -> State | None:
         """The most probable joint state that no known plan helps; None if none is likely.
 
-        Many that are unlikely each are likely together: then the first few of them count too.
+        Many that are unlikely each are likely together: then the first few of them count too. For
+        none is a plan sought twice between two actions.
         """
         found: State | None = None
         together = 0.0
@@ -143,16 +140,19 @@ class Chooser:
             if weight < LIKELY / 10:
                 break
             state = self._model.state(number)
-            if state in self.ahead.hopeless or state in self._postponed:
+            if state in self.ahead.hopeless or state in self._sought:
                 continue
             if self.ahead.best(number) is None:
                 if weight >= LIKELY:
+                    self._sought.add(state)
                     return state
                 found = found or state
                 together += weight
         if together < LIKELY or self._unlikely >= UNLIKELY:
             return None
         self._unlikely += 1
+        if found is not None:
+            self._sought.add(found)
         return found
 
     def table(

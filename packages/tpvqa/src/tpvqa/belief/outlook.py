@@ -12,7 +12,7 @@ from tpvqa.pddl import Action, State
 
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
-PLANS = 12
+PLANS = 16
 """Plans that are kept, the latest ones."""
 
 SkillOf = Callable[[Action], SkillState]

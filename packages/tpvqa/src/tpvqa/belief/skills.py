@@ -72,9 +72,14 @@ class _Run:
 
 
 class Skills:
-    """The failure rates of single skills under a common one."""
+    """The failure rates of single skills under a common one.
+
+    Attributes:
+        learned: How often something was learned.
+    """
 
     def __init__(self) -> None:
+        self.learned = 0
         self._tried: dict[str, dict[Action, Tried]] = {}
         self._known: dict[tuple[Action | str, float, float], SkillState] = {}
         self._causes: dict[tuple[str, float, float], dict[Cause, float]] = {}
@@ -89,8 +94,8 @@ class Skills:
             strength: How many cases that is known from.
         """
         own = self._tried.get(action.name, {})
-        key = (action if action in own else action.name, round(mean, 3), round(strength, 1))
-        found = self._known.get(key) if action in own or not own else None
+        key = (action if own else action.name, round(mean, 3), round(strength, 1))
+        found = self._known.get(key)
         if found is None:
             found = self._known[key] = self._worked_out(action, own, mean, strength)
         return found
@@ -165,6 +170,7 @@ class Skills:
         tried.failed = run.before.failed + run.tries * possible - worked
         tried.likelihood = run.before.likelihood * (max(0.0, 1 - possible) + possible * likely)
         tried.likelihood /= tried.likelihood.max()
+        self.learned += 1
         self._known.clear()
         self._causes.clear()
 

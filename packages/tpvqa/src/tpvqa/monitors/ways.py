@@ -29,6 +29,7 @@ class Ways:
         self._task, self._chooser, self._chances = task, chooser, chances
         self._plans: dict[State, Plan] = {}
         self._followed: Plan | None = None
+        self._dead: tuple[int, frozenset[Action]] = (0, frozenset())
         self._sought: set[tuple[State, frozenset[Action]]] = set()
 
     def follow(self, step: Step) -> None:
@@ -65,8 +66,6 @@ class Ways:
                 self._take(result, state)
             elif isinstance(result, Unsolvable):
                 self._chooser.ahead.give_up_on(state)
-            else:
-                self._chooser.postpone(state)
         dead, state = self.dead(), belief.most_probable()[0]
         if dead and (state, dead) not in self._sought and not self._task.goal_holds(state):
             self._sought.add((state, dead))
@@ -76,13 +75,19 @@ class Ways:
 
     def dead(self) -> frozenset[Action]:
         """The actions that seem never to work, whatever they were tried with."""
-        if not any(self._chances.skill(each).dead >= NAMED for each in self._chances.tried()):
+        learned = self._chances.skills.learned
+        if self._dead[0] != learned:
+            self._dead = learned, self._found_dead()
+        return self._dead[1]
+
+    def _found_dead(self) -> frozenset[Action]:
+        skill = self._chances.skill
+        names = {each.name for each in self._chances.tried() if skill(each).dead >= NAMED}
+        if not names:
             return frozenset()
-        names = {action.name for action in self._chances.tried()}
+        actions = self._task.ground_actions()
         return frozenset(
-            action
-            for action in self._task.ground_actions()
-            if action.name in names and self._chances.skill(action).dead >= NAMED
+            each for each in actions if each.name in names and skill(each).dead >= NAMED
         )
 
     def failing(self, step: Step) -> str:
