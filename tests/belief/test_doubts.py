@@ -3,7 +3,8 @@
 from math import isclose
 from random import Random
 
-from tpvqa.belief.doubts import Doubts, further_places, moved, things
+from tpvqa.belief.doubts import Doubts, moved
+from tpvqa.belief.places import further_places, things
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.starts import drawn_start, opened
 from tpvqa.belief.surprise import Surprise

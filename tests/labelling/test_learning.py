@@ -49,8 +49,8 @@ def test_all_labels_are_the_truth(folders: list[Path], truths: Truths) -> None:
 def test_some_labels_are_enough(folders: list[Path], truths: Truths) -> None:
     label_all(folders, truths, 60)
     rates = label_episodes(folders).fit().whole.rates
-    assert abs(rates.yes_if_true - 0.8) < 0.12
-    assert abs(rates.yes_if_false - 0.2) < 0.12
+    assert abs(rates.yes_if_true - 0.8) < 0.15
+    assert abs(rates.yes_if_false - 0.2) < 0.15
 
 
 def test_what_the_pictures_do_not_tell_teaches_nothing(folders: list[Path]) -> None:

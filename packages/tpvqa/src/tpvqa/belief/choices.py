@@ -25,7 +25,7 @@ IDLE = 0.97
 """An action that changes nothing with this probability is no choice."""
 FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
-ROUNDS = 2.0
+ROUNDS = 3.0
 """How often it is no surprise to come back to the same action, were every step of it progress."""
 DISTURBED = 0.02
 """In joint states of at least this probability it is worked out what disturbances would cost."""
@@ -293,7 +293,7 @@ class Chooser:
         was believed then, is going round in a circle. So often as faults explain it costs nothing.
         """
         times = self.returns(action, ranked[0][0]) - ROUNDS / self.ahead.progress
-        return self._costs.action * max(0.0, 2 * times) ** 2
+        return self._costs.action * max(0.0, times) ** 2
 
     def returns(self, action: Action, number: int) -> int:
         """How often an action was begun anew where the same joint state was most probable."""

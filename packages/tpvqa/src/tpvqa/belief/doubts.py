@@ -1,56 +1,13 @@
 """Things that may be elsewhere than the problem says, until they are seen where they should be."""
 
-from collections.abc import Iterator
 from random import Random
-from typing import NamedTuple
 
+from tpvqa.belief.places import Thing, things
 from tpvqa.belief.surprise import Surprise
 from tpvqa.pddl import Atom, State, Task
 
-
-def further_places(task: Task) -> frozenset[Atom]:
-    """Where things may be although no action brings them there: where another thing may be.
-
-    Bread may lie in the fridge as the apple does, although no action puts anything into it.
-    """
-    can_hold = task.atoms() | task.init
-    known = {(atom.predicate, atom.arguments[1:]) for atom in can_hold}
-    return frozenset(
-        atom
-        for thing in things(task)
-        for group in task.groups_of(thing.stated)
-        if thing.places <= group.atoms
-        for atom in group.atoms - can_hold
-        if (atom.predicate, atom.arguments[1:]) in known and task.fits(atom)
-    )
-
-
-class Thing(NamedTuple):
-    """Something that can be moved.
-
-    Attributes:
-        stated: Where the problem says that it is.
-        places: All that it can be at or in, that one too: facts of which exactly one holds.
-    """
-
-    stated: Atom
-    places: frozenset[Atom]
-
-
-def things(task: Task) -> Iterator[Thing]:
-    """The things of a task whose place the problem says and actions change.
-
-    A thing is what the facts of a group speak of first: `(on bread table)`, `(in_hand bread left)`.
-    """
-    can_hold = task.atoms() | task.init
-    for group in task.mutex_groups:
-        places = group.atoms & can_hold
-        stated = sorted(group.atoms & task.init - task.left_open)
-        first = {atom.arguments[:1] for atom in group.atoms}
-        if not group.exactly_one or len(first) > 1 or len(places) < 2 or not stated:
-            continue
-        if len(stated[0].arguments) > 1:
-            yield Thing(stated[0], places)
+ELSEWHERE = 0.02
+"""Chance that a thing that can be moved is not where the problem says."""
 
 
 class Doubts:
@@ -62,11 +19,12 @@ class Doubts:
 
     Args:
         task: Says where things are.
-        elsewhere: Probability that one is not there, before anything was seen.
+        elsewhere: Probability that one is not there, before anything was seen; None for the usual.
     """
 
-    def __init__(self, task: Task, elsewhere: float):
-        self._chances = dict.fromkeys(things(task), elsewhere)
+    def __init__(self, task: Task, elsewhere: float | None = None):
+        chance = ELSEWHERE if elsewhere is None else elsewhere
+        self._chances = dict.fromkeys(things(task), chance)
         self._things: dict[Atom, list[Thing]] = {}
         for thing in self._chances:
             for atom in thing.places:

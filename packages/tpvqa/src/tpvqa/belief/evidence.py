@@ -13,8 +13,9 @@ from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
 from tpvqa.belief.readings import Readings
+from tpvqa.belief.sight import Sight
 from tpvqa.belief.trust import Trust
-from tpvqa.pddl import Atom, Task
+from tpvqa.pddl import Action, Atom, Task, literals
 from tpvqa.questions.question import FactQuestion
 from tpvqa.vlm import Answer, Reply
 
@@ -22,6 +23,8 @@ UNEXPLAINED = 0.002
 """Chance that a fact that an answer speaks against has changed without the action model."""
 SURPRISING = 0.25
 """An answer less probable than this makes that chance be taken in."""
+SUSPECTED = 0.02
+"""That chance where an action that rests on the fact seems never to work."""
 PERSON = 0.99
 """How often a person's answer is right."""
 PERSONS_VIEW = "a person's"
@@ -173,6 +176,14 @@ class Evidence:
             self._opened.add(atoms)
             elsewhere = self._doubts.taken(atoms, held=held) if self._doubts else 0.0
             self._weighed.open(atoms, max(self._unexplained, elsewhere))
+
+    def doubt(self, action: Action, sight: Sight) -> None:
+        """Take in that an action which fails again and again may need what does not hold."""
+        task = self._belief.model.task
+        for literal in literals(action.precondition):
+            atom = literal.atom
+            if atom.predicate in task.fluents and sight.sees(atom):
+                self._belief.open((atom,), SUSPECTED)
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action: once more is worth

@@ -19,8 +19,8 @@ class Priors:
 
     Attributes:
         facts: Forms of facts with their probabilities; of several that fit the last one counts.
-        elsewhere: Probability that a thing is not where the problem says; None for the belief's
-            own chance that something changed unseen.
+        elsewhere: Probability that a thing is not where the problem says; None for the usual
+            small doubt (`doubts.ELSEWHERE`), while simulated worlds are as the problem says.
         nothing_known: Whether nothing is known but the objects and what no action changes.
     """
 

@@ -20,6 +20,8 @@ DEAD = 0.02
 DEAD_WITH = 0.004
 """Chance that a skill never works with one object in one place, and that it never does with just
 these objects together."""
+SUSPECT = 0.1
+"""Where an action is dead with this probability, what it needs is doubted first."""
 NAMED = 0.75
 """A skill that is dead with this probability is named, and a way without it is looked for."""
 GIVEN_UP = 0.93

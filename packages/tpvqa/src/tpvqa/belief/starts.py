@@ -14,7 +14,7 @@ def opened(task: Task, priors: Priors) -> Task:
     """
     if priors.nothing_known or not (priors.facts or priors.elsewhere):
         return task
-    from tpvqa.belief.doubts import further_places  # late, as all that it needs takes a while
+    from tpvqa.belief.places import further_places  # late, as all that it needs takes a while
 
     can_hold = task.atoms() | task.init
     everything = {atom for group in task.mutex_groups for atom in group.atoms} - can_hold

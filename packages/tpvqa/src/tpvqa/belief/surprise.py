@@ -8,6 +8,7 @@ from tpvqa.belief.constraints import Constraints
 from tpvqa.belief.disturbances import disturbances
 from tpvqa.belief.mutexes import h2_mutexes
 from tpvqa.belief.nearest import Nearest
+from tpvqa.belief.places import further_places
 from tpvqa.errors import BeliefError, PlannerError
 from tpvqa.pddl import Atom, State, Task
 
@@ -59,7 +60,7 @@ class Surprise:
 
     @cached_property
     def _can_hold(self) -> State:
-        return self._task.atoms() | self._task.init
+        return self._task.atoms() | self._task.init | further_places(self._task)
 
     def _nearest(self, state: State, atoms: tuple[Atom, ...]) -> list[State]:
         true = [atom for atom in atoms if atom in state]

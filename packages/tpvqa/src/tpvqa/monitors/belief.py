@@ -59,10 +59,6 @@ class BeliefMonitor(Learning, PlainArguments):
         priors: How probable facts are at first, besides what the problem says.
         model: The action model, where trials one after the other share it.
         name: What the log calls it.
-
-    Example:
-        >>> BeliefMonitor.from_spec("question=0.05", task=task).costs.question  # doctest: +SKIP
-        0.05
     """
 
     def __init__(
@@ -94,8 +90,8 @@ class BeliefMonitor(Learning, PlainArguments):
             learned = None if experience is None else experience.trusting()
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
-        self._priors, elsewhere = priors or Priors(), None if priors is None else priors.elsewhere
-        doubts = Doubts(task, elsewhere) if elsewhere else None
+        self._priors = priors or Priors()
+        doubts = Doubts(task, self._priors.elsewhere)
         self.evidence = Evidence(
             self.belief, calibration, self.trust, skill=settings.skill, doubts=doubts
         )
@@ -214,6 +210,8 @@ class BeliefMonitor(Learning, PlainArguments):
             numbers = self.belief.renew()
             self._chooser.renumbered(self.belief.model, numbers)
             self._inquirer.renumbered(self.belief.model)
+        if self._ways.suspects(step.action):
+            self.evidence.doubt(step.action, self._sight)
         self._chooser.acted(self.belief, step.action)
         self.belief.act(step.action, self.chances.rates_of(step.action))
         self._now = self._begin(step.action)

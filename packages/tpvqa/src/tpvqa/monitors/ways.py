@@ -7,7 +7,7 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Chooser
-from tpvqa.belief.skills import NAMED
+from tpvqa.belief.skills import NAMED, SUSPECT
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import PlanFrom, Request
@@ -30,6 +30,7 @@ class Ways:
         self._plans: dict[State, Plan] = {}
         self._followed: Plan | None = None
         self._dead: tuple[int, frozenset[Action]] = (0, frozenset())
+        self._suspected: set[Action] = set()
         self._sought: set[tuple[State, frozenset[Action]]] = set()
 
     def follow(self, step: Step) -> None:
@@ -72,6 +73,13 @@ class Ways:
             result = yield PlanFrom(state, without=dead)
             if isinstance(result, Plan):
                 self._take(result, state)
+
+    def suspects(self, action: Action) -> bool:
+        """Whether an action begins to look as if it never worked; said once of each."""
+        if action in self._suspected or self._chances.skill(action).dead <= SUSPECT:
+            return False
+        self._suspected.add(action)
+        return True
 
     def dead(self) -> frozenset[Action]:
         """The actions that seem never to work, whatever they were tried with."""
