@@ -17,14 +17,14 @@ ALIKE = 12.0
 """How many tries of a skill the rates of the others are worth."""
 DEAD = 0.02
 """Chance that a skill never works."""
-DEAD_WITH = 0.004
+DEAD_WITH = 0.005
 """Chance that a skill never works with one object in one place, and that it never does with just
 these objects together."""
 SUSPECT = 0.1
 """Where an action is dead with this probability, what it needs is doubted first."""
-NAMED = 0.75
+NAMED = 0.7
 """A skill that is dead with this probability is named, and a way without it is looked for."""
-GIVEN_UP = 0.93
+GIVEN_UP = 0.95
 """One that is dead with this probability is not tried any more."""
 
 _RATES: Floats = np.array([*np.linspace(0.01, 0.99, 50), 1.0])
@@ -150,6 +150,8 @@ class Skills:
             predicted: The probability of failure with which that was predicted.
         """
         again = self._run is not None and self._run.action == action
+        if not again:
+            self._run = None
         failed, worked = shares.get("failure", 0.0), shares.get("success", 0.0)
         if again:  # what an earlier try of the run has done is its success
             worked += shares.get("achieved", 0.0)
@@ -159,7 +161,7 @@ class Skills:
         tried = self._tried.setdefault(action.name, {}).setdefault(
             action, Tried(0.0, 0.0, np.ones_like(_RATES))
         )
-        if not again or self._run is None:
+        if self._run is None:
             self._run = _Run(action, tried)
         run = self._run
         run.tries, run.all_fail = run.tries + 1, run.all_fail * predicted
