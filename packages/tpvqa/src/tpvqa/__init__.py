@@ -11,8 +11,8 @@ Names are imported when they are first used, so that `import tpvqa` stays quick.
 from importlib import import_module
 from typing import Any
 
-__version__ = "0.3.0"
-DECIDES_AS = "0.3.0"
+__version__ = "0.4.0"
+DECIDES_AS = "0.4.0"
 """The first version that decides trials as this one does: its published figures still stand."""
 
 _PUBLIC = {

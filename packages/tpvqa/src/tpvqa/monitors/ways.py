@@ -62,6 +62,9 @@ class Ways:
     def seek(self, belief: Belief) -> Generator[Request, Any, None]:
         """Have plans made for what is likely, and without what does not work."""
         while (state := self._chooser.unplanned(belief)) is not None:
+            if state in self._plans:  # other plans have taken its place meanwhile
+                self._annotate(self._plans[state], state)
+                continue
             result = yield PlanFrom(state)
             if isinstance(result, Plan):
                 self._take(result, state)
