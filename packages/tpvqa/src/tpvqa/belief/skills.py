@@ -22,7 +22,7 @@ DEAD_WITH = 0.005
 these objects together."""
 SUSPECT = 0.1
 """Where an action is dead with this probability, what it needs is doubted first."""
-NAMED = 0.5
+NAMED = 0.6
 """A skill that is dead with this probability is named, and a way without it is looked for."""
 GIVEN_UP = 0.95
 """One that is dead with this probability is not tried any more."""
