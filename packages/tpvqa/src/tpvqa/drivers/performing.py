@@ -8,7 +8,7 @@ from typing import Any
 from tpvqa.drivers.freshness import Freshness
 from tpvqa.drivers.plugged import MALFORMED, called, malformed
 from tpvqa.drivers.sensed import checked
-from tpvqa.errors import PluginError
+from tpvqa.errors import PlannerError, PluginError
 from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade
 from tpvqa.events.records import (
     answered_record,
@@ -20,7 +20,7 @@ from tpvqa.events.records import (
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Task
-from tpvqa.planning import Planner, PlanningResult
+from tpvqa.planning import Crashed, Planner, PlanningResult
 from tpvqa.planning.without import plan_without
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending
@@ -142,9 +142,12 @@ class Performer:
     def _plan(self, request: PlanFrom, seconds: float | None) -> Performed:
         parts, timeout = self.parts, _less(self._planning_timeout, seconds)
         if request.without:
-            result: object = plan_without(
-                parts.planner, parts.task, request.state, request.without, timeout=timeout
-            )
+            try:
+                result: object = plan_without(
+                    parts.planner, parts.task, request.state, request.without, timeout=timeout
+                )
+            except PlannerError as error:  # another way was wished for, no more
+                result = Crashed(str(error), parts.planner.name, 0.0)
         else:
             result = called(
                 parts.planner, "plan", object, parts.task, request.state, timeout=timeout
