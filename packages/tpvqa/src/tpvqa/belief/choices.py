@@ -182,7 +182,9 @@ class Chooser:
             and self._worth_a_try(each)
             and not self._idle(each, ranked)
         ]
-        choices = [each for each in choices if self._possible(each, ranked)] or choices
+        possible = [each for each in choices if self._possible(each, ranked)]
+        if any(each.action is not None for each in possible) or self._goal_likely(ranked):
+            choices = possible
         if self._stuck(ranked):
             choices = [each for each in choices if each.action is None]
         columns = [
@@ -329,6 +331,9 @@ class Chooser:
     def _worth_a_try(self, choice: Choice) -> bool:
         """Whether what one more try may win is worth an action."""
         return choice.action is None or not self.ahead.given_up(choice.action)
+
+    def _goal_likely(self, ranked: Sequence[tuple[int, float]]) -> bool:
+        return sum(weight for number, weight in ranked if self.ahead.is_goal(number)) >= 0.5
 
     def _stuck(self, ranked: Sequence[tuple[int, float]]) -> bool:
         """Whether all ways that are known lead through something that does not work any more."""
