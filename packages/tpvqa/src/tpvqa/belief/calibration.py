@@ -189,10 +189,11 @@ class Calibration(_Model):
     def default(cls, vlm: str = "") -> "Calibration":
         """What to assume of a VLM of which nothing is known.
 
-        It is right in 0.85 of its answers, about what large VLMs reach on household facts (ViPlan,
-        Merler et al. 2025); its P(yes) is trusted half (log odds halved), as VLMs are surer than
-        they are right; a further look repeats the last answer with probability 0.5 from the same
-        view and 0.25 from another.
+        It is right in 0.85 of its answers, where it is one of those that know what they see; in
+        the recordings of ViPlan (Merler et al. 2025) only half of them do, so `Trust.after` holds
+        against it how the words of eight VLMs spread. Its P(yes) is trusted half (log odds
+        halved), as VLMs are surer than they are right; a further look repeats the last answer with
+        probability 0.5 from the same view and 0.25 from another.
         """
         return cls(
             vlm=vlm,

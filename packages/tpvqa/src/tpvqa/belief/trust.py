@@ -6,6 +6,16 @@ from operator import mul
 
 GRID = (0.05, 0.15, 0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.7, 2.2)
 """Factors by which log likelihood ratios may have to be multiplied."""
+RECORDED = (
+    *(0.11, 0.13, 0.15, 0.18, 0.23, 0.23, 0.24, 0.41),
+    *(0.55, 0.67, 0.76, 0.79, 0.93, 0.95, 1.87, 1.95),
+)
+"""Such factors of eight real VLMs in a household and on blocks, for the default calibration
+(`tools/default_trust.py`; recordings of ViPlan, Merler et al. 2025)."""
+ALIKE = 0.4
+"""How far the next VLM is from one of them: standard deviation of log γ."""
+KNOWN = 10
+"""Labelled answers after which a calibration is believed as much as those recordings."""
 
 
 class Trust:
@@ -63,8 +73,21 @@ class Trust:
 
     @staticmethod
     def after(rows: int) -> "Trust":
-        """How far to trust a calibration that was learned from so many answers."""
-        return Trust(0.15 + 0.6 / (1 + rows / 200))
+        """How far to trust a calibration that was learned from so many answers.
+
+        Where nothing was learned, a VLM is one like those that were recorded: some know what they
+        see, some hardly.
+        """
+        trust, unknown = Trust(0.15 + 0.6 / (1 + rows / 200)), KNOWN / (KNOWN + rows)
+        recorded = [
+            sum(exp(-0.5 * (log(factor / known) / ALIKE) ** 2) for known in RECORDED)
+            for factor in GRID
+        ]
+        trust.weights = tuple(
+            (1 - unknown) * learned + unknown * each / sum(recorded)
+            for learned, each in zip(trust.weights, recorded, strict=True)
+        )
+        return trust
 
     @property
     def mean(self) -> float:
