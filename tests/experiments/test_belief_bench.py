@@ -31,6 +31,7 @@ from tpvqa_experiments.belief.calibrations import (
     calibrations,
     source_of,
 )
+from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.comparison import Lies, against, together
 from tpvqa_experiments.belief.learning import BLOCK, after_learning, blocks, episodes_until_learned
 from tpvqa_experiments.belief.markdown import results_markdown, targets_markdown
@@ -44,7 +45,7 @@ from tpvqa_experiments.belief.parts import (
     Extent,
 )
 from tpvqa_experiments.belief.resampling import difference, ratio
-from tpvqa_experiments.belief.targets import Check, targets
+from tpvqa_experiments.belief.targets import targets
 from tpvqa_experiments.paper import PAPER
 
 CELL = Cell("clean_dishes", "belief", "oracle:0.8", "symbolic")

@@ -15,8 +15,8 @@ from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.tasks import find_task
 from tpvqa_experiments.abroad.parts import SEEING, Extent, Part, believes
+from tpvqa_experiments.abroad.results import write_results
 from tpvqa_experiments.abroad.seeing import seeing
-from tpvqa_experiments.abroad.tables import write_results
 from tpvqa_experiments.belief import calibrations as learnt
 
 WORLD = "world-sensed.yaml"

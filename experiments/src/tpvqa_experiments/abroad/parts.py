@@ -8,7 +8,13 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.own_task import OwnTask
 from tpvqa_experiments.paper import TASKS
 
-MONITORS = ("belief", "tpvqa", "tpvqa:5", "vote:5", "lead:2", "lead:4", "blind:5")
+BELIEF = "belief"
+MONITORS = (
+    BELIEF,
+    *("tpvqa", "tpvqa:5", "vote:5"),
+    *("lead:2", "lead:3", "lead:4", "lead:6"),
+    *("blind:2", "blind:3", "blind:5"),
+)
 SEEING = "seeing"
 """What stands in rows for the limit: who knows the true state after every action."""
 VLM = "oracle:0.8"
@@ -120,4 +126,4 @@ class Extent:
 
 def believes(monitor: str) -> bool:
     """Whether a monitor is the belief monitor, in any form."""
-    return monitor.partition(":")[0] == "belief"
+    return monitor.partition(":")[0] == BELIEF

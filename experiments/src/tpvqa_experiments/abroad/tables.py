@@ -1,18 +1,14 @@
 """The tables of the bench abroad."""
 
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import fmean, median
 from typing import Any
 
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.ledger import REMEDY
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import Interval, wilson
-from tpvqa.files import write_whole
 from tpvqa_experiments.abroad.parts import SEEING, Part
 from tpvqa_experiments.belief.markdown import rate, table
 
@@ -82,12 +78,9 @@ def lines(rows: Rows) -> list[Line]:
 def _line(rows: Rows, vlm: str, condition: str, monitor: str) -> Line:
     own = _of(rows, vlm, condition, monitor)
     trials = [row for found in own.values() for row in found]
-    asked = {
-        task: _sum(found, "questions") / max(_sum(found, "actions"), 1)
-        for task, found in own.items()
-    }
+    questions = {task: asked(found) for task, found in own.items()}
     done = {task: _sum(found, "completed") / len(found) for task, found in own.items()}
-    most_in, least_in = max(asked, key=asked.__getitem__), min(done, key=done.__getitem__)
+    most_in, least_in = max(questions, key=questions.__getitem__), min(done, key=done.__getitem__)
     quotient, difference = _beside(own, _of(rows, vlm, condition, SEEING))
     endings = Counter(row.ending for row in trials).most_common()
     return Line(
@@ -101,8 +94,8 @@ def _line(rows: Rows, vlm: str, condition: str, monitor: str) -> Line:
         least_in=least_in,
         quotient=quotient,
         difference=difference,
-        typical=median(asked.values()),
-        most=asked[most_in],
+        typical=median(questions.values()),
+        most=questions[most_in],
         most_in=most_in,
         named=_named([row for row in trials if row.dead]),
         misnamed=sum(bool(row.misnamed) for row in trials) / len(trials),
@@ -127,17 +120,25 @@ def _beside(
     """Quotient and difference of actions, in episodes that both completed: means over tasks."""
     quotients, differences = [], []
     for task, found in own.items():
-        limit = {row.episode: row for row in limits.get(task, ()) if row.completed}
-        pairs = [
-            (row.actions, limit[row.episode].actions)
-            for row in found
-            if row.completed and row.episode in limit
-        ]
+        pairs = paired_actions(found, limits.get(task, ()))
         least = sum(there for _, there in pairs)
         if least:
             quotients.append(sum(here for here, _ in pairs) / least)
             differences.append(fmean(here - there for here, there in pairs))
     return (fmean(quotients), fmean(differences)) if quotients else (None, None)
+
+
+def paired_actions(own: Sequence[EpisodeRow], limit: Sequence[EpisodeRow]) -> list[tuple[int, int]]:
+    """Actions of a monitor and of who sees all, in the episodes that both completed."""
+    there = {row.episode: row.actions for row in limit if row.completed}
+    return [
+        (row.actions, there[row.episode]) for row in own if row.completed and row.episode in there
+    ]
+
+
+def asked(rows: Sequence[EpisodeRow]) -> float:
+    """Questions an action, over all episodes of a cell."""
+    return _sum(rows, "questions") / max(_sum(rows, "actions"), 1)
 
 
 def _named(rows: Sequence[EpisodeRow]) -> float | None:
@@ -210,21 +211,5 @@ def _by_task(rows: Rows) -> str:
 def _short(rows: Sequence[EpisodeRow]) -> str:
     if not rows:
         return ""
-    actions = _sum(rows, "actions")
-    asked = _sum(rows, "questions") / max(actions, 1)
-    return f"{rate(_sum(rows, 'completed') / len(rows))}, {actions / len(rows):.0f}, {asked:.1f}"
-
-
-def write_results(folder: Path, settings: Mapping[str, Any], parts: Mapping[Part, Rows]) -> None:
-    """Write `abroad.md`, and `abroad.json` for programs.
-
-    Raises:
-        WriteError: The folder cannot be written to.
-    """
-    plain = [
-        {"part": str(part), **line.flat()} for part, rows in parts.items() for line in lines(rows)
-    ]
-    write_whole(folder / "abroad.md", markdown(settings, parts).encode(), remedy=REMEDY)
-    write_whole(
-        folder / "abroad.json", (json.dumps(plain, indent=1) + "\n").encode(), remedy=REMEDY
-    )
+    done, actions = _sum(rows, "completed") / len(rows), _sum(rows, "actions") / len(rows)
+    return f"{rate(done)}, {actions:.0f}, {asked(rows):.1f}"

@@ -14,10 +14,10 @@ from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.tasks import find_task
 from tpvqa_experiments.belief import calibrations as learnt
+from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.parts import Extent, Part, believes
 from tpvqa_experiments.belief.results import BeliefResults
 from tpvqa_experiments.belief.tables import write_results
-from tpvqa_experiments.belief.targets import Check
 from tpvqa_experiments.paper import PAPER
 
 SPEED_FILE = "speed.json"

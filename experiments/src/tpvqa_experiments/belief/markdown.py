@@ -7,6 +7,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.summary import summarise
+from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.comparison import Lies, together, votes_beside_curve
 from tpvqa_experiments.belief.learning import BLOCK, blocks
 from tpvqa_experiments.belief.parts import (
@@ -22,7 +23,6 @@ from tpvqa_experiments.belief.parts import (
 )
 from tpvqa_experiments.belief.resampling import Estimate, difference
 from tpvqa_experiments.belief.results import BeliefResults
-from tpvqa_experiments.belief.targets import Check
 
 REACHED = {True: "yes", False: "**no**", None: "not measured"}
 

@@ -9,11 +9,12 @@ from tpvqa.bench.figures import close, saved
 from tpvqa.bench.summary import summarise
 from tpvqa.bench.tables import write_table
 from tpvqa.errors import BenchError
+from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.figures import draw
 from tpvqa_experiments.belief.markdown import results_markdown, targets_markdown
 from tpvqa_experiments.belief.parts import Extent
 from tpvqa_experiments.belief.results import BeliefResults
-from tpvqa_experiments.belief.targets import Check, targets
+from tpvqa_experiments.belief.targets import targets
 
 
 def write_results(folder: Path, results: BeliefResults, extent: Extent) -> list[Check]:

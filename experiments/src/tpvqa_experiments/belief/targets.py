@@ -1,12 +1,11 @@
 """What the belief monitor must reach, and whether it does."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
 
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import wilson
+from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.comparison import Lies, together, votes_beside_curve
 from tpvqa_experiments.belief.learning import (
     LOST,
@@ -52,33 +51,6 @@ SPEED = {
     "nearest consistent state, 12,000 facts": 150.0,
 }
 """Most milliseconds."""
-
-
-@dataclass(frozen=True, slots=True)
-class Check:
-    """One figure beside its target.
-
-    Attributes:
-        condition: Where it is measured, in the words of the table.
-        what: The figure.
-        target: What it must be.
-        measured: The figure with its interval; None where it was not measured.
-        reached: Whether it is; None where it was not measured.
-        note: What else there is to say.
-    """
-
-    condition: str
-    what: str
-    target: str
-    measured: Estimate | None
-    reached: bool | None
-    note: str = ""
-
-    def flat(self) -> dict[str, Any]:
-        """As plain values."""
-        row = asdict(self)
-        found = row.pop("measured") or {"value": None, "low": None, "high": None}
-        return {**row, "measured": found["value"], "low": found["low"], "high": found["high"]}
 
 
 def targets(results: BeliefResults, extent: Extent) -> list[Check]:

@@ -114,7 +114,8 @@ def abroad(
         print(json.dumps(told, indent=1))
     else:
         print((out / "abroad.md").read_text(encoding="utf-8"))
-        print(f"tables: {out}/abroad.md, {out}/abroad.json")
+        print((out / "targets.md").read_text(encoding="utf-8"))
+        print(f"tables: {out}/abroad.md, {out}/targets.md, and as JSON beside them")
     if any(row.error for rows in found.values() for own_rows in rows.values() for row in own_rows):
         raise typer.Exit(1)
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from tpvqa_experiments.belief import Part
-    from tpvqa_experiments.belief.targets import Check
+    from tpvqa_experiments.belief.check import Check
 
 
 def belief(
