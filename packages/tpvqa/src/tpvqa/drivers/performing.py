@@ -21,6 +21,7 @@ from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Task
 from tpvqa.planning import Crashed, Planner, PlanningResult
+from tpvqa.planning.towards import plan_towards
 from tpvqa.planning.without import plan_without
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending
@@ -141,28 +142,32 @@ class Performer:
 
     def _plan(self, request: PlanFrom, seconds: float | None) -> Performed:
         parts, timeout = self.parts, _less(self._planning_timeout, seconds)
-        if request.without:
+        planner, task, state = parts.planner, parts.task, request.state
+        if request.without or request.towards:
             try:
-                result: object = plan_without(
-                    parts.planner, parts.task, request.state, request.without, timeout=timeout
+                result: object = (
+                    plan_towards(planner, task, state, request.towards, timeout=timeout)
+                    if request.towards
+                    else plan_without(planner, task, state, request.without, timeout=timeout)
                 )
-            except PlannerError as error:  # another way was wished for, no more
+            except PlannerError as error:  # it was wished for, no more
                 result = Crashed(str(error), parts.planner.name, 0.0)
         else:
-            result = called(
-                parts.planner, "plan", object, parts.task, request.state, timeout=timeout
-            )
+            result = called(planner, "plan", object, task, state, timeout=timeout)
         if not isinstance(result, PlanningResult):
             raise PluginError(
-                f"{parts.planner.name} has to return a Plan, Unsolvable, TimedOut or Crashed, not "
+                f"{planner.name} has to return a Plan, Unsolvable, TimedOut or Crashed, not "
                 f"{type(result).__name__}"
             )
         try:
-            made = plan_record(result, request.state, parts.book)
+            made = plan_record(result, state, parts.book)
         except MALFORMED as error:
-            raise malformed(parts.planner, "plan", error) from error
-        without = tuple(sorted(action.pddl() for action in request.without))
-        seen_so = {"considered": not request.followed, "without": without}
+            raise malformed(planner, "plan", error) from error
+        seen_so = {
+            "considered": not request.followed,
+            "without": tuple(sorted(action.pddl() for action in request.without)),
+            "towards": tuple(sorted(atom.pddl() for atom in request.towards)),
+        }
         return Performed(result, made.model_copy(update=seen_so))
 
     def _ask(self, seen: Observation | None, questions: Sequence[Question]) -> Performed:

@@ -108,7 +108,7 @@ class PlanMade(_Event):
 
     A plan that is only `considered` is not followed: a monitor wanted to know what it would be.
     `limit` is that of the time, in seconds, where it passed. `without` are actions that it was not
-    to have, as PDDL writes them.
+    to have, `towards` facts that it was to bring about instead of the goal, as PDDL writes them.
     """
 
     kind: Literal["plan made"] = "plan made"
@@ -122,6 +122,7 @@ class PlanMade(_Event):
     reason: str = ""
     considered: bool = False
     without: tuple[str, ...] = ()
+    towards: tuple[str, ...] = ()
 
 
 class FrameRecord(_Record):

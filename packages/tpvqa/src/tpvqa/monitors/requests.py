@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from tpvqa.pddl import Action, State
+from tpvqa.pddl import Action, Atom, State
 from tpvqa.questions import Question
 
 
@@ -28,11 +28,13 @@ class PlanFrom:
         state: Where it begins.
         followed: Whether it is to be followed, or only considered.
         without: Actions that must not be in it.
+        towards: Facts that it is to bring about; none for the task's goal.
     """
 
     state: State
     followed: bool = False
     without: frozenset[Action] = frozenset()
+    towards: frozenset[Atom] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,7 @@ from functools import lru_cache
 
 from tpvqa.pddl import Action, Atom, State, Task, task_from_text
 from tpvqa.planning.protocol import Plan, Planner, PlanningResult
-
-_COMMENT = re.compile(r";[^\n\r]*")
+from tpvqa.planning.text import end_of, uncommented
 
 
 def plan_without(
@@ -44,7 +43,7 @@ def _barring(task: Task, actions: frozenset[Action]) -> tuple[Task, State]:
     """The task with a static fact against each of some actions, and these facts."""
     names = {action.name for action in actions}
     predicates = {name: _free(f"not-{name}", task.predicates) for name in names}
-    domain = _COMMENT.sub("", task.domain_text)
+    domain = uncommented(task.domain_text)
     for schema in task.schemas:
         if schema.name in names:
             variables = " ".join(part.name for part in schema.parameters)
@@ -52,7 +51,7 @@ def _barring(task: Task, actions: frozenset[Action]) -> tuple[Task, State]:
             domain = _declared(_needing(domain, schema.name, f"(not {fact})"), fact)
     barred = frozenset(Atom(predicates[each.name], each.arguments) for each in actions)
     said = " ".join(atom.pddl() for atom in sorted(barred))
-    problem = _COMMENT.sub("", task.problem_text)
+    problem = uncommented(task.problem_text)
     problem = re.sub(r"\(\s*:init\b", lambda init: f"{init[0]} {said}", problem, flags=re.I)
     return task_from_text(domain, problem), barred
 
@@ -73,25 +72,15 @@ def _needing(domain: str, name: str, condition: str) -> str:
     """A domain in which an action needs something more."""
     begin = re.search(rf"\(\s*:action\s+{re.escape(name)}(?=[\s()])", domain, re.I)
     assert begin is not None  # it was read from there
-    body = domain[begin.start() : _end(domain, begin.start())]
+    body = domain[begin.start() : end_of(domain, begin.start())]
     needs = re.search(r":precondition\s*(?=\()", body, re.I)
     if needs is None:
         place = re.search(r":effect\b", body, re.I)
         assert place is not None
         longer = f"{body[: place.start()]}:precondition {condition} {body[place.start() :]}"
     else:
-        end = _end(body, needs.end())
+        end = end_of(body, needs.end())
         before = body[needs.end() : end]
         both = condition if not before.strip("() \t\r\n") else f"(and {condition} {before})"
         longer = body[: needs.end()] + both + body[end:]
     return domain[: begin.start()] + longer + domain[begin.start() + len(body) :]
-
-
-def _end(text: str, begin: int) -> int:
-    """Where the bracket that begins somewhere ends."""
-    depth = 0
-    for place in range(begin, len(text)):
-        depth += (text[place] == "(") - (text[place] == ")")
-        if not depth:
-            return place + 1
-    return len(text)

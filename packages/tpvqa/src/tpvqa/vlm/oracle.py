@@ -10,6 +10,7 @@ from tpvqa.observation import Observation
 from tpvqa.questions.question import ActionQuestion, FactQuestion, Question, Way
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import NoiseModel
+from tpvqa.vlm.out_of_sight import out_of_sight
 from tpvqa.vlm.protocol import TruthSource
 
 
@@ -26,7 +27,8 @@ class Oracle(NoiseModel):
     """Answers from the truth, errs at rate 1 - accuracy, and can repeat its errors.
 
     A noise model, not a VLM: it does not look at the pictures. It answers yes or no to every
-    question about a fact or an action, also where the picture would not show it.
+    question about a fact or an action, also where the picture would not show it; in a world without
+    pictures it cannot see what the world file says is not shown.
 
     Real errors repeat: with probability `rho` it gives its last answer again when it looks again
     at an unchanged fact. Otherwise each look is drawn afresh; the draw is a function of seed,
@@ -94,7 +96,10 @@ class Oracle(NoiseModel):
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
         """Answer every question, in order; only the number of the look matters."""
-        return [self._answer(observation.look, question) for question in questions]
+        return [
+            out_of_sight(observation, each, self._truth) or self._answer(observation.look, each)
+            for each in questions
+        ]
 
     def snapshot(self) -> Mapping[str, Any]:
         """The last answers as plain JSON values, so that an episode can be resumed."""

@@ -18,6 +18,7 @@ from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.worlds.dead import NOTHING_DEAD, Dead
 from tpvqa.worlds.outcome import Failure, Outcome
 from tpvqa.worlds.sensing import Sensors
+from tpvqa.worlds.shown import shown
 from tpvqa.worlds.undo import Undoing
 from tpvqa.worlds.world_file import WorldRules
 
@@ -199,7 +200,8 @@ class SimulatedTruth:
 
     Args:
         simulation: Where the true state lies.
-        visible: Tells whether the last observation shows a fact; by default all are shown.
+        visible: Tells whether the last observation shows a fact; by default what the world file
+            says, and all else, is shown.
     """
 
     def __init__(self, simulation: Simulation, visible: Callable[[Atom], bool] | None = None):
@@ -217,7 +219,10 @@ class SimulatedTruth:
 
     def visible(self, atom: Atom) -> bool:
         """Whether the last observation shows if it is true."""
-        return True if self._visible is None else self._visible(atom)
+        if self._visible is not None:
+            return self._visible(atom)
+        here = self._simulation
+        return not here.rules.shown or shown(here.rules.shown, atom, self.state, here.task)
 
     def possible(self, action: Action) -> bool:
         """Whether all preconditions of an action hold now."""

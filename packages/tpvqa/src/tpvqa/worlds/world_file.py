@@ -8,9 +8,12 @@ from tpvqa.errors import PDDLError, WorldFileError, suggestion, suggestion_or_li
 from tpvqa.pddl import Action, State, Task
 from tpvqa.pddl.pattern import Pattern, check_together
 from tpvqa.worlds.sensing import Occasion, ReportRule, SensedRule
+from tpvqa.worlds.shown import ShownRule
 from tpvqa.worlds.stated import stated_pattern
 from tpvqa.worlds.undo import Reversal, UndoRule
 from tpvqa.yaml_places import Place, read_yaml
+
+SECTIONS = ("undo", "rebind", "sensed", "reports", "shown")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,7 @@ class WorldRules:
         rebind: Arguments that skills do not take.
         sensed: What the robot measures itself.
         reports: What skills notice of their failures; the first that is of an action counts.
+        shown: What a camera shows only from certain places; the first that is of a fact counts.
         nothing_undone: Whether it says that nothing can be undone, by an empty list.
     """
 
@@ -59,6 +63,7 @@ class WorldRules:
     rebind: tuple[Rebinding, ...] = ()
     sensed: tuple[SensedRule, ...] = ()
     reports: tuple[ReportRule, ...] = ()
+    shown: tuple[ShownRule, ...] = ()
     nothing_undone: bool = False
 
 
@@ -70,12 +75,13 @@ def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
             line.
     """
     root = None if path is None else read_yaml(Path(path), WorldFileError)
-    sections = {} if root is None else root.sections("undo", "rebind", "sensed", "reports")
+    sections = {} if root is None else root.sections(*SECTIONS)
     return WorldRules(
         undo=tuple(_undo_rule(entry, task) for entry in _items(sections, "undo")),
         rebind=tuple(_rebinding(entry, task) for entry in _items(sections, "rebind")),
         sensed=tuple(_sensed_rule(entry, task) for entry in _items(sections, "sensed")),
         reports=tuple(_report_rule(entry, task) for entry in _items(sections, "reports")),
+        shown=tuple(_shown_rule(entry, task) for entry in _items(sections, "shown")),
         nothing_undone="undo" in sections and not _items(sections, "undo"),
     )
 
@@ -113,10 +119,7 @@ def _sensed_rule(entry: Place, task: Task) -> SensedRule:
     parts = entry.sections("fact", "right", "claims", "at")
     if "fact" not in parts:
         raise entry.wrong("an entry needs 'fact', e.g. fact: (in_hand ?x ?h)")
-    try:
-        fact = Pattern.parse(parts["fact"].text(), task)
-    except PDDLError as error:
-        raise parts["fact"].wrong(error.message) from None
+    fact = _pattern(parts["fact"], task)
     right = parts["right"].share() if "right" in parts else 1.0
     claims = parts["claims"].share() if "claims" in parts else max(right, 1 - right)
     if claims < 0.5:
@@ -143,6 +146,26 @@ def _report_rule(entry: Place, task: Task) -> ReportRule:
         parts["notices"].share() if "notices" in parts else 0.0,
         parts["false_alarms"].share() if "false_alarms" in parts else 0.0,
     )
+
+
+def _shown_rule(entry: Place, task: Task) -> ShownRule:
+    parts = entry.sections("fact", "where")
+    if "fact" not in parts or "where" not in parts:
+        raise entry.wrong("an entry needs 'fact' and 'where', e.g. where: (near ?c)")
+    fact, where = _pattern(parts["fact"], task), []
+    for place in parts["where"].texts():
+        pattern = _pattern(place, task)
+        if unbound := pattern.variables - fact.variables:
+            raise place.wrong(f"{pattern}: {fact} does not speak of {min(unbound)}")
+        where.append(pattern)
+    return ShownRule(fact, tuple(where))
+
+
+def _pattern(place: Place, task: Task) -> Pattern:
+    try:
+        return Pattern.parse(place.text(), task)
+    except PDDLError as error:
+        raise place.wrong(error.message) from None
 
 
 def _undo_rule(entry: Place, task: Task) -> UndoRule:

@@ -12,6 +12,7 @@ from tpvqa.plugins import PlainArguments
 from tpvqa.questions.question import FactQuestion, Question, Way
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import FactsOnly, NoiseModel
+from tpvqa.vlm.out_of_sight import out_of_sight
 from tpvqa.vlm.protocol import TruthSource
 from tpvqa.vlm.recorded.answers import Recording, Recordings, models, recordings
 
@@ -81,7 +82,10 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments):
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
         """Answer every question, in order; only the number of the look matters."""
-        return [self._answer(observation.look, question) for question in questions]
+        return [
+            out_of_sight(observation, each, self._truth) or self._answer(observation.look, each)
+            for each in questions
+        ]
 
     def _answer(self, look: int, question: Question) -> Answer:
         if not isinstance(question, FactQuestion):
