@@ -6,32 +6,10 @@ from functools import partial
 from hashlib import blake2b
 from itertools import groupby
 from operator import itemgetter
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol
 
-from tpvqa.belief.undoing import BackToBefore
+from tpvqa.belief.memory import Past, Undoing, memory_of
 from tpvqa.pddl import Action, Atom, State, Task
-
-
-class Undoing(Protocol):
-    """A form of fact that disturbances undo."""
-
-    def results(
-        self, atom: Atom, state: State, history: Sequence[Atom], task: Task
-    ) -> list[tuple[str, State]]:
-        """What undoing a true atom can lead to: how it is said, and the state."""
-
-
-@runtime_checkable
-class PatternedUndoing(Undoing, Protocol):
-    """One that says by patterns what it can lead back to, as a world file's rules do."""
-
-    @property
-    def fact(self) -> Any:
-        """The pattern of the fact that ends."""
-
-    @property
-    def outcomes(self) -> Sequence[Any]:
-        """What holds instead; `last` is the pattern of a fact that held earlier, or None."""
 
 
 class Rebinding(Protocol):
@@ -76,11 +54,11 @@ class JointState:
 
     Attributes:
         state: The atoms that hold.
-        ended: Facts that held before and to which a disturbance could lead back, latest last.
+        past: What is remembered of facts that ended, to which a disturbance could lead back.
     """
 
     state: State
-    ended: tuple[Atom, ...] = ()
+    past: Past = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,11 +134,8 @@ class FaultModel:
 
         self.task = task
         self.surprise = Surprise(task, rules.undo if rules is not None else ())
-        self._undo: Sequence[Undoing] = (
-            rules.undo if rules is not None and rules.undo else (BackToBefore(task),)
-        )
+        self._memory = memory_of(task, () if rules is None else rules.undo)
         self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
-        self._keep = _Keep(self._undo, task)
         self._begun: State = task.init
         self._clear()
 
@@ -289,10 +264,11 @@ class FaultModel:
     def become(self, number: int, after: State) -> int:
         """The joint state after a change of its atoms."""
         before = self.joint_states[number]
-        ended = self._keep(before.ended, before.state - after)
-        there = self.number(JointState(after, ended))
+        gone, come = before.state - after, after - before.state
+        past = self._memory.after(before.past, gone, come, self._begun)
+        there = self.number(JointState(after, past))
         if there not in self._holding and not self.task.derived:
-            self._holding[there] = self.holding(number) ^ self.bits(before.state ^ after)
+            self._holding[there] = self.holding(number) ^ self.bits(gone | come)
         return there
 
     def undone(self, number: int) -> tuple[tuple[float, int], ...]:
@@ -301,13 +277,7 @@ class FaultModel:
         if found is None:
             joint_state, results = self.joint_states[number], []
             for atom in sorted(joint_state.state - self._begun):
-                states = [
-                    after
-                    for rule in self._undo
-                    for _, after in rule.results(
-                        atom, joint_state.state, joint_state.ended, self.task
-                    )
-                ]
+                states = self._memory.undone(atom, joint_state.state, joint_state.past)
                 if states:
                     results.append([self.become(number, after) for after in states])
             shares: dict[int, float] = {}
@@ -322,44 +292,5 @@ class FaultModel:
 
 def _key(joint_state: JointState) -> bytes:
     """Orders joint states the same in every process, whichever were met first."""
-    words = sorted(map(str, joint_state.state)), list(map(str, joint_state.ended))
+    words = sorted(map(str, joint_state.state)), list(map(str, joint_state.past))
     return blake2b(repr(words).encode(), digest_size=8).digest()
-
-
-class _Keep:
-    """Forgets ended facts that no rule can lead back to, so that equal futures are equal."""
-
-    def __init__(self, undo: Sequence[Undoing], task: Task):
-        self._task = task
-        self._patterns: list[tuple[Any, frozenset[str]]] | None = []
-        for rule in undo:
-            if not isinstance(rule, PatternedUndoing):  # keep all
-                self._patterns = None
-                break
-            self._patterns += [
-                (outcome.last, rule.fact.variables)
-                for outcome in rule.outcomes
-                if outcome.last is not None
-            ]
-
-    def __call__(self, ended: tuple[Atom, ...], more: State) -> tuple[Atom, ...]:
-        kept: dict[Any, Atom] = {}
-        for atom in (*ended, *sorted(more)):
-            for key in self._keys(atom):
-                kept.pop(key, None)
-                kept[key] = atom
-        latest: dict[Atom, None] = {}
-        for atom in kept.values():
-            latest.pop(atom, None)
-            latest[atom] = None
-        return tuple(latest)
-
-    def _keys(self, atom: Atom) -> list[Any]:
-        if self._patterns is None:
-            return [atom]
-        keys = []
-        for place, (pattern, bound) in enumerate(self._patterns):
-            match: Mapping[str, str] | None = pattern.match(atom, {}, self._task)
-            if match is not None:
-                keys.append((place, *sorted((k, v) for k, v in match.items() if k in bound)))
-        return keys
