@@ -246,10 +246,11 @@ class Chooser:
     ) -> list[tuple[float, int, float]]:
         """What an action leads to from a joint state: shares, joint states, and what each costs
         besides."""
-        key = (action, number, weight >= DISTURBED)
+        near = weight >= DISTURBED
+        key = (action, number, near)
         found = self._led.get(key)
         if found is None:
-            found = self._led[key] = self._followed(action, number, rates, near=key[2])
+            found = self._led[key] = self._followed(action, number, rates, near=near)
         return found
 
     def _followed(
@@ -369,6 +370,8 @@ class Chooser:
             if not outcomes.achieved:
                 at_work += weight
                 possible += weight * (outcomes.intended is not None)
+                if possible > 2 * FLOOR:  # whatever comes
+                    return True
         return possible >= FLOOR * at_work
 
 

@@ -8,6 +8,7 @@ from itertools import groupby
 from operator import itemgetter
 from typing import Protocol
 
+from tpvqa.belief.compiled import Compiled, compiled
 from tpvqa.belief.memory import Past, Undoing, memory_of
 from tpvqa.pddl import Action, Atom, State, Task
 
@@ -151,6 +152,10 @@ class FaultModel:
         self._keys: dict[int, bytes] = {}
         self._bits: dict[Atom, int] = {}
         self._holding: dict[int, int] = {}
+        self._kinds: list[int] = []
+        self._kind_of: dict[State, int] = {}
+        self._compiled: dict[Action, Compiled | None] = {}
+        self._words: dict[object, str] = {}
         self.facts = 0
         self._numbers: dict[JointState, int] = {}
         self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
@@ -172,7 +177,12 @@ class FaultModel:
             number = self._numbers[joint_state] = len(self.joint_states)
             self.facts += len(joint_state.state)
             self.joint_states.append(joint_state)
+            self._kinds.append(self._kind_of.setdefault(joint_state.state, len(self._kind_of)))
         return number
+
+    def kind(self, number: int) -> int:
+        """The number of the atoms that hold in a joint state, the same for equal ones."""
+        return self._kinds[number]
 
     def ranked(self, weights: Mapping[int, float]) -> list[tuple[int, float]]:
         """Joint states by their weight, the greatest first, the same in every process."""
@@ -187,7 +197,17 @@ class FaultModel:
     def _key(self, number: int) -> bytes:
         known = self._keys.get(number)
         if known is None:
-            known = self._keys[number] = _key(self.joint_states[number])
+            known = self._keys[number] = self._key_of(self.joint_states[number])
+        return known
+
+    def _key_of(self, joint_state: JointState) -> bytes:
+        words = sorted(map(self._said, joint_state.state)), list(map(self._said, joint_state.past))
+        return blake2b(repr(words).encode(), digest_size=8).digest()
+
+    def _said(self, part: object) -> str:
+        known = self._words.get(part)
+        if known is None:
+            known = self._words[part] = str(part)
         return known
 
     def state(self, number: int) -> State:
@@ -229,6 +249,16 @@ class FaultModel:
 
     def _work_out(self, action: Action, number: int) -> Outcomes:
         state = self.state(number)
+        if not self._rebind:
+            masks = self._masks(action)
+            if masks is not None:
+                holding = self.holding(number)
+                if masks.achieved(holding):
+                    return Outcomes(number, number, True, self)
+                if not masks.possible(holding, state):
+                    return Outcomes(number, None, False, self)
+                there = self._changed(number, masks.deleted & state, masks.added - state)
+                return Outcomes(number, there, False, self)
         if self.task.apply(state, action) == state:
             return Outcomes(number, number, True, self)
         truly = self._truly(action, state)
@@ -236,6 +266,11 @@ class FaultModel:
             return Outcomes(number, None, False, self)
         intended = self.become(number, self.task.apply(state, truly))
         return Outcomes(number, intended, False, self)
+
+    def _masks(self, action: Action) -> Compiled | None:
+        if action not in self._compiled:
+            self._compiled[action] = compiled(action, self.task, self.bits)
+        return self._compiled[action]
 
     def applicable(self, action: Action, state: State) -> bool:
         """Whether the preconditions of what an action truly is hold."""
@@ -263,10 +298,13 @@ class FaultModel:
 
     def become(self, number: int, after: State) -> int:
         """The joint state after a change of its atoms."""
+        before = self.state(number)
+        return self._changed(number, before - after, after - before)
+
+    def _changed(self, number: int, gone: State, come: State) -> int:
         before = self.joint_states[number]
-        gone, come = before.state - after, after - before.state
         past = self._memory.after(before.past, gone, come, self._begun)
-        there = self.number(JointState(after, past))
+        there = self.number(JointState(before.state - gone | come, past))
         if there not in self._holding and not self.task.derived:
             self._holding[there] = self.holding(number) ^ self.bits(gone | come)
         return there
@@ -288,9 +326,3 @@ class FaultModel:
             found = tuple((share, outcome) for outcome, share in shares.items())
             self._undone[number] = found
         return found
-
-
-def _key(joint_state: JointState) -> bytes:
-    """Orders joint states the same in every process, whichever were met first."""
-    words = sorted(map(str, joint_state.state)), list(map(str, joint_state.past))
-    return blake2b(repr(words).encode(), digest_size=8).digest()
