@@ -8,7 +8,10 @@ from itertools import groupby
 from operator import itemgetter
 from typing import Protocol
 
+import numpy as np
+
 from tpvqa.belief.compiled import Compiled, compiled
+from tpvqa.belief.information import Floats
 from tpvqa.belief.memory import Past, Undoing, memory_of
 from tpvqa.pddl import Action, Atom, State, Task
 
@@ -237,6 +240,25 @@ class FaultModel:
         found = self._truths.get(atoms)
         if found is None:
             found = self._truths[atoms] = Truth(atoms, self.joint_states)
+        return found
+
+    def truths(self, facts: Sequence[tuple[Atom, ...]], numbers: Sequence[int]) -> Floats:
+        """Where any of some facts holds: ones and zeros, shape (facts, joint states)."""
+        bits = [self.bits(atoms) for atoms in facts]
+        width = len(self._bits) // 8 + 1
+        packed = b"".join(self.holding(number).to_bytes(width, "little") for number in numbers)
+        rows = np.frombuffer(packed, np.uint8).reshape(len(numbers), width)
+        holding = np.unpackbits(rows, axis=1, bitorder="little").T
+        found = np.empty((len(facts), len(numbers)))
+        for place, (atoms, bit) in enumerate(zip(facts, bits, strict=True)):
+            if any(atom.predicate not in self.task.fluents for atom in atoms):
+                truth = self.truth(atoms)
+                found[place] = [truth[number] for number in numbers]
+            elif len(atoms) == 1:
+                found[place] = holding[bit.bit_length() - 1]
+            else:
+                places = [self.bits((atom,)).bit_length() - 1 for atom in atoms]
+                found[place] = holding[places].any(axis=0)
         return found
 
     def outcomes(self, action: Action) -> Mapping[int, Outcomes]:

@@ -64,27 +64,30 @@ def memory_of(task: Task, undo: Sequence[Undoing]) -> Memory:
 
 
 class ByGroups:
-    """Remembers the fact that held last in a group, while one holds there that can be undone."""
+    """Remembers the fact that held last in a group, while one holds there that can be undone.
+
+    The past is one fact or None for each group, or empty where there is nothing to remember.
+    """
 
     def __init__(self, back: BackToBefore):
         self._back = back
+        self._nothing: tuple[Atom | None, ...] = (None,) * back.groups
 
     def after(self, past: Past, gone: State, come: State, begun: State) -> Past:
-        """What is remembered after a change: of every group its latest fact, by its number."""
-        latest: dict[int, Atom] = dict(past)
+        """What is remembered after a change."""
+        latest: list[Atom | None] = list(past or self._nothing)
         homes = self._back.homes
         for atom in sorted(gone) if len(gone) > 1 else gone:
             for group in homes(atom):
                 latest[group] = atom
         for atom in come & begun:
             for group in homes(atom):
-                latest.pop(group, None)
-        return tuple(sorted(latest.items()))
+                latest[group] = None
+        return tuple(latest) if any(latest) else ()
 
     def undone(self, atom: Atom, state: State, past: Past) -> list[State]:
         """The one state that this leads to; none where nothing held before."""
-        latest: dict[int, Atom] = dict(past)
-        after = self._back.undone(atom, state, latest.get)
+        after = self._back.undone(atom, state, (past or self._nothing).__getitem__)
         return [] if after is None else [after]
 
 

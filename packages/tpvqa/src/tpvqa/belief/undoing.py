@@ -26,6 +26,11 @@ class BackToBefore:
                     self._homes.setdefault(each, []).append(len(self._groups))
                 self._groups.append(group.atoms)
 
+    @property
+    def groups(self) -> int:
+        """How many groups there are of which exactly one fact holds."""
+        return len(self._groups)
+
     def homes(self, atom: Atom) -> Sequence[int]:
         """The groups of which exactly one fact holds that an atom belongs to, by number."""
         return self._homes.get(atom, ())
