@@ -1,71 +1,63 @@
 """Time and memory of a belief monitor's decisions over a long trial.
 
-Blocks are put into another order: plans of about four actions a block, failures and disturbances
-of .25, answers right in .8 of which nothing is known. Printed are the processor time of a decision
+Blocks are put into another order, things are brought from places to others, some of them closed, or
+parcels are brought to other cities: plans of some hundred actions, failures and disturbances of
+.25, answers right in .8 of which nothing is known. Printed are the processor time of a decision
 (checks before and after an action together; planning, in another process, not counted) by tenths
 of the trial, and the greatest memory of this process.
 
-    python benchmarks/long_trials.py --blocks 20 --seed 0
+    python benchmarks/long_trials.py --kind blocks --size 20 --seed 0
 """
 
 import argparse
-import itertools
 import resource
 import time
 from pathlib import Path
-from random import Random
 from statistics import median, quantiles
 from tempfile import TemporaryDirectory
+
+from large_problems import LOGISTICS, logistics_problem  # type: ignore[import-not-found]
+from long_problems import (  # type: ignore[import-not-found]
+    HOME,
+    TOWER,
+    home_problem,
+    tower_problem,
+)
 
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Event
-from tpvqa.events.events import Decided, Ended
-
-DOMAIN = """(define (domain blocks)
-  (:requirements :strips :typing) (:types block)
-  (:predicates (on ?x ?y - block) (on_table ?x - block) (clear ?x - block) (holding ?x - block)
-    (empty))
-  (:action pick_up :parameters (?x - block)
-    :precondition (and (clear ?x) (on_table ?x) (empty))
-    :effect (and (holding ?x) (not (on_table ?x)) (not (clear ?x)) (not (empty))))
-  (:action put_down :parameters (?x - block)
-    :precondition (holding ?x)
-    :effect (and (on_table ?x) (clear ?x) (empty) (not (holding ?x))))
-  (:action stack :parameters (?x ?y - block)
-    :precondition (and (holding ?x) (clear ?y))
-    :effect (and (on ?x ?y) (clear ?x) (empty) (not (holding ?x)) (not (clear ?y))))
-  (:action unstack :parameters (?x ?y - block)
-    :precondition (and (on ?x ?y) (clear ?x) (empty))
-    :effect (and (holding ?x) (clear ?y) (not (on ?x ?y)) (not (clear ?x)) (not (empty)))))
-"""
+from tpvqa.events.events import Decided, Ended, PlanMade
 
 
-def problem(blocks: int, seed: int) -> str:
-    """One tower that is to stand in another order."""
-    random, names = Random(seed), [f"b{number}" for number in range(blocks)]
-    before, after = random.sample(names, blocks), random.sample(names, blocks)
-    tower = [f"(on_table {before[0]})", f"(clear {before[-1]})", "(empty)"]
-    tower += [f"(on {upper} {lower})" for lower, upper in itertools.pairwise(before)]
-    goal = [f"(on {upper} {lower})" for lower, upper in itertools.pairwise(after)]
-    return (
-        f"(define (problem other_order) (:domain blocks) (:objects {' '.join(names)} - block)\n"
-        f"(:init {' '.join(tower)})\n(:goal (and {' '.join(goal)})))"
-    )
+def parcels_problem(parcels: int, *, seed: int = 0) -> str:
+    """So many parcels to be brought elsewhere, in three cities."""
+    return str(logistics_problem(60, seed=seed, wanted=parcels))
+
+
+KINDS = {
+    "blocks": (TOWER, tower_problem, 20),
+    "household": (HOME, home_problem, 60),
+    "logistics": (LOGISTICS, parcels_problem, 12),
+}
+"""Domain, problem of a size, and that size by default: blocks, things, parcels."""
 
 
 def main() -> None:
     """Run one trial and print what it took."""
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--blocks", type=int, default=20)
+    options.add_argument("--kind", choices=KINDS, default="blocks")
+    options.add_argument("--size", type=int, help="blocks, things, or parcels")
     options.add_argument("--seed", type=int, default=0)
     options.add_argument("--monitor", default="belief")
     given = options.parse_args()
+    domain, problem, usual = KINDS[given.kind]
+    size = given.size or usual
     folder = TemporaryDirectory()
     files = {"domain": Path(folder.name, "domain.pddl"), "problem": Path(folder.name, "p.pddl")}
-    files["domain"].write_text(DOMAIN)
-    files["problem"].write_text(problem(given.blocks, given.seed))
+    files["domain"].write_text(domain)
+    files["problem"].write_text(problem(size, seed=given.seed))
     config = TrialConfig().but(
         task={name: str(path) for name, path in files.items()},
         seed=given.seed,
@@ -74,21 +66,26 @@ def main() -> None:
         world={"spec": "symbolic"},
         limits={"repeats": "none", "replans": "none", "actions": "50x"},
     )
-    begun, times = time.process_time(), list[float]()
+    times, plans = list[float](), list[int]()
+    begun = time.process_time()
 
     def watch(event: Event) -> None:
         nonlocal begun
+        if isinstance(event, PlanMade):
+            plans.append(len(event.plan))
         if isinstance(event, Decided) and event.when == "after":
             now = time.process_time()
             times.append((now - begun) * 1000)
             begun = now
 
     with folder, Trial(config) as trial:
+        print(f"start: {(time.process_time() - begun) * 1000:.0f} ms")
+        begun = time.process_time()
         ended = trial.run(MemoryWriter(resumable=False, keep=False), listeners=[watch])
     assert isinstance(ended, Ended)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"{given.blocks} blocks: {ended.because} after {ended.actions} actions, ", end="")
-    print(f"{ended.questions} questions; {memory:.0f} MiB at most")
+    print(f"{given.kind} {size}: a plan of {plans[0]} steps; {ended.because} after ", end="")
+    print(f"{ended.actions} actions, {ended.questions} questions; {memory:.0f} MiB at most")
     tenth = max(1, len(times) // 10)
     by_tenths = [median(times[n : n + tenth]) for n in range(0, len(times), tenth)]
     print("ms a decision, medians of tenths:", " ".join(f"{each:.0f}" for each in by_tenths))

@@ -26,15 +26,9 @@ class AnnotatedPlan:
         self.task, self.actions, self.needs = task, tuple(actions), tuple(needs)
         self._atoms = frozenset(each.atom for need in needs for each in need)
 
-    def wanted(self, bits: Callable[[Iterable[Atom]], int]) -> list[tuple[int, int]]:
-        """What every step and the goal need, and what must not hold there, as bits of facts."""
-        return [
-            (
-                bits(each.atom for each in need if each.positive),
-                bits(each.atom for each in need if not each.positive),
-            )
-            for need in self.needs
-        ]
+    def wanted(self, bits: Callable[[Iterable[Atom]], int]) -> "Wanted":
+        """What every step and the goal need, as bits of facts."""
+        return Wanted(self.needs, bits)
 
     def place(self, state: State) -> int | None:
         """The latest step from which on the plan reaches the goal; its length for the goal.
@@ -73,3 +67,42 @@ class AnnotatedPlan:
             if any(each.atom == atom for each in resting):
                 return index
         return None
+
+
+class Wanted:
+    """What the steps of a plan and the goal need, as bits of facts, to find a place in it fast.
+
+    A fact is needed by steps one after the other. Where it is not as it has to be, none of them
+    can be gone on with.
+
+    Args:
+        needs: Of every step and the goal.
+        bits: Facts as bits of a number.
+    """
+
+    def __init__(self, needs: Sequence[Needs], bits: Callable[[Iterable[Atom]], int]):
+        self._steps: list[tuple[int, int, dict[int, int], dict[int, int]]] = []
+        since: dict[Literal, int] = {}
+        for index, need in enumerate(needs):
+            since = {each: since.get(each, index) for each in need}
+            needed, barred = dict[int, int](), dict[int, int]()
+            for each, first in since.items():
+                (needed if each.positive else barred)[bits((each.atom,)).bit_length()] = first
+            self._steps.append((_mask(needed), _mask(barred), needed, barred))
+
+    def latest(self, holding: int) -> int | None:
+        """The latest step whose needs are met where some facts hold; None where none is."""
+        lacking, index = ~holding, len(self._steps) - 1
+        while index >= 0:
+            needed, barred, needed_since, barred_since = self._steps[index]
+            if missing := needed & lacking:
+                index = needed_since[missing.bit_length()] - 1
+            elif wrong := barred & holding:
+                index = barred_since[wrong.bit_length()] - 1
+            else:
+                return index
+        return None
+
+
+def _mask(lengths: Iterable[int]) -> int:
+    return sum(1 << length - 1 for length in lengths)

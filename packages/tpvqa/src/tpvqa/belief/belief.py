@@ -8,6 +8,8 @@ cannot explain is taken in when answers call for it (`open`).
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.pddl import Action, Atom, State
 
@@ -104,6 +106,12 @@ class Belief:
             total = sum(weight for number, weight in self.weights.items() if truth[number])
             known = self._marginals[atoms] = min(total, 1.0)
         return known
+
+    def probabilities(self, atoms: Sequence[Atom]) -> dict[Atom, float]:
+        """The probabilities of many facts."""
+        truths = self.model.truths([(atom,) for atom in atoms], list(self.weights))
+        likely = np.minimum(truths @ np.array(list(self.weights.values())), 1.0)
+        return dict(zip(atoms, likely.tolist(), strict=True))
 
     def where(self, holds: Callable[[State], bool]) -> float:
         """The probability that something holds."""

@@ -95,8 +95,8 @@ class Chooser:
         self.ahead = Outlook(model, costs, self._sight)
         self._commitments = Commitments(model, self.ahead, self._sight)
         self._going: dict[tuple[int, bool], float] = {}
-        self._led: dict[tuple[Action, int, bool], list[tuple[float, int, float]]] = {}
-        self._cost: dict[tuple[Action, int, bool], float] = {}
+        self._led: dict[Action, dict[tuple[int, bool], list[tuple[float, int, float]]]] = {}
+        self._cost: dict[Action, dict[tuple[int, bool], float]] = {}
         self._worked_out_for: tuple[int, Rates] | None = None
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
@@ -218,7 +218,17 @@ class Chooser:
                     for share, other, _ in self._successors(action, number, weight, rates)
                 ),
             )
-        return np.array([self._paid(action, *each, rates, together) for each in ranked])
+        costs = self._cost.setdefault(action, {})
+        if together:
+            return np.array([self._paid(action, *each, rates, together) for each in ranked])
+        found = []
+        for number, weight in ranked:
+            known = costs.get((number, weight >= DISTURBED))
+            if known is None:
+                known = self._paid(action, number, weight, rates, together)
+                costs[number, weight >= DISTURBED] = known
+            found.append(known)
+        return np.array(found)
 
     def _paid(
         self,
@@ -229,27 +239,22 @@ class Chooser:
         together: Mapping[int, float],
     ) -> float:
         """What an action costs in a joint state, with all that lies ahead."""
-        key = (action, number, weight >= DISTURBED)
-        known = None if together else self._cost.get(key)
-        if known is None:
-            to_go = self.ahead.to_go
-            known = self._step + sum(
-                share * ((together[other] if other in together else to_go(other)) + more)
-                for share, other, more in self._successors(action, number, weight, rates)
-            )
-            if not together:
-                self._cost[key] = known
-        return known
+        to_go = self.ahead.to_go
+        return self._step + sum(
+            share * ((together[other] if other in together else to_go(other)) + more)
+            for share, other, more in self._successors(action, number, weight, rates)
+        )
 
     def _successors(
         self, action: Action, number: int, weight: float, rates: Rates
     ) -> list[tuple[float, int, float]]:
         """What an action leads to from a joint state: shares, joint states, and what each costs
         besides."""
-        key = (action, number, weight >= DISTURBED)
-        found = self._led.get(key)
+        near = weight >= DISTURBED
+        led = self._led.setdefault(action, {})
+        found = led.get((number, near))
         if found is None:
-            found = self._led[key] = self._followed(action, number, rates, near=key[2])
+            found = led[number, near] = self._followed(action, number, rates, near=near)
         return found
 
     def _followed(
@@ -369,6 +374,8 @@ class Chooser:
             if not outcomes.achieved:
                 at_work += weight
                 possible += weight * (outcomes.intended is not None)
+                if possible > 2 * FLOOR:  # whatever comes
+                    return True
         return possible >= FLOOR * at_work
 
 

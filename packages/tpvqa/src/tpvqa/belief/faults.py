@@ -6,32 +6,14 @@ from functools import partial
 from hashlib import blake2b
 from itertools import groupby
 from operator import itemgetter
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol
 
-from tpvqa.belief.undoing import BackToBefore
+import numpy as np
+
+from tpvqa.belief.compiled import Compiled, compiled
+from tpvqa.belief.information import Floats
+from tpvqa.belief.memory import Past, Undoing, memory_of
 from tpvqa.pddl import Action, Atom, State, Task
-
-
-class Undoing(Protocol):
-    """A form of fact that disturbances undo."""
-
-    def results(
-        self, atom: Atom, state: State, history: Sequence[Atom], task: Task
-    ) -> list[tuple[str, State]]:
-        """What undoing a true atom can lead to: how it is said, and the state."""
-
-
-@runtime_checkable
-class PatternedUndoing(Undoing, Protocol):
-    """One that says by patterns what it can lead back to, as a world file's rules do."""
-
-    @property
-    def fact(self) -> Any:
-        """The pattern of the fact that ends."""
-
-    @property
-    def outcomes(self) -> Sequence[Any]:
-        """What holds instead; `last` is the pattern of a fact that held earlier, or None."""
 
 
 class Rebinding(Protocol):
@@ -76,11 +58,11 @@ class JointState:
 
     Attributes:
         state: The atoms that hold.
-        ended: Facts that held before and to which a disturbance could lead back, latest last.
+        past: What is remembered of facts that ended, to which a disturbance could lead back.
     """
 
     state: State
-    ended: tuple[Atom, ...] = ()
+    past: Past = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,11 +138,8 @@ class FaultModel:
 
         self.task = task
         self.surprise = Surprise(task, rules.undo if rules is not None else ())
-        self._undo: Sequence[Undoing] = (
-            rules.undo if rules is not None and rules.undo else (BackToBefore(task),)
-        )
+        self._memory = memory_of(task, () if rules is None else rules.undo)
         self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
-        self._keep = _Keep(self._undo, task)
         self._begun: State = task.init
         self._clear()
 
@@ -176,6 +155,10 @@ class FaultModel:
         self._keys: dict[int, bytes] = {}
         self._bits: dict[Atom, int] = {}
         self._holding: dict[int, int] = {}
+        self._kinds: list[int] = []
+        self._kind_of: dict[State, int] = {}
+        self._compiled: dict[Action, Compiled | None] = {}
+        self._words: dict[object, str] = {}
         self.facts = 0
         self._numbers: dict[JointState, int] = {}
         self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
@@ -197,7 +180,12 @@ class FaultModel:
             number = self._numbers[joint_state] = len(self.joint_states)
             self.facts += len(joint_state.state)
             self.joint_states.append(joint_state)
+            self._kinds.append(self._kind_of.setdefault(joint_state.state, len(self._kind_of)))
         return number
+
+    def kind(self, number: int) -> int:
+        """The number of the atoms that hold in a joint state, the same for equal ones."""
+        return self._kinds[number]
 
     def ranked(self, weights: Mapping[int, float]) -> list[tuple[int, float]]:
         """Joint states by their weight, the greatest first, the same in every process."""
@@ -212,7 +200,17 @@ class FaultModel:
     def _key(self, number: int) -> bytes:
         known = self._keys.get(number)
         if known is None:
-            known = self._keys[number] = _key(self.joint_states[number])
+            known = self._keys[number] = self._key_of(self.joint_states[number])
+        return known
+
+    def _key_of(self, joint_state: JointState) -> bytes:
+        words = sorted(map(self._said, joint_state.state)), list(map(self._said, joint_state.past))
+        return blake2b(repr(words).encode(), digest_size=8).digest()
+
+    def _said(self, part: object) -> str:
+        known = self._words.get(part)
+        if known is None:
+            known = self._words[part] = str(part)
         return known
 
     def state(self, number: int) -> State:
@@ -244,6 +242,25 @@ class FaultModel:
             found = self._truths[atoms] = Truth(atoms, self.joint_states)
         return found
 
+    def truths(self, facts: Sequence[tuple[Atom, ...]], numbers: Sequence[int]) -> Floats:
+        """Where any of some facts holds: ones and zeros, shape (facts, joint states)."""
+        bits = [self.bits(atoms) for atoms in facts]
+        width = len(self._bits) // 8 + 1
+        packed = b"".join(self.holding(number).to_bytes(width, "little") for number in numbers)
+        rows = np.frombuffer(packed, np.uint8).reshape(len(numbers), width)
+        holding = np.unpackbits(rows, axis=1, bitorder="little").T
+        found = np.empty((len(facts), len(numbers)))
+        for place, (atoms, bit) in enumerate(zip(facts, bits, strict=True)):
+            if any(atom.predicate not in self.task.fluents for atom in atoms):
+                truth = self.truth(atoms)
+                found[place] = [truth[number] for number in numbers]
+            elif len(atoms) == 1:
+                found[place] = holding[bit.bit_length() - 1]
+            else:
+                places = [self.bits((atom,)).bit_length() - 1 for atom in atoms]
+                found[place] = holding[places].any(axis=0)
+        return found
+
     def outcomes(self, action: Action) -> Mapping[int, Outcomes]:
         """What an action can lead to, by the number of the joint state."""
         found = self._outcomes.get(action)
@@ -254,6 +271,16 @@ class FaultModel:
 
     def _work_out(self, action: Action, number: int) -> Outcomes:
         state = self.state(number)
+        if not self._rebind:
+            masks = self._masks(action)
+            if masks is not None:
+                holding = self.holding(number)
+                if masks.achieved(holding):
+                    return Outcomes(number, number, True, self)
+                if not masks.possible(holding, state):
+                    return Outcomes(number, None, False, self)
+                there = self._changed(number, masks.deleted & state, masks.added - state)
+                return Outcomes(number, there, False, self)
         if self.task.apply(state, action) == state:
             return Outcomes(number, number, True, self)
         truly = self._truly(action, state)
@@ -261,6 +288,11 @@ class FaultModel:
             return Outcomes(number, None, False, self)
         intended = self.become(number, self.task.apply(state, truly))
         return Outcomes(number, intended, False, self)
+
+    def _masks(self, action: Action) -> Compiled | None:
+        if action not in self._compiled:
+            self._compiled[action] = compiled(action, self.task, self.bits)
+        return self._compiled[action]
 
     def applicable(self, action: Action, state: State) -> bool:
         """Whether the preconditions of what an action truly is hold."""
@@ -288,11 +320,15 @@ class FaultModel:
 
     def become(self, number: int, after: State) -> int:
         """The joint state after a change of its atoms."""
+        before = self.state(number)
+        return self._changed(number, before - after, after - before)
+
+    def _changed(self, number: int, gone: State, come: State) -> int:
         before = self.joint_states[number]
-        ended = self._keep(before.ended, before.state - after)
-        there = self.number(JointState(after, ended))
+        past = self._memory.after(before.past, gone, come, self._begun)
+        there = self.number(JointState(before.state - gone | come, past))
         if there not in self._holding and not self.task.derived:
-            self._holding[there] = self.holding(number) ^ self.bits(before.state ^ after)
+            self._holding[there] = self.holding(number) ^ self.bits(gone | come)
         return there
 
     def undone(self, number: int) -> tuple[tuple[float, int], ...]:
@@ -301,13 +337,7 @@ class FaultModel:
         if found is None:
             joint_state, results = self.joint_states[number], []
             for atom in sorted(joint_state.state - self._begun):
-                states = [
-                    after
-                    for rule in self._undo
-                    for _, after in rule.results(
-                        atom, joint_state.state, joint_state.ended, self.task
-                    )
-                ]
+                states = self._memory.undone(atom, joint_state.state, joint_state.past)
                 if states:
                     results.append([self.become(number, after) for after in states])
             shares: dict[int, float] = {}
@@ -318,48 +348,3 @@ class FaultModel:
             found = tuple((share, outcome) for outcome, share in shares.items())
             self._undone[number] = found
         return found
-
-
-def _key(joint_state: JointState) -> bytes:
-    """Orders joint states the same in every process, whichever were met first."""
-    words = sorted(map(str, joint_state.state)), list(map(str, joint_state.ended))
-    return blake2b(repr(words).encode(), digest_size=8).digest()
-
-
-class _Keep:
-    """Forgets ended facts that no rule can lead back to, so that equal futures are equal."""
-
-    def __init__(self, undo: Sequence[Undoing], task: Task):
-        self._task = task
-        self._patterns: list[tuple[Any, frozenset[str]]] | None = []
-        for rule in undo:
-            if not isinstance(rule, PatternedUndoing):  # keep all
-                self._patterns = None
-                break
-            self._patterns += [
-                (outcome.last, rule.fact.variables)
-                for outcome in rule.outcomes
-                if outcome.last is not None
-            ]
-
-    def __call__(self, ended: tuple[Atom, ...], more: State) -> tuple[Atom, ...]:
-        kept: dict[Any, Atom] = {}
-        for atom in (*ended, *sorted(more)):
-            for key in self._keys(atom):
-                kept.pop(key, None)
-                kept[key] = atom
-        latest: dict[Atom, None] = {}
-        for atom in kept.values():
-            latest.pop(atom, None)
-            latest[atom] = None
-        return tuple(latest)
-
-    def _keys(self, atom: Atom) -> list[Any]:
-        if self._patterns is None:
-            return [atom]
-        keys = []
-        for place, (pattern, bound) in enumerate(self._patterns):
-            match: Mapping[str, str] | None = pattern.match(atom, {}, self._task)
-            if match is not None:
-                keys.append((place, *sorted((k, v) for k, v in match.items() if k in bound)))
-        return keys

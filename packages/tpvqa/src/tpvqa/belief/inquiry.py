@@ -4,8 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-
 from tpvqa.belief.choices import Table
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import PERSON, PERSONS_VIEW, Evidence, Picture
@@ -90,7 +88,7 @@ class Inquirer:
         # Q-MDP takes a mistake to be noticed at once; it is noticed so many answers later.
         late = self._evidence.answers_to_be_sure()
         asking, looking = self._costs.question / late, self._costs.look / late
-        truths = self._truths_of(questions, table)
+        truths = self._model.truths([each.atoms for each in questions], table.numbers)
         likely = (truths @ table.weights).tolist()
         if_true = truths @ weighted
         if_false = total - if_true
@@ -161,14 +159,6 @@ class Inquirer:
                 break
             saving = gain - times * (len(doubted) * asking + looking)
             found = _better(found, Inquiry(doubted[0].question, 1, saving))
-        return found
-
-    def _truths_of(self, questions: Sequence[FactQuestion], table: Table) -> Floats:
-        """In which joint states yes is right: ones and zeros, shape (questions, states)."""
-        found = np.empty((len(questions), len(table.numbers)))
-        for place, question in enumerate(questions):
-            truth = self._model.truth(question.atoms)
-            found[place] = [truth[number] for number in table.numbers]
         return found
 
 

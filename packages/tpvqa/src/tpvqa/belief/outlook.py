@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from math import inf
 
-from tpvqa.belief.annotated import AnnotatedPlan
+from tpvqa.belief.annotated import AnnotatedPlan, Wanted
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.sight import Sight
@@ -45,7 +45,7 @@ class Outlook:
         self._rates = Rates()
         self._lost: float | None = None
         self._places: dict[AnnotatedPlan, dict[int, int | None]] = {}
-        self._wanted: dict[AnnotatedPlan, list[tuple[int, int]]] = {}
+        self._wanted: dict[AnnotatedPlan, Wanted] = {}
         self.version = 0
         self._goals: dict[int, bool] = {}
         self._forget()
@@ -93,21 +93,22 @@ class Outlook:
 
     def best(self, number: int) -> tuple[int, AnnotatedPlan] | None:
         """The cheapest known way from a joint state: a place in a plan, and that plan."""
-        known = self._best.get(number, _UNKNOWN)
+        kind = self._model.kind(number)
+        known = self._best.get(kind, _UNKNOWN)
         if isinstance(known, _Unknown):
             known, least = None, inf
             for plan in self.plans:
                 place = self._place(plan, number)
                 if place is not None and (rest := self.rest(place, plan)) < least:
                     known, least = (place, plan), rest
-            self._best[number] = known
+            self._best[kind] = known
         return known
 
     def _place(self, plan: AnnotatedPlan, number: int) -> int | None:
-        known = self._places.setdefault(plan, {})
-        if number not in known:
-            known[number] = self._latest(plan, number)
-        return known[number]
+        known, kind = self._places.setdefault(plan, {}), self._model.kind(number)
+        if kind not in known:
+            known[kind] = self._latest(plan, number)
+        return known[kind]
 
     def _latest(self, plan: AnnotatedPlan, number: int) -> int | None:
         """`AnnotatedPlan.place`, faster."""
@@ -116,12 +117,7 @@ class Outlook:
         wanted = self._wanted.get(plan)
         if wanted is None:
             wanted = self._wanted[plan] = plan.wanted(self._model.bits)
-        holding = self._model.holding(number)
-        for index in range(len(wanted) - 1, -1, -1):
-            needed, barred = wanted[index]
-            if not (needed & ~holding or barred & holding):
-                return index
-        return None
+        return wanted.latest(self._model.holding(number))
 
     def next(self, number: int) -> Action | None:
         """The first action of that way; None at the goal, or where no way is known."""
@@ -152,9 +148,10 @@ class Outlook:
 
     def is_goal(self, number: int) -> bool:
         """Whether the goal holds in a joint state."""
-        if number not in self._goals:
-            self._goals[number] = self._model.task.goal_holds(self._model.state(number))
-        return self._goals[number]
+        kind = self._model.kind(number)
+        if kind not in self._goals:
+            self._goals[kind] = self._model.task.goal_holds(self._model.state(number))
+        return self._goals[kind]
 
     def rest(self, place: int, plan: AnnotatedPlan) -> float:
         """What a plan costs from a place on."""
@@ -167,7 +164,7 @@ class Outlook:
         """What a step of a plan costs, its checks and its repeats counted in."""
         known = self._steps.get(action)
         if known is None:
-            skill = self._skill(action)
+            skill = self.skill(action)
             dead = skill.dead if skill.dead >= NAMED else 0.0
             if self._sight.hidden(action):
                 known = _unseen(skill.failure, self._costs.action, self.failure)
@@ -180,13 +177,17 @@ class Outlook:
 
     def skill(self, action: Action) -> SkillState:
         """What is known of how often an action fails."""
-        return self._skill(action)
+        known = self._skills.get(action)
+        if known is None:
+            known = self._skills[action] = self._skill(action)
+        return known
 
     def to_go(self, number: int) -> float:
         """What is left to pay from a joint state, if it is known."""
-        known = self._to_go.get(number)
+        kind = self._model.kind(number)
+        known = self._to_go.get(kind)
         if known is None:
-            known = self._to_go[number] = self._worked_out(number)
+            known = self._to_go[kind] = self._worked_out(number)
         return known
 
     def _worked_out(self, number: int) -> float:
@@ -212,7 +213,7 @@ class Outlook:
         for action in reversed(actions):
             checked += self.step(action)
             unchecked += self._costs.action
-            works *= 1 - self._skill(action).failure
+            works *= 1 - self.skill(action).failure
             rests.append(min(checked, unchecked + (1 - works) * self.failure))
         return rests[::-1]
 
@@ -248,6 +249,7 @@ class Outlook:
         self._best: dict[int, tuple[int, AnnotatedPlan] | None] = {}
         self._rests: dict[int, list[float]] = {}
         self._steps: dict[Action, float] = {}
+        self._skills: dict[Action, SkillState] = {}
         self._blocks: dict[int, int] = {}
         self._to_go: dict[int, float] = {}
         self._lost = None

@@ -1,6 +1,6 @@
 """What a disturbance leads to where no world file says it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from tpvqa.pddl import Atom, State, Task
 
@@ -17,27 +17,61 @@ class BackToBefore:
 
     def __init__(self, task: Task):
         self._task = task
-        self._homes: dict[Atom, list[State]] = {}
+        self._groups: list[State] = []
+        self._homes: dict[Atom, list[int]] = {}
         self._rivals: dict[Atom, State] = {}
         for group in task.mutex_groups:
-            for each in group.atoms if group.exactly_one else ():
-                self._homes.setdefault(each, []).append(group.atoms)
+            if group.exactly_one:
+                for each in group.atoms:
+                    self._homes.setdefault(each, []).append(len(self._groups))
+                self._groups.append(group.atoms)
+
+    @property
+    def groups(self) -> int:
+        """How many groups there are of which exactly one fact holds."""
+        return len(self._groups)
+
+    def homes(self, atom: Atom) -> Sequence[int]:
+        """The groups of which exactly one fact holds that an atom belongs to, by number."""
+        return self._homes.get(atom, ())
 
     def results(
         self, atom: Atom, state: State, history: Sequence[Atom], task: Task
     ) -> list[tuple[str, State]]:
         """The one state that this leads to; none where nothing held before."""
+
+        def before(number: int) -> Atom | None:
+            others = self._groups[number] - {atom}
+            return next((each for each in reversed(history) if each in others), None)
+
+        after = self.undone(atom, state, before)
+        return [] if after is None else [("it is as before", after)]
+
+    def undone(
+        self, atom: Atom, state: State, before: Callable[[int], Atom | None]
+    ) -> State | None:
+        """The state that undoing an atom leads to; None where nothing held before.
+
+        Args:
+            atom: What is undone.
+            state: Where it holds.
+            before: What held last, besides it, of a group.
+        """
         after = state - {atom}
-        for group in self._homes.get(atom, ()):
-            if after & group:
+        for number in self.homes(atom):
+            if not after.isdisjoint(self._groups[number]):
                 continue
-            before = next((each for each in reversed(history) if each in group - {atom}), None)
-            if before is None:
-                return []
-            after = (after - self._rivals_of(before)) | {before}
-        if any(not after & group for gone in state - after for group in self._homes.get(gone, ())):
-            return []
-        return [("it is as before", after)]
+            earlier = before(number)
+            if earlier is None:
+                return None
+            after = (after - self._rivals_of(earlier)) | {earlier}
+        if any(
+            after.isdisjoint(self._groups[number])
+            for gone in state - after
+            for number in self.homes(gone)
+        ):
+            return None
+        return after
 
     def _rivals_of(self, atom: Atom) -> State:
         """The facts that do not hold together with one."""

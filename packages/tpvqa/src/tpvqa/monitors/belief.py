@@ -395,4 +395,4 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _marginals(self) -> dict[Atom, float]:
         atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
-        return {atom: self.belief.probability(atom) for atom in sorted(atoms)}
+        return self.belief.probabilities(sorted(atoms))

@@ -1,10 +1,9 @@
-"""Ground facts."""
+"""Ground facts: tuples, as millions of them are hashed and compared in a long trial."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Atom:
+class Atom(NamedTuple):
     """A ground atom such as in_hand(plate, left). Names are lower case, as PDDL's are."""
 
     predicate: str
@@ -30,8 +29,7 @@ class Atom:
         return Atom(words[0], tuple(words[1:]))
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Literal:
+class Literal(NamedTuple):
     """An atom or its negation."""
 
     atom: Atom

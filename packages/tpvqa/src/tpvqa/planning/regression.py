@@ -38,8 +38,12 @@ def regress(task: Task, actions: Sequence[Action], state: State | None = None) -
         for effect in action.effects:
             conditions.setdefault(effect.literal, []).append(effect.condition)
         needs = set(support.of(action.precondition))
+        touched = {literal.atom for literal in conditions}
         for literal in result[-1]:
-            needs |= _before(literal, conditions, support)
+            if literal.atom in touched:
+                needs |= _before(literal, conditions, support)
+            else:
+                needs.add(literal)
         result.append(frozenset(needs))
     return tuple(reversed(result))
 
