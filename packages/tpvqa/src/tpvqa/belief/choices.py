@@ -13,7 +13,7 @@ from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
 from tpvqa.belief.sight import Sight
-from tpvqa.pddl import Action, State
+from tpvqa.pddl import Action, State, Task
 
 LIKELY = 0.02
 """Joint states of at least this probability get a plan of their own."""
@@ -83,16 +83,23 @@ class Chooser:
         model: The action model.
         costs: What things cost.
         sight: What can be seen; by default everything.
+        task: Says what the goal is; by default the model's task.
 
     Attributes:
         ahead: What lies ahead of single joint states.
         changes_left: Changes of plan that the trial still allows; None for any number.
     """
 
-    def __init__(self, model: FaultModel, costs: Costs, sight: Sight | None = None):
+    def __init__(
+        self,
+        model: FaultModel,
+        costs: Costs,
+        sight: Sight | None = None,
+        task: Task | None = None,
+    ):
         self._model, self._costs = model, costs
         self._sight = sight or Sight(model)
-        self.ahead = Outlook(model, costs, self._sight)
+        self.ahead = Outlook(model, costs, self._sight, task)
         self._commitments = Commitments(model, self.ahead, self._sight)
         self._going: dict[tuple[int, bool], float] = {}
         self._led: dict[Action, dict[tuple[int, bool], list[tuple[float, int, float]]]] = {}

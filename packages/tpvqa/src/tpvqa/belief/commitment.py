@@ -80,4 +80,4 @@ class Commitments:
                 after = state
             paid += self._ahead.step(action)
             state = after
-        return paid if task.goal_holds(state) else paid + self._ahead.failure
+        return paid if self._ahead.reached(state) else paid + self._ahead.failure

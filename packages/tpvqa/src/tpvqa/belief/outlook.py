@@ -8,7 +8,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.skills import GIVEN_UP, NAMED, SkillState
-from tpvqa.pddl import Action, State
+from tpvqa.pddl import Action, State, Task
 
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
@@ -28,6 +28,7 @@ class Outlook:
         model: The action model.
         costs: What things cost.
         sight: What can be seen.
+        task: Says what the goal is; by default the model's task.
 
     Attributes:
         left: Actions that the trial still allows; None for any number. Where they are fewer than
@@ -36,8 +37,9 @@ class Outlook:
         version: Grows whenever costs change.
     """
 
-    def __init__(self, model: FaultModel, costs: Costs, sight: Sight):
+    def __init__(self, model: FaultModel, costs: Costs, sight: Sight, task: Task | None = None):
         self._model, self._costs, self._sight = model, costs, sight
+        self._task = task or model.task
         self.plans: list[AnnotatedPlan] = []
         self.hopeless: set[State] = set()
         self.left: int | None = None
@@ -146,11 +148,15 @@ class Outlook:
             )
         return place < known
 
+    def reached(self, state: State) -> bool:
+        """Whether the goal holds in a state."""
+        return self._task.goal_holds(state)
+
     def is_goal(self, number: int) -> bool:
         """Whether the goal holds in a joint state."""
         kind = self._model.kind(number)
         if kind not in self._goals:
-            self._goals[kind] = self._model.task.goal_holds(self._model.state(number))
+            self._goals[kind] = self.reached(self._model.state(number))
         return self._goals[kind]
 
     def rest(self, place: int, plan: AnnotatedPlan) -> float:

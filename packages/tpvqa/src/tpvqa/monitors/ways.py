@@ -11,7 +11,7 @@ from tpvqa.belief.skills import NAMED, SUSPECT
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import PlanFrom, Request
-from tpvqa.pddl import Action, State, Task
+from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import regress
 
@@ -23,9 +23,17 @@ class Ways:
         task: The task.
         chooser: Compares the plans.
         chances: Says which skills fail.
+        towards: The facts that are the task's goal, where it is another than the trial's.
     """
 
-    def __init__(self, task: Task, chooser: Chooser, chances: Chances):
+    def __init__(
+        self,
+        task: Task,
+        chooser: Chooser,
+        chances: Chances,
+        towards: frozenset[Atom] = frozenset(),
+    ):
+        self._towards = towards
         self._task, self._chooser, self._chances = task, chooser, chances
         self._plans: dict[State, Plan] = {}
         self._followed: Plan | None = None
@@ -65,17 +73,19 @@ class Ways:
             if state in self._plans:  # other plans have taken its place meanwhile
                 self._annotate(self._plans[state], state)
                 continue
-            result = yield PlanFrom(state)
+            result = yield PlanFrom(state, towards=self._towards)
             if isinstance(result, Plan):
-                self._take(result, state)
+                self.take(result, state)
             elif isinstance(result, Unsolvable):
                 self._chooser.ahead.give_up_on(state)
+        if self._towards:  # an errand is not worth another way
+            return
         dead, state = self.dead(), belief.most_probable()[0]
         if dead and (state, dead) not in self._sought and not self._task.goal_holds(state):
             self._sought.add((state, dead))
             result = yield PlanFrom(state, without=dead)
             if isinstance(result, Plan):
-                self._take(result, state)
+                self.take(result, state)
 
     def suspects(self, action: Action) -> bool:
         """Whether an action begins to look as if it never worked; said once of each."""
@@ -108,7 +118,8 @@ class Ways:
         tried, failed = self._chances.skills.times(step.action)
         return f"{step.book.say(step.action)} failed {round(failed)} times of {round(tried)}"
 
-    def _take(self, plan: Plan, state: State) -> None:
+    def take(self, plan: Plan, state: State) -> None:
+        """Know a plan from a state."""
         self._plans[state] = plan
         self._annotate(plan, state)
 

@@ -1,0 +1,150 @@
+"""Going to where a goal can be seen: a goal out of sight is only believed."""
+
+from collections import Counter
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.chances import Chances
+from tpvqa.belief.choices import Chooser
+from tpvqa.belief.costs import Costs
+from tpvqa.belief.evidence import Evidence
+from tpvqa.belief.inquiry import DOUBT
+from tpvqa.belief.sight import Sight
+from tpvqa.monitors.requests import PlanFrom, Request
+from tpvqa.monitors.ways import Ways
+from tpvqa.pddl import Atom, Conjunction, Literal, State, Task
+from tpvqa.pddl.conditions import literals
+from tpvqa.planning import Plan
+from tpvqa.questions import FactWords, QuestionBook
+
+OFTEN = 3
+"""How often one and the same place is gone to, at most."""
+
+
+class Showing(Protocol):
+    """Says from where a form of fact is shown."""
+
+    def needed(self, atom: Atom, task: Task) -> frozenset[Atom] | None:
+        """What has to hold so that a fact is shown; None where it has not this form."""
+
+
+@dataclass(frozen=True, slots=True)
+class Errand:
+    """Something that is brought about for the sake of a look.
+
+    Attributes:
+        task: The task with that as its goal.
+        chooser: Compares the ways there.
+        ways: Knows them.
+        plan: The plan that it began with.
+        why: What is to be looked at, in words.
+    """
+
+    task: Task
+    chooser: Chooser
+    ways: Ways
+    plan: Plan
+    why: str
+
+
+class Errands:
+    """Decides whether to go to where facts of the goal are shown, before the trial ends.
+
+    It is worth it where what a wrong *done* is expected to cost, less what it would cost to mend
+    it, is more than the way there and back and the answers there.
+
+    Args:
+        task: The task.
+        shown: What is shown only from where; everything else is shown everywhere.
+        costs: What things cost.
+    """
+
+    def __init__(self, task: Task, shown: Sequence[Showing], costs: Costs):
+        self._task, self._shown, self._costs = task, shown, costs
+        self._gone: Counter[frozenset[Atom]] = Counter()
+
+    def seek(
+        self,
+        belief: Belief,
+        evidence: Evidence,
+        chooser: Chooser,
+        sight: Sight,
+        chances: Chances,
+        book: QuestionBook,
+    ) -> Generator[Request, Any, Errand | None]:
+        """An errand that is worth its way; None where there is none.
+
+        Args:
+            belief: What is believed.
+            evidence: What answers are worth.
+            chooser: Knows what is left to do where the goal does not hold.
+            sight: What can be seen at all.
+            chances: Of failures.
+            book: What can be asked.
+        """
+        state, _ = belief.most_probable()
+        savings = self._savings(belief, chooser, state, book)
+        asking = evidence.answers_to_be_sure() * (self._costs.question + self._costs.look)
+        for needed, saving in sorted(savings.items(), key=lambda each: (-each[1], sorted(each[0]))):
+            if saving <= self._costs.action + asking or self._gone[needed] >= OFTEN:
+                continue
+            self._gone[needed] += 1
+            there = yield PlanFrom(state, towards=needed)
+            if not isinstance(there, Plan):
+                continue
+            back = yield from self._back(state, there)
+            if back is None or saving <= (len(there.actions) + back) * self._costs.action + asking:
+                continue
+            task = replace(self._task, goal=Conjunction(tuple(map(Literal, sorted(needed)))))
+            going = Chooser(belief.model, self._costs, sight, task)
+            going.ahead.learned(chances.skill, chances.rates)
+            ways = Ways(task, going, chances, towards=needed)
+            ways.take(there, state)
+            words = FactWords(book)
+            facts = [a for a in self._doubted(belief, book) if self._needed(a) == needed]
+            why = " and ".join(f"{words.of(a)} {belief.probability(a):.2f}" for a in facts)
+            return Errand(task, going, ways, there, f"{why} cannot be seen from here")
+        return None
+
+    def _savings(
+        self, belief: Belief, chooser: Chooser, state: State, book: QuestionBook
+    ) -> Mapping[frozenset[Atom], float]:
+        """What it would save to see each place from which some doubted goal is shown."""
+        full, lost = self._task.extend(state), chooser.ahead.failure
+        doubted: dict[frozenset[Atom], list[Literal]] = {}
+        for literal in literals(self._task.goal):
+            needed = self._needed(literal.atom)
+            if needed - full and literal.atom in self._doubted(belief, book):
+                doubted.setdefault(needed, []).append(literal)
+        found = {}
+        for needed, goals in doubted.items():
+            found[needed] = sum(
+                weight * max(0.0, lost - chooser.ahead.to_go(number))
+                for number, weight in belief.weights.items()
+                if not all(goal.holds(belief.model.state(number)) for goal in goals)
+            )
+        return found
+
+    def _doubted(self, belief: Belief, book: QuestionBook) -> list[Atom]:
+        """Facts of the goal that are not sure, and that can be asked."""
+        atoms = dict.fromkeys(literal.atom for literal in literals(self._task.goal))
+        return [
+            atom
+            for atom in atoms
+            if DOUBT < belief.probability(atom) < 1 - DOUBT and book.asked(Literal(atom))
+        ]
+
+    def _needed(self, atom: Atom) -> frozenset[Atom]:
+        found = (rule.needed(atom, self._task) for rule in self._shown)
+        return next((each for each in found if each is not None), frozenset())
+
+    def _back(self, state: State, there: Plan) -> Generator[Request, Any, int | None]:
+        """Actions from where a plan leads to the goal; None where there is no way."""
+        for action in there.actions:
+            state = self._task.apply(state, action)
+        if self._task.goal_holds(state):
+            return 0
+        back = yield PlanFrom(state)
+        return len(back.actions) if isinstance(back, Plan) else None
