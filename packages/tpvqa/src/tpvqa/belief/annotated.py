@@ -87,22 +87,18 @@ class Wanted:
             since = {each: since.get(each, index) for each in need}
             needed, barred = dict[int, int](), dict[int, int]()
             for each, first in since.items():
-                (needed if each.positive else barred)[bits((each.atom,)).bit_length()] = first
-            self._steps.append((_mask(needed), _mask(barred), needed, barred))
+                (needed if each.positive else barred)[bits((each.atom,))] = first
+            self._steps.append((sum(needed), sum(barred), needed, barred))
 
     def latest(self, holding: int) -> int | None:
         """The latest step whose needs are met where some facts hold; None where none is."""
         lacking, index = ~holding, len(self._steps) - 1
         while index >= 0:
             needed, barred, needed_since, barred_since = self._steps[index]
-            if missing := needed & lacking:
-                index = needed_since[missing.bit_length()] - 1
+            if missing := needed & lacking:  # the lowest bit is that of what is needed first
+                index = needed_since[missing & -missing] - 1
             elif wrong := barred & holding:
-                index = barred_since[wrong.bit_length()] - 1
+                index = barred_since[wrong & -wrong] - 1
             else:
                 return index
         return None
-
-
-def _mask(lengths: Iterable[int]) -> int:
-    return sum(1 << length - 1 for length in lengths)

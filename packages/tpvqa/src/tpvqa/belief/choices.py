@@ -225,15 +225,16 @@ class Chooser:
                     for share, other, _ in self._successors(action, number, weight, rates)
                 ),
             )
-        costs = self._cost.setdefault(action, {})
         if together:
             return np.array([self._paid(action, *each, rates, together) for each in ranked])
-        found = []
+        costs, first, found = self._cost.setdefault(action, {}), self._model.first, list[float]()
         for number, weight in ranked:
-            known = costs.get((number, weight >= DISTURBED))
+            near = weight >= DISTURBED
+            if not near:  # only what holds counts then
+                number = first(number)
+            known = costs.get((number, near))
             if known is None:
-                known = self._paid(action, number, weight, rates, together)
-                costs[number, weight >= DISTURBED] = known
+                known = costs[number, near] = self._paid(action, number, weight, rates, together)
             found.append(known)
         return np.array(found)
 
@@ -363,9 +364,9 @@ class Chooser:
         action = choice.action
         if action is None:
             return False
-        leads_to, at_work = self._model.outcomes(action), 0.0
+        leads_to, first, at_work = self._model.outcomes(action), self._model.first, 0.0
         for number, weight in ranked:
-            if not leads_to[number].achieved:
+            if not leads_to[first(number)].achieved:
                 at_work += weight
                 if at_work >= 1 - IDLE:
                     return False
@@ -375,9 +376,10 @@ class Chooser:
         """Whether the preconditions of an action are not believed false."""
         if choice.action is None:
             return True
-        leads_to, possible, at_work = self._model.outcomes(choice.action), 0.0, 0.0
+        leads_to, first = self._model.outcomes(choice.action), self._model.first
+        possible = at_work = 0.0
         for number, weight in ranked:
-            outcomes = leads_to[number]
+            outcomes = leads_to[first(number)]
             if not outcomes.achieved:
                 at_work += weight
                 possible += weight * (outcomes.intended is not None)

@@ -38,6 +38,18 @@ class Compiled:
         return not (self.need & ~holding or self.bar & holding) and self.fixed <= state
 
 
+def met(
+    condition: Condition, task: Task, bits: Callable[[Iterable[Atom]], int]
+) -> tuple[int, int] | None:
+    """What has to hold for a condition, and what must not, as bits; None where it is no
+    conjunction of facts that actions change."""
+    parts = _parts(condition)
+    if parts is None or any(each.atom.predicate not in task.fluents for each in parts):
+        return None
+    needed = bits(each.atom for each in parts if each.positive)
+    return needed, bits(each.atom for each in parts if not each.positive)
+
+
 def compiled(action: Action, task: Task, bits: Callable[[Iterable[Atom]], int]) -> Compiled | None:
     """An action as masks; None where it takes more than that to say what it does.
 

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from tpvqa.belief.compiled import Compiled, compiled
+from tpvqa.belief.compiled import Compiled, compiled, met
 from tpvqa.belief.information import Floats
 from tpvqa.belief.memory import Past, Undoing, memory_of
 from tpvqa.pddl import Action, Atom, State, Task
@@ -157,8 +157,12 @@ class FaultModel:
         self._holding: dict[int, int] = {}
         self._kinds: list[int] = []
         self._kind_of: dict[State, int] = {}
+        self._states: list[State] = []
+        self._firsts: list[int] = []
         self._compiled: dict[Action, Compiled | None] = {}
         self._words: dict[object, str] = {}
+        self._said_of: dict[int, str] = {}
+        self._goal = met(self.task.goal, self.task, self.bits)
         self.facts = 0
         self._numbers: dict[JointState, int] = {}
         self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
@@ -177,10 +181,18 @@ class FaultModel:
         """The number of a joint state, the same for equal ones."""
         number = self._numbers.get(joint_state)
         if number is None:
-            number = self._numbers[joint_state] = len(self.joint_states)
-            self.facts += len(joint_state.state)
+            number = len(self.joint_states)
+            kind = self._kind_of.get(joint_state.state)
+            if kind is None:
+                kind = self._kind_of[joint_state.state] = len(self._states)
+                self._states.append(joint_state.state)
+                self._firsts.append(number)
+                self.facts += len(joint_state.state)
+            else:  # one set of atoms for all of them
+                joint_state = JointState(self._states[kind], joint_state.past)
+            self._numbers[joint_state] = number
             self.joint_states.append(joint_state)
-            self._kinds.append(self._kind_of.setdefault(joint_state.state, len(self._kind_of)))
+            self._kinds.append(kind)
         return number
 
     def kind(self, number: int) -> int:
@@ -200,12 +212,12 @@ class FaultModel:
     def _key(self, number: int) -> bytes:
         known = self._keys.get(number)
         if known is None:
-            known = self._keys[number] = self._key_of(self.joint_states[number])
+            kind, past = self._kinds[number], self.joint_states[number].past
+            if kind not in self._said_of:
+                self._said_of[kind] = repr(sorted(map(self._said, self._states[kind])))
+            words = f"({self._said_of[kind]}, {list(map(self._said, past))!r})"
+            known = self._keys[number] = blake2b(words.encode(), digest_size=8).digest()
         return known
-
-    def _key_of(self, joint_state: JointState) -> bytes:
-        words = sorted(map(self._said, joint_state.state)), list(map(self._said, joint_state.past))
-        return blake2b(repr(words).encode(), digest_size=8).digest()
 
     def _said(self, part: object) -> str:
         known = self._words.get(part)
@@ -234,6 +246,17 @@ class FaultModel:
             full = self.task.extend(self.state(number)) - self.task.static
             known = self._holding[number] = self.bits(full)
         return known
+
+    def goal_holds(self, number: int) -> bool:
+        """Whether the goal holds in a joint state."""
+        if self._goal is None:
+            return self.task.goal_holds(self.state(number))
+        (needed, barred), holding = self._goal, self.holding(number)
+        return not (needed & ~holding or barred & holding)
+
+    def first(self, number: int) -> int:
+        """The first joint state that was met in which the same facts hold."""
+        return self._firsts[self._kinds[number]]
 
     def truth(self, atoms: tuple[Atom, ...]) -> Truth:
         """In which joint states any of some facts holds, by number."""

@@ -14,6 +14,8 @@ CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
 PLANS = 16
 """Plans that are kept, the latest ones."""
+KNOWN = 64
+"""Plans of which it is kept where in them states stand."""
 
 SkillOf = Callable[[Action], SkillState]
 
@@ -46,8 +48,9 @@ class Outlook:
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
         self._rates = Rates()
         self._lost: float | None = None
-        self._places: dict[AnnotatedPlan, dict[int, int | None]] = {}
-        self._wanted: dict[AnnotatedPlan, Wanted] = {}
+        self._length: int | None = None
+        self._standing: list[tuple[AnnotatedPlan, _Places]] | None = None
+        self._places: dict[AnnotatedPlan, _Places] = {}
         self.version = 0
         self._goals: dict[int, bool] = {}
         self._forget()
@@ -57,10 +60,10 @@ class Outlook:
         if plan in self.plans:
             self.plans.remove(plan)
         self.plans.insert(0, plan)
-        for old in self.plans[PLANS:]:
-            self._places.pop(old, None)
-            self._wanted.pop(old, None)
         del self.plans[PLANS:]
+        for old in list(self._places)[: len(self._places) - KNOWN]:  # others may come again soon
+            if old not in self.plans:
+                del self._places[old]
         self._forget()
 
     def learned(self, skill: SkillOf, rates: Rates) -> None:
@@ -89,7 +92,7 @@ class Outlook:
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
         self._model = model
-        for known in (self._places, self._wanted, self._goals):
+        for known in (self._places, self._goals):
             known.clear()
         self._forget()
 
@@ -98,28 +101,27 @@ class Outlook:
         kind = self._model.kind(number)
         known = self._best.get(kind, _UNKNOWN)
         if isinstance(known, _Unknown):
-            known, least = None, inf
-            for plan in self.plans:
-                place = self._place(plan, number)
-                if place is not None and (rest := self.rest(place, plan)) < least:
-                    known, least = (place, plan), rest
-            self._best[kind] = known
+            known = self._best[kind] = self._cheapest(kind, number)
         return known
 
-    def _place(self, plan: AnnotatedPlan, number: int) -> int | None:
-        known, kind = self._places.setdefault(plan, {}), self._model.kind(number)
-        if kind not in known:
-            known[kind] = self._latest(plan, number)
-        return known[kind]
+    def _cheapest(self, kind: int, number: int) -> tuple[int, AnnotatedPlan] | None:
+        found, least, holding = None, inf, self._model.holding(number)
+        goal = self.is_goal(number)
+        for plan, places in self._known():
+            place = places.get(kind, -1)
+            if place == -1:
+                place = places[kind] = len(plan.actions) if goal else places.wanted.latest(holding)
+            if place is not None and (rest := self.rest(place, plan)) < least:
+                found, least = (place, plan), rest
+        return found
 
-    def _latest(self, plan: AnnotatedPlan, number: int) -> int | None:
-        """`AnnotatedPlan.place`, faster."""
-        if self.is_goal(number):
-            return len(plan.actions)
-        wanted = self._wanted.get(plan)
-        if wanted is None:
-            wanted = self._wanted[plan] = plan.wanted(self._model.bits)
-        return wanted.latest(self._model.holding(number))
+    def _known(self) -> "Sequence[tuple[AnnotatedPlan, _Places]]":
+        if self._standing is None:
+            for plan in self.plans:
+                if plan not in self._places:
+                    self._places[plan] = _Places(plan.wanted(self._model.bits))
+            self._standing = [(plan, self._places[plan]) for plan in self.plans]
+        return self._standing
 
     def next(self, number: int) -> Action | None:
         """The first action of that way; None at the goal, or where no way is known."""
@@ -156,7 +158,10 @@ class Outlook:
         """Whether the goal holds in a joint state."""
         kind = self._model.kind(number)
         if kind not in self._goals:
-            self._goals[kind] = self.reached(self._model.state(number))
+            own = self._task is self._model.task
+            self._goals[kind] = (
+                self._model.goal_holds(number) if own else self.reached(self._model.state(number))
+            )
         return self._goals[kind]
 
     def rest(self, place: int, plan: AnnotatedPlan) -> float:
@@ -217,9 +222,12 @@ class Outlook:
         """What a plan costs from each of its places: repeated where checks say so, or unchecked."""
         rests, checked, unchecked, works = [0.0], 0.0, 0.0, 1.0
         for action in reversed(actions):
-            checked += self.step(action)
+            known = self._priced.get(id(action))  # of a plan, which keeps it
+            if known is None:
+                known = self._priced[id(action)] = self.step(action), self.skill(action).failure
+            checked += known[0]
             unchecked += self._costs.action
-            works *= 1 - self.skill(action).failure
+            works *= 1 - known[1]
             rests.append(min(checked, unchecked + (1 - works) * self.failure))
         return rests[::-1]
 
@@ -247,7 +255,9 @@ class Outlook:
         return float(max(1 - rates.failure * (1 + rates.disturbance), 0.02))
 
     def _longest(self) -> int:
-        return max((len(plan.actions) for plan in self.plans), default=0)
+        if self._length is None:
+            self._length = max((len(plan.actions) for plan in self.plans), default=0)
+        return self._length
 
     def _forget(self) -> None:
         """What was worked out holds for other plans or rates."""
@@ -256,9 +266,20 @@ class Outlook:
         self._rests: dict[int, list[float]] = {}
         self._steps: dict[Action, float] = {}
         self._skills: dict[Action, SkillState] = {}
+        self._priced: dict[int, tuple[float, float]] = {}
         self._blocks: dict[int, int] = {}
         self._to_go: dict[int, float] = {}
         self._lost = None
+        self._length = None
+        self._standing = None
+
+
+class _Places(dict[int, int | None]):
+    """Where in a plan states stand, by the number of their facts; None where it is of no use."""
+
+    def __init__(self, wanted: Wanted):
+        super().__init__()
+        self.wanted = wanted
 
 
 class _Unknown:

@@ -34,7 +34,7 @@ from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
 from tpvqa.vlm import Answer, Reply
 
-MOST_FACTS = 100_000
+MOST_FACTS = 250_000
 """In all joint states that were met; those that are not possible any more are forgotten then."""
 SAME = 3
 """Looks in a row that may show a picture which the question was asked of already."""

@@ -36,6 +36,7 @@ class Ways:
         self._towards = towards
         self._task, self._chooser, self._chances = task, chooser, chances
         self._plans: dict[State, Plan] = {}
+        self._annotated: dict[State, AnnotatedPlan] = {}
         self._followed: Plan | None = None
         self._dead: tuple[int, frozenset[Action]] = (0, frozenset())
         self._suspected: set[Action] = set()
@@ -124,9 +125,12 @@ class Ways:
         self._annotate(plan, state)
 
     def _annotate(self, plan: Plan, state: State) -> None:
-        try:
-            needs = regress(self._task, plan.actions, state)
-        except PlannerError:
-            self._chooser.ahead.give_up_on(state)
-            return
-        self._chooser.ahead.add(AnnotatedPlan(self._task, plan.actions, needs))
+        known = self._annotated.get(state)
+        if known is None or known.actions != plan.actions:
+            try:
+                needs = regress(self._task, plan.actions, state)
+            except PlannerError:
+                self._chooser.ahead.give_up_on(state)
+                return
+            known = self._annotated[state] = AnnotatedPlan(self._task, plan.actions, needs)
+        self._chooser.ahead.add(known)
