@@ -71,13 +71,16 @@ class Commitments:
         place, plan = way
         if self._ahead.best(number) == way:
             return self._ahead.to_go(number)
-        task, state, paid = self._model.task, self._model.state(number), 0.0
+        task, state, paid, alive = self._model.task, self._model.state(number), 0.0, 1.0
+        ahead = self._ahead
         for action in plan.actions[place:]:
             after: State = task.apply(state, action)
             if after != state and not self._model.applicable(action, state):
                 if not self._sight.hidden(action):  # it shows that this was not the way
-                    return paid + self._ahead.step(action) + self._ahead.to_go(number)
+                    return paid + alive * (ahead.step(action) + ahead.to_go(number))
                 after = state
-            paid += self._ahead.step(action)
+            paid += alive * ahead.step(action)
+            paid += alive * ahead.dead(action) * ahead.failure
+            alive *= 1 - ahead.dead(action)
             state = after
-        return paid if task.goal_holds(state) else paid + self._ahead.failure
+        return paid if task.goal_holds(state) else paid + alive * ahead.failure

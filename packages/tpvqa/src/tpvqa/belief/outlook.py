@@ -168,15 +168,19 @@ class Outlook:
         known = self._steps.get(action)
         if known is None:
             skill = self._skill(action)
-            dead = skill.dead if skill.dead >= NAMED else 0.0
             if self._sight.hidden(action):
                 known = _unseen(skill.failure, self._costs.action, self.failure)
             else:
                 checks = CHECKS * (self._costs.question + self._costs.look)
                 tries = min(skill.tries, 20.0)
-                known = (1 - dead) * tries * (self._costs.action + checks) + dead * self.failure
+                known = (1 - self.dead(action)) * tries * (self._costs.action + checks)
             self._steps[action] = known
         return known
+
+    def dead(self, action: Action) -> float:
+        """How probable it is that the way ends at a step, as its skill never works."""
+        dead = self._skill(action).dead
+        return dead if dead >= NAMED and not self._sight.hidden(action) else 0.0
 
     def skill(self, action: Action) -> SkillState:
         """What is known of how often an action fails."""
@@ -210,7 +214,8 @@ class Outlook:
         """What a plan costs from each of its places: repeated where checks say so, or unchecked."""
         rests, checked, unchecked, works = [0.0], 0.0, 0.0, 1.0
         for action in reversed(actions):
-            checked += self.step(action)
+            dead = self.dead(action)  # then the rest is not to be paid
+            checked = self.step(action) + (1 - dead) * checked + dead * self.failure
             unchecked += self._costs.action
             works *= 1 - self._skill(action).failure
             rests.append(min(checked, unchecked + (1 - works) * self.failure))
