@@ -179,8 +179,12 @@ class Outlook:
 
     def dead(self, action: Action) -> float:
         """How probable it is that the way ends at a step, as its skill never works."""
-        dead = self._skill(action).dead
-        return dead if dead >= NAMED and not self._sight.hidden(action) else 0.0
+        known = self._dead.get(action)
+        if known is None:
+            dead = self._skill(action).dead
+            shown = dead >= NAMED and not self._sight.hidden(action)
+            known = self._dead[action] = dead if shown else 0.0
+        return known
 
     def skill(self, action: Action) -> SkillState:
         """What is known of how often an action fails."""
@@ -253,6 +257,7 @@ class Outlook:
         self._best: dict[int, tuple[int, AnnotatedPlan] | None] = {}
         self._rests: dict[int, list[float]] = {}
         self._steps: dict[Action, float] = {}
+        self._dead: dict[Action, float] = {}
         self._blocks: dict[int, int] = {}
         self._to_go: dict[int, float] = {}
         self._lost = None
