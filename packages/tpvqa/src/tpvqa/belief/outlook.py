@@ -39,6 +39,7 @@ class Outlook:
     def __init__(self, model: FaultModel, costs: Costs, sight: Sight):
         self._model, self._costs, self._sight = model, costs, sight
         self.plans: list[AnnotatedPlan] = []
+        self._most_steps = 0
         self.hopeless: set[State] = set()
         self.left: int | None = None
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
@@ -55,6 +56,7 @@ class Outlook:
         if plan in self.plans:
             self.plans.remove(plan)
         self.plans.insert(0, plan)
+        self._most_steps = max(self._most_steps, len(plan.actions))
         for old in self.plans[PLANS:]:
             self._places.pop(old, None)
             self._wanted.pop(old, None)
@@ -249,7 +251,7 @@ class Outlook:
         return float(max(1 - rates.failure * (1 + rates.disturbance), 0.02))
 
     def _longest(self) -> int:
-        return max((len(plan.actions) for plan in self.plans), default=0)
+        return self._most_steps
 
     def _forget(self) -> None:
         """What was worked out holds for other plans or rates."""
