@@ -179,11 +179,14 @@ class Evidence:
 
     def rests_on(self, action: Action) -> None:
         """Take in that a thing may never have been where an action needs it, before it is done."""
-        for literal in literals(action.precondition) if self._doubts else ():
-            atoms = (literal.atom,)
-            chance = self._doubts.gone(literal.atom) if literal.positive else 0.0
-            if chance and self._belief.probability(literal.atom) >= 0.5:
-                self._belief.open(atoms, chance)
+        if self._doubts is None:
+            return
+        for literal in literals(action.precondition):
+            atom = literal.atom
+            if literal.positive and self._belief.probability(atom) >= 0.5:
+                chance = self._doubts.gone(atom)
+                if chance:
+                    self._belief.open((atom,), chance)
 
     def doubt(self, action: Action, sight: Sight) -> None:
         """Take in that an action which fails again and again may need what does not hold."""
