@@ -3,7 +3,11 @@
 from math import isclose
 from random import Random
 
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.doubts import Doubts, moved
+from tpvqa.belief.evidence import Evidence
+from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.places import further_places, things
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.starts import drawn_start, opened
@@ -46,6 +50,21 @@ def test_a_doubt_is_weighed_by_answers_and_given_once() -> None:
     expected = 0.1 * 0.2 / (0.1 * 0.2 + 0.9 * 0.8)
     assert isclose(doubts.taken((COUNTER,), held=True), expected)
     assert doubts.taken((COUNTER,), held=True) == 0
+
+
+def test_an_action_that_rests_on_a_place_takes_its_doubt_in_once() -> None:
+    belief = Belief(FaultModel(TASK))
+    evidence = Evidence(belief, Calibration.default(), None, doubts=Doubts(TASK, 0.1))
+    take = next(
+        action
+        for action in TASK.ground_actions()
+        if action.name == "pick_up" and action.arguments[:2] == ("bread", "counter")
+    )
+    evidence.rests_on(take)
+    assert isclose(belief.probability(COUNTER), 0.9)
+    assert belief.probability(TABLE) > 0
+    evidence.rests_on(take)
+    assert isclose(belief.probability(COUNTER), 0.9)
 
 
 def test_another_place_has_its_share_of_a_doubt() -> None:

@@ -53,12 +53,15 @@ class Table:
         numbers: The joint states.
         weights: Their probabilities, shape (states,).
         costs: Expected cost of each choice in each joint state, shape (states, choices).
+        barred: Choices that are none before more is known, by their places: they only tell what
+            it may be worth to know more.
     """
 
     choices: tuple[Choice, ...]
     numbers: tuple[int, ...]
     weights: Floats
     costs: Floats
+    barred: frozenset[int] = frozenset()
 
     @property
     def expected(self) -> Floats:
@@ -68,7 +71,9 @@ class Table:
     @property
     def best(self) -> Choice:
         """The choice that is expected to cost least; of equal ones the first."""
-        return self.choices[int(np.argmin(np.round(self.expected, 9)))]
+        expected = np.round(self.expected, 9)
+        expected[list(self.barred)] = np.inf
+        return self.choices[int(np.argmin(expected))]
 
 
 class Chooser:
@@ -189,11 +194,11 @@ class Chooser:
             and self._worth_a_try(each)
             and not self._idle(each, ranked)
         ]
-        possible = [each for each in choices if self._possible(each, ranked)]
-        if any(each.action is not None for each in possible) or self._goal_likely(ranked):
-            choices = possible
         if self._stuck(ranked):
             choices = [each for each in choices if each.action is None]
+        impossible = {n for n, each in enumerate(choices) if not self._possible(each, ranked)}
+        if len(impossible) == len(choices) - 1 and not self._goal_likely(ranked):
+            impossible.clear()
         columns = [
             self._end(ranked)
             if each.action is None
@@ -207,6 +212,7 @@ class Chooser:
             tuple(number for number, _ in ranked),
             np.array([weight for _, weight in ranked]),
             np.array(columns).reshape(len(choices), len(ranked)).T,
+            frozenset(impossible),
         )
 
     def _end(self, ranked: Sequence[tuple[int, float]]) -> Floats:

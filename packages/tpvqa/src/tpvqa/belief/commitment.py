@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterable
+from enum import Enum, auto
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.faults import FaultModel
@@ -28,10 +29,14 @@ class Commitments:
 
     def __init__(self, model: FaultModel, ahead: Outlook, sight: Sight):
         self._model, self._ahead, self._sight = model, ahead, sight
+        self._walks: dict[AnnotatedPlan, dict[tuple[int, int], tuple[int, _End]]] = {}
+        self._spendings: dict[tuple[int, int, int], tuple[float, float]] = {}
+        self._worked_out_for = self._shown_by = -1
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
         self._model = model
+        self._walks.clear()
 
     def made(self, action: Action, predicted: Iterable[tuple[int, float]]) -> dict[int, float]:
         """What is left to pay from each joint state that looks like another one.
@@ -42,6 +47,11 @@ class Commitments:
         """
         if self._sight.complete:
             return {}
+        if self._shown_by != self._sight.version:
+            self._shown_by = self._sight.version
+            self._walks.clear()
+        for old in self._walks.keys() - {*self._ahead.plans}:
+            del self._walks[old]
         masses: dict[int, float] = defaultdict(float)
         for number, mass in predicted:
             masses[number] += mass
@@ -69,15 +79,54 @@ class Commitments:
     def _along(self, way: tuple[int, AnnotatedPlan], number: int) -> float:
         """What a way costs from a joint state that it need not be the right one for."""
         place, plan = way
-        if self._ahead.best(number) == way:
-            return self._ahead.to_go(number)
-        task, state, paid = self._model.task, self._model.state(number), 0.0
-        for action in plan.actions[place:]:
+        ahead = self._ahead
+        if ahead.best(number) == way:
+            return ahead.to_go(number)
+        stop, end = self._walk(plan, place, number)
+        paid, alive = self._spent(plan, place, stop)
+        if end is _End.SEEN:
+            return paid + alive * (ahead.step(plan.actions[stop]) + ahead.to_go(number))
+        return paid if end is _End.GOAL else paid + alive * ahead.failure
+
+    def _walk(self, plan: AnnotatedPlan, place: int, number: int) -> "tuple[int, _End]":
+        """At which step of a plan a way ends from a joint state, and how."""
+        walks = self._walks.setdefault(plan, {})
+        known = walks.get((place, number))
+        if known is None:
+            known = walks[place, number] = self._walked(plan, place, number)
+        return known
+
+    def _walked(self, plan: AnnotatedPlan, place: int, number: int) -> "tuple[int, _End]":
+        task, state = self._model.task, self._model.state(number)
+        for stop in range(place, len(plan.actions)):
+            action = plan.actions[stop]
             after: State = task.apply(state, action)
             if after != state and not self._model.applicable(action, state):
-                if not self._sight.hidden(action):  # it shows that this was not the way
-                    return paid + self._ahead.step(action) + self._ahead.to_go(number)
+                if not self._sight.hidden(action):
+                    return stop, _End.SEEN
                 after = state
-            paid += self._ahead.step(action)
             state = after
-        return paid if self._ahead.reached(state) else paid + self._ahead.failure
+        return len(plan.actions), _End.GOAL if self._ahead.reached(state) else _End.LOST
+
+    def _spent(self, plan: AnnotatedPlan, place: int, stop: int) -> tuple[float, float]:
+        """What the steps of a plan cost up to another, and how probable it is to get there."""
+        if self._worked_out_for != self._ahead.version:
+            self._worked_out_for = self._ahead.version
+            self._spendings.clear()
+        known = self._spendings.get((id(plan), place, stop))
+        if known is None:
+            paid, alive = 0.0, 1.0
+            for action in plan.actions[place:stop]:
+                dead = self._ahead.dead(action)
+                paid += alive * (self._ahead.step(action) + dead * self._ahead.failure)
+                alive *= 1 - dead
+            known = self._spendings[id(plan), place, stop] = paid, alive
+        return known
+
+
+class _End(Enum):
+    """How a way ends: at the goal, where a step shows that it was not the way, or unnoticed."""
+
+    GOAL = auto()
+    SEEN = auto()
+    LOST = auto()

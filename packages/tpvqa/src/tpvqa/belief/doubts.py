@@ -45,6 +45,14 @@ class Doubts:
             none *= 1 - (chance if held else chance / (len(thing.places) - 1))
         return 1 - none
 
+    def gone(self, atom: Atom) -> float:
+        """The chance that a thing which the problem says to be here never was; given once."""
+        return sum(
+            self._chances.pop(thing, 0.0)
+            for thing in self._things.get(atom, ())
+            if thing.stated == atom
+        )
+
     def learn(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> None:
         """Weigh the doubts by an answer about a fact, as Bayes' rule says."""
         for thing in (thing for atom in atoms for thing in self._things.get(atom, ())):

@@ -177,6 +177,17 @@ class Evidence:
             elsewhere = self._doubts.taken(atoms, held=held) if self._doubts else 0.0
             self._weighed.open(atoms, max(self._unexplained, elsewhere))
 
+    def rests_on(self, action: Action) -> None:
+        """Take in that a thing may never have been where an action needs it, before it is done."""
+        if self._doubts is None:
+            return
+        for literal in literals(action.precondition):
+            atom = literal.atom
+            if literal.positive and self._belief.probability(atom) >= 0.5:
+                chance = self._doubts.gone(atom)
+                if chance:
+                    self._belief.open((atom,), chance)
+
     def doubt(self, action: Action, sight: Sight) -> None:
         """Take in that an action which fails again and again may need what does not hold."""
         task = self._belief.model.task

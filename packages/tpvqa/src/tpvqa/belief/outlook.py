@@ -43,12 +43,12 @@ class Outlook:
         self._model, self._costs, self._sight = model, costs, sight
         self._task = task or model.task
         self.plans: list[AnnotatedPlan] = []
+        self._most_steps = 0
         self.hopeless: set[State] = set()
         self.left: int | None = None
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
         self._rates = Rates()
         self._lost: float | None = None
-        self._length: int | None = None
         self._standing: list[tuple[AnnotatedPlan, _Places]] | None = None
         self._places: dict[AnnotatedPlan, _Places] = {}
         self.version = 0
@@ -60,6 +60,7 @@ class Outlook:
         if plan in self.plans:
             self.plans.remove(plan)
         self.plans.insert(0, plan)
+        self._most_steps = max(self._most_steps, len(plan.actions))
         del self.plans[PLANS:]
         for old in list(self._places)[: len(self._places) - KNOWN]:  # others may come again soon
             if old not in self.plans:
@@ -176,14 +177,22 @@ class Outlook:
         known = self._steps.get(action)
         if known is None:
             skill = self.skill(action)
-            dead = skill.dead if skill.dead >= NAMED else 0.0
             if self._sight.hidden(action):
                 known = _unseen(skill.failure, self._costs.action, self.failure)
             else:
                 checks = CHECKS * (self._costs.question + self._costs.look)
                 tries = min(skill.tries, 20.0)
-                known = (1 - dead) * tries * (self._costs.action + checks) + dead * self.failure
+                known = (1 - self.dead(action)) * tries * (self._costs.action + checks)
             self._steps[action] = known
+        return known
+
+    def dead(self, action: Action) -> float:
+        """How probable it is that the way ends at a step, as its skill never works."""
+        known = self._dead.get(action)
+        if known is None:
+            dead = self.skill(action).dead
+            shown = dead >= NAMED and not self._sight.hidden(action)
+            known = self._dead[action] = dead if shown else 0.0
         return known
 
     def skill(self, action: Action) -> SkillState:
@@ -224,10 +233,13 @@ class Outlook:
         for action in reversed(actions):
             known = self._priced.get(id(action))  # of a plan, which keeps it
             if known is None:
-                known = self._priced[id(action)] = self.step(action), self.skill(action).failure
-            checked += known[0]
+                priced = self.step(action), self.skill(action).failure, self.dead(action)
+                known = self._priced[id(action)] = priced
+            step, failure, dead = known
+            # Where the skill is dead the rest is not to be paid.
+            checked = step + (1 - dead) * checked + dead * self.failure
             unchecked += self._costs.action
-            works *= 1 - known[1]
+            works *= 1 - failure
             rests.append(min(checked, unchecked + (1 - works) * self.failure))
         return rests[::-1]
 
@@ -255,9 +267,7 @@ class Outlook:
         return float(max(1 - rates.failure * (1 + rates.disturbance), 0.02))
 
     def _longest(self) -> int:
-        if self._length is None:
-            self._length = max((len(plan.actions) for plan in self.plans), default=0)
-        return self._length
+        return self._most_steps
 
     def _forget(self) -> None:
         """What was worked out holds for other plans or rates."""
@@ -266,11 +276,11 @@ class Outlook:
         self._rests: dict[int, list[float]] = {}
         self._steps: dict[Action, float] = {}
         self._skills: dict[Action, SkillState] = {}
-        self._priced: dict[int, tuple[float, float]] = {}
+        self._priced: dict[int, tuple[float, float, float]] = {}
+        self._dead: dict[Action, float] = {}
         self._blocks: dict[int, int] = {}
         self._to_go: dict[int, float] = {}
         self._lost = None
-        self._length = None
         self._standing = None
 
 

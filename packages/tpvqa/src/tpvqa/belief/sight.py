@@ -12,10 +12,13 @@ class Sight:
     Args:
         model: Gives the joint states.
         seen: Whether anything shows a fact; by default everything is shown.
+
+    Attributes:
+        version: Grows whenever something else shows facts.
     """
 
     def __init__(self, model: FaultModel, seen: Callable[[Atom], bool] | None = None):
-        self._model, self._seen = model, seen
+        self._model, self._seen, self.version = model, seen, 0
         self._felt: Callable[[Atom], bool] = lambda atom: False
         self._known: dict[Atom, bool] = {}
         self._looks: dict[tuple[int, frozenset[Atom]], int] = {}
@@ -36,6 +39,7 @@ class Sight:
             felt: Whether the robot notices a fact as it changes it, and perhaps never after.
         """
         self._seen, self._felt = seen, felt
+        self.version += 1
         for known in (self._known, self._looks, self._kinds, self._hidden, self._felt_by):
             known.clear()
         self._complete = None

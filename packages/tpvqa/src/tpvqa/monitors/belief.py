@@ -212,6 +212,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self._inquirer.renumbered(self.belief.model)
         if self._ways.suspects(step.action):
             self.evidence.doubt(step.action, self._sight)
+        self.evidence.rests_on(step.action)
         self._chooser.acted(self.belief, step.action)
         self.belief.act(step.action, self.chances.rates_of(step.action))
         self._now = self._begin(step.action)

@@ -1,0 +1,61 @@
+"""What lies ahead where a skill is dead, plans are forgotten, or the floor bars a choice."""
+
+import numpy as np
+
+from tpvqa.belief.annotated import AnnotatedPlan
+from tpvqa.belief.choices import Choice, Table
+from tpvqa.belief.costs import Costs
+from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.outlook import PLANS, Outlook
+from tpvqa.belief.sight import Sight
+from tpvqa.belief.skills import SkillState
+from tpvqa.pddl import load_task
+from tpvqa.planning import Plan
+from tpvqa.planning.making import make_planner
+from tpvqa.planning.regression import regress
+
+TASK = load_task("serve_breakfast")
+PLAN = make_planner("fast-downward").plan(TASK, TASK.init, timeout=60)
+assert isinstance(PLAN, Plan)
+ACTIONS = PLAN.actions
+
+
+def _outlook(failure: float = 1.0) -> Outlook:
+    model = FaultModel(TASK)
+    return Outlook(model, Costs(failure=failure), Sight(model))
+
+
+def _known(first: int = 0) -> AnnotatedPlan:
+    state = TASK.init
+    for action in ACTIONS[:first]:
+        state = TASK.apply(state, action)
+    return AnnotatedPlan(TASK, ACTIONS[first:], regress(TASK, ACTIONS[first:], state))
+
+
+def test_a_task_stays_as_dear_when_its_long_plans_are_forgotten() -> None:
+    ahead = _outlook()
+    ahead.add(_known())
+    dear = ahead.failure
+    for _ in range(PLANS):
+        ahead.add(_known(len(ACTIONS) - 1))
+    assert len(ahead.plans) == PLANS
+    assert ahead.failure == dear
+
+
+def test_the_rest_of_a_way_is_not_paid_where_it_ends_at_a_dead_skill() -> None:
+    ahead = _outlook(failure=50.0)
+    plan = _known()
+    ahead.add(plan)
+    dead = SkillState(0.9, 0.8, 1.3)
+    alive = SkillState(0.25, 0.0, 1.3)
+    ahead.learned(lambda action: dead if action == ACTIONS[0] else alive, Rates())
+    after = ahead.rest(1, plan)
+    assert ahead.rest(0, plan) < ahead.failure < 0.8 * ahead.failure + after + 10
+    assert ahead.rest(0, plan) > 0.8 * ahead.failure
+
+
+def test_what_is_barred_is_compared_but_not_chosen() -> None:
+    done, other = Choice(None, TASK.init), Choice(ACTIONS[0], TASK.init)
+    table = Table((other, done), (0,), np.ones(1), np.array([[1.0, 2.0]]), frozenset({0}))
+    assert table.best is done
+    assert table.expected.min() == 1.0
