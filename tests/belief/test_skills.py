@@ -34,13 +34,6 @@ def test_a_skill_that_always_fails_is_dead_within_eight_tries(kitchen: Task) -> 
     assert chances.skill(action).dead < 0.01
 
 
-def test_a_skill_that_may_only_be_hard_is_tried_longer_than_it_is_named(kitchen: Task) -> None:
-    chances, action = Chances(Rates()), grasp(kitchen)
-    for _ in range(10):
-        chances.learn({"failure": 1.0}, action)
-    assert NAMED <= chances.skill(action).dead < GIVEN_UP
-
-
 def test_one_skill_that_is_dead_tells_little_of_the_others(kitchen: Task) -> None:
     chances = Chances()
     for _ in range(10):

@@ -20,8 +20,6 @@ DEAD = 0.02
 DEAD_WITH = 0.005
 """Chance that a skill never works with one object in one place, and that it never does with just
 these objects together."""
-HARD = 0.015
-"""Chance that a skill works as rarely as may be, whatever is believed of skills in common."""
 SUSPECT = 0.1
 """Where an action is dead with this probability, what it needs is doubted first."""
 NAMED = 0.6
@@ -220,5 +218,5 @@ def _prior(mean: float, strength: float) -> Floats:
     a, b = alike * mean, alike * (1 - mean)
     logs = (a - 1) * np.log(_RATES[:-1]) + (b - 1) * np.log1p(-_RATES[:-1])
     weights = np.exp(logs - logs.max())
-    found: Floats = (1 - HARD) * weights / weights.sum() + HARD / len(weights)
+    found: Floats = weights / weights.sum()
     return found
