@@ -7,7 +7,7 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import GIVEN_UP, NAMED, SkillState
+from tpvqa.belief.skills import GIVEN_UP, NAMED, SHOWN, SkillState
 from tpvqa.pddl import Action, State
 
 CHECKS = 2.0
@@ -134,7 +134,8 @@ class Outlook:
         """Whether an action that seems never to work is not worth one more try."""
         skill = self.skill(action)
         won = (1 - skill.failure) * self.failure
-        return skill.dead >= GIVEN_UP or (skill.dead >= NAMED and won < self._costs.action)
+        hopeless = skill.dead >= NAMED and won < self._costs.action
+        return skill.shown >= SHOWN and (skill.dead >= GIVEN_UP or hopeless)
 
     def blocked(self, number: int) -> bool:
         """Whether the way from a joint state leads through a skill that is given up."""
@@ -168,13 +169,11 @@ class Outlook:
         known = self._steps.get(action)
         if known is None:
             skill = self._skill(action)
-            dead = skill.dead if skill.dead >= NAMED else 0.0
             if self._sight.hidden(action):
                 known = _unseen(skill.failure, self._costs.action, self.failure)
             else:
                 checks = CHECKS * (self._costs.question + self._costs.look)
-                tries = min(skill.tries, 20.0)
-                known = (1 - dead) * tries * (self._costs.action + checks) + dead * self.failure
+                known = min(skill.tries, 20.0) * (self._costs.action + checks)
             self._steps[action] = known
         return known
 
@@ -208,12 +207,16 @@ class Outlook:
 
     def _rests_of(self, actions: Sequence[Action]) -> list[float]:
         """What a plan costs from each of its places: repeated where checks say so, or unchecked."""
-        rests, checked, unchecked, works = [0.0], 0.0, 0.0, 1.0
+        rests, checked, unchecked, works, dead = [0.0], 0.0, 0.0, 1.0, 0.0
         for action in reversed(actions):
+            skill = self._skill(action)
             checked += self.step(action)
             unchecked += self._costs.action
-            works *= 1 - self._skill(action).failure
-            rests.append(min(checked, unchecked + (1 - works) * self.failure))
+            works *= 1 - skill.failure
+            if skill.dead >= NAMED or skill.at_worst >= GIVEN_UP:
+                dead = max(dead, skill.at_worst)  # steps of a plan are dead together, or none
+            rest = min(checked, unchecked + (1 - works) * self.failure)
+            rests.append((1 - dead) * rest + dead * self.failure)
         return rests[::-1]
 
     @property
