@@ -17,6 +17,11 @@ SMALLEST = 1e-5
 """Joint states under this probability are dropped."""
 MOST = 300
 """Joint states that are kept; the most probable ones."""
+LOOKED_BACK = 4
+"""Actions before the last one of which it is still known how they came out."""
+
+Came = tuple[float, float, float]
+"""Shares of success, of failure, and of nothing left to do."""
 
 
 @dataclass(slots=True)
@@ -55,6 +60,7 @@ class Belief:
         self.weights: dict[int, float] = {model.number(JointState(first)): 1.0}
         self.outcome_weights: OutcomeWeights | None = None
         self._predicted: dict[int, float] = {}
+        self._earlier: list[dict[int, Came]] = []
         self._marginals: dict[tuple[Atom, ...], float] = {}
         self._ranked: list[tuple[int, float]] | None = None
 
@@ -66,6 +72,10 @@ class Belief:
         """
         old, self.model = self.model, self.model.renewed()
         numbers = {number: self.model.number(old.joint_states[number]) for number in self.weights}
+        self._earlier = [
+            {numbers[number]: each for number, each in came.items() if number in numbers}
+            for came in self._remembered()
+        ]
         self.weights = {numbers[number]: weight for number, weight in self.weights.items()}
         self.outcome_weights = None
         self._predicted = {}
@@ -80,6 +90,7 @@ class Belief:
         """
         self.model.begin(max(states, key=lambda each: each[1])[0])
         self.outcome_weights = None
+        self._earlier = []
         self._become({self.model.number(JointState(state)): weight for state, weight in states})
 
     def states(self) -> list[tuple[State, float]]:
@@ -125,17 +136,19 @@ class Belief:
     def act(self, action: Action, rates: Rates) -> None:
         """Predict what an action leads to."""
         after: dict[int, float] = {}
-        came = OutcomeWeights()
+        came, remembered = OutcomeWeights(), self._remembered()
+        led: list[tuple[int, int, float]] = []
 
         def add(number: int, weight: float, kind: dict[int, float] | None = None) -> None:
             after[number] = after.get(number, 0.0) + weight
+            led.append((begun, number, weight))
             if kind is not None:
                 kind[number] = kind.get(number, 0.0) + weight
 
         f, d, s = rates.failure, rates.disturbance, rates.spontaneous
         leads_to = self.model.outcomes(action)
         for number, weight in self.weights.items():
-            outcomes = leads_to[number]
+            begun, outcomes = number, leads_to[number]
             if outcomes.achieved:
                 add(number, weight, came.achieved)
                 continue
@@ -160,6 +173,7 @@ class Belief:
                 add(other, mass, came.failure if possible else None)
                 came.disturbed[other] = came.disturbed.get(other, 0.0) + mass
         self.outcome_weights = came
+        self._earlier = [_carried(each, led, after) for each in remembered]
         self._predicted = dict(after)
         self._become(after)
 
@@ -262,6 +276,31 @@ class Belief:
             )
         return shares
 
+    def earlier_shares(self) -> list[Mapping[str, float]]:
+        """How the actions before the last one came out, after all that was seen since; the latest
+        first, as `outcome_shares`."""
+        return [
+            {
+                kind: sum(w * came[n][place] for n, w in self.weights.items() if n in came)
+                for place, kind in enumerate(("success", "failure", "achieved"))
+            }
+            for came in self._earlier
+        ]
+
+    def _remembered(self) -> list[dict[int, Came]]:
+        """How the last actions came out where a joint state is the true one, the latest first."""
+        came = self.outcome_weights
+        if came is None:
+            return self._earlier[:LOOKED_BACK]
+        kinds = (came.success, came.failure, came.achieved)
+        last: dict[int, Came] = {}
+        for number in self.weights:
+            whole = self._predicted.get(number, 0.0)
+            if whole > 0:
+                success, failure, idle = (kind.get(number, 0.0) / whole for kind in kinds)
+                last[number] = success, failure, idle
+        return [last, *self._earlier][:LOOKED_BACK]
+
     def _become(self, weights: dict[int, float], smallest: float | None = None) -> None:
         total = sum(weights.values())
         least = (self._smallest if smallest is None else smallest) * total
@@ -272,3 +311,22 @@ class Belief:
         self.weights = {n: w / share for n, w in kept.items()}
         self._marginals.clear()
         self._ranked = None
+
+
+def _carried(
+    came: Mapping[int, Came], led: Sequence[tuple[int, int, float]], after: Mapping[int, float]
+) -> dict[int, Came]:
+    """How an earlier action came out, by the joint states that a later one has led to.
+
+    Args:
+        came: By the joint states before it.
+        led: What it led from where to where, with which weight.
+        after: All weight of each joint state.
+    """
+    found: dict[int, Came] = {}
+    for begun, number, weight in led:
+        if begun in came and after[number] > 0:
+            share, (a, b, c) = weight / after[number], came[begun]
+            x, y, z = found.get(number, (0.0, 0.0, 0.0))
+            found[number] = x + share * a, y + share * b, z + share * c
+    return found

@@ -1,6 +1,6 @@
 """How often actions fail: Beta distributions that learn from what came of actions."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from tpvqa.belief.faults import Rates
@@ -51,6 +51,8 @@ class Beta:
         self.yes, self.no = mean * cases, (1 - mean) * cases
 
 
+LEAST = 0.5
+"""Cases of either kind that the common rate is known from at least."""
 FIRST = 3.0
 """Tries of one action that tell fully of the others."""
 
@@ -69,6 +71,7 @@ class Chances:
         self.disturbance = Beta(rates.disturbance * strength, (1 - rates.disturbance) * strength)
         self.spontaneous = rates.spontaneous
         self.skills = Skills()
+        self._learned: dict[str, tuple[float, float]] = {}
         self._sure = rates.failure in (0.0, 1.0)
 
     @property
@@ -80,7 +83,10 @@ class Chances:
         """What is known of how often an action fails."""
         if self._sure:  # a rate that is believed for certain is that of every skill
             return SkillState(self.failure.mean, 0.0, 1 / max(1 - self.failure.mean, 0.05))
-        return self.skills.of(action, self.failure.mean, self.failure.yes + self.failure.no)
+        # Its own tries count by themselves, not by what the common rate has learned of them, too.
+        yes, no = self._learned.get(action.name, (0.0, 0.0))
+        yes, no = max(self.failure.yes - yes, LEAST), max(self.failure.no - no, LEAST)
+        return self.skills.of(action, yes / (yes + no), yes + no)
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
@@ -90,20 +96,31 @@ class Chances:
         """The actions that were tried."""
         return self.skills.all()
 
-    def learn(self, shares: Mapping[str, float], action: Action | None = None) -> None:
+    def learn(
+        self,
+        shares: Mapping[str, float],
+        action: Action | None = None,
+        earlier: Sequence[Mapping[str, float]] = (),
+    ) -> None:
         """Learn from how an action came out, see `Belief.outcome_shares`.
 
         Args:
             shares: How it came out.
             action: What was done; None where only the common rates are to learn.
+            earlier: How the actions before it came out, see `Belief.earlier_shares`.
         """
         telling = alive = 1.0
         if action is not None and not self._sure:
             # One action tried again and again tells ever less of others, one that is dead nothing.
             tried = self.skills.tried(action)
             telling = 1.0 if tried is None else FIRST / (FIRST + tried.times)
-            self.skills.learn(action, shares, self.skill(action).failure)
+            self.skills.learn(action, shares, self.skill(action).failure, earlier)
             alive = 1 - self.skill(action).dead
         failed, worked = shares.get("failure", 0.0), shares.get("success", 0.0)
+        yes, no = self.failure.yes, self.failure.no
         self.failure.learn(telling * alive * failed, telling * worked)
+        if action is not None:
+            before = self._learned.get(action.name, (0.0, 0.0))
+            gained = self.failure.yes - yes, self.failure.no - no
+            self._learned[action.name] = before[0] + gained[0], before[1] + gained[1]
         self.disturbance.learn(shares.get("disturbed", 0.0), shares.get("undisturbed", 0.0))

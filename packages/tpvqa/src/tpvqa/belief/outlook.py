@@ -7,7 +7,7 @@ from tpvqa.belief.annotated import AnnotatedPlan, Wanted
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import GIVEN_UP, NAMED, SkillState
+from tpvqa.belief.skills import GIVEN_UP, NAMED, SHOWN, SkillState
 from tpvqa.pddl import Action, State, Task
 
 CHECKS = 2.0
@@ -135,7 +135,8 @@ class Outlook:
         """Whether an action that seems never to work is not worth one more try."""
         skill = self.skill(action)
         won = (1 - skill.failure) * self.failure
-        return skill.dead >= GIVEN_UP or (skill.dead >= NAMED and won < self._costs.action)
+        hopeless = skill.dead >= NAMED and won < self._costs.action
+        return skill.shown >= SHOWN and (skill.dead >= GIVEN_UP or hopeless)
 
     def blocked(self, number: int) -> bool:
         """Whether the way from a joint state leads through a skill that is given up."""
@@ -181,8 +182,7 @@ class Outlook:
                 known = _unseen(skill.failure, self._costs.action, self.failure)
             else:
                 checks = CHECKS * (self._costs.question + self._costs.look)
-                tries = min(skill.tries, 20.0)
-                known = (1 - self.dead(action)) * tries * (self._costs.action + checks)
+                known = min(skill.tries, 20.0) * (self._costs.action + checks)
             self._steps[action] = known
         return known
 
@@ -190,9 +190,10 @@ class Outlook:
         """How probable it is that the way ends at a step, as its skill never works."""
         known = self._dead.get(action)
         if known is None:
-            dead = self.skill(action).dead
-            shown = dead >= NAMED and not self._sight.hidden(action)
-            known = self._dead[action] = dead if shown else 0.0
+            skill = self.skill(action)
+            likely = skill.dead >= NAMED or skill.at_worst >= GIVEN_UP
+            known = skill.at_worst if likely and not self._sight.hidden(action) else 0.0
+            self._dead[action] = known
         return known
 
     def skill(self, action: Action) -> SkillState:
@@ -229,18 +230,18 @@ class Outlook:
 
     def _rests_of(self, actions: Sequence[Action]) -> list[float]:
         """What a plan costs from each of its places: repeated where checks say so, or unchecked."""
-        rests, checked, unchecked, works = [0.0], 0.0, 0.0, 1.0
+        rests, checked, unchecked, works, dead = [0.0], 0.0, 0.0, 1.0, 0.0
         for action in reversed(actions):
             known = self._priced.get(id(action))  # of a plan, which keeps it
             if known is None:
                 priced = self.step(action), self.skill(action).failure, self.dead(action)
                 known = self._priced[id(action)] = priced
-            step, failure, dead = known
-            # Where the skill is dead the rest is not to be paid.
-            checked = step + (1 - dead) * checked + dead * self.failure
+            checked += known[0]
             unchecked += self._costs.action
-            works *= 1 - failure
-            rests.append(min(checked, unchecked + (1 - works) * self.failure))
+            works *= 1 - known[1]
+            dead = max(dead, known[2])  # steps of a plan are dead together, or none
+            rest = min(checked, unchecked + (1 - works) * self.failure)
+            rests.append((1 - dead) * rest + dead * self.failure)
         return rests[::-1]
 
     @property

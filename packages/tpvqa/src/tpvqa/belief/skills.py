@@ -5,11 +5,12 @@ skill may not work although it does with others. What came of an action is only 
 try adds a likelihood over rates, not a count.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tpvqa.belief.belief import LOOKED_BACK
 from tpvqa.belief.information import Floats
 from tpvqa.pddl import Action
 
@@ -17,15 +18,20 @@ ALIKE = 12.0
 """How many tries of a skill the rates of the others are worth."""
 DEAD = 0.02
 """Chance that a skill never works."""
-DEAD_WITH = 0.005
-"""Chance that a skill never works with one object in one place, and that it never does with just
-these objects together."""
+DEAD_WITH = 0.02
+"""Chance that a skill never works with what it is tried with: with one of the objects in its place,
+or with just these together, one as probable as the other."""
 SUSPECT = 0.1
 """Where an action is dead with this probability, what it needs is doubted first."""
-NAMED = 0.6
+CLOSELY = 0.3
+"""Where an action is dead with this probability, should it have failed until now, it is looked more
+closely at how it comes out."""
+NAMED = 0.82
 """A skill that is dead with this probability is named, and a way without it is looked for."""
 GIVEN_UP = 0.95
 """One that is dead with this probability is not tried any more."""
+SHOWN = 0.7
+"""Nor is it before its own tries have shown it with this probability."""
 
 _RATES: Floats = np.array([*np.linspace(0.01, 0.99, 50), 1.0])
 _EDGE = 1e-9
@@ -36,29 +42,19 @@ class SkillState:
     """What is known of one skill with its objects.
 
     Attributes:
-        failure: Expected probability that the next try fails.
+        failure: Expected probability that the next try fails, where those right before it did.
         dead: Probability that every try fails.
         tries: Expected number of tries that one success takes, if it works at all.
+        shown: Probability that every try fails, by its own tries: what those with other objects
+            came to makes it suspected, and no more.
+        at_worst: The probability of `dead` if its latest tries in a row have all failed.
     """
 
     failure: float
     dead: float
     tries: float
-
-
-@dataclass(slots=True)
-class Tried:
-    """How often an action was tried.
-
-    Attributes:
-        times: Tries that could have worked.
-        failed: How many of them are thought to have failed.
-        likelihood: Of what was seen, for every rate, shape (rates,).
-    """
-
-    times: float
-    failed: float
-    likelihood: Floats
+    shown: float = 0.0
+    at_worst: float = 0.0
 
 
 class _Run:
@@ -66,11 +62,79 @@ class _Run:
 
     Whether one of them has worked is judged once, by all that was seen until now: that the last
     one was seen to fail says so of those before it, too.
+
+    Attributes:
+        tries: How many.
+        possible: Probability that they could have worked.
+        worked: Probability that one of them has.
+        likelihood: Of what was seen, for every rate, shape (rates,).
     """
 
-    def __init__(self, action: Action, before: Tried):
-        self.action, self.before = action, replace(before)
-        self.tries, self.all_fail = 0, 1.0
+    def __init__(self, action: Action):
+        self.action = action
+        self.tries, self._all_fail = 0, 1.0
+        self.possible = self.worked = 0.0
+        self.likelihood: Floats = np.ones_like(_RATES)
+
+    def again(self, predicted: float) -> None:
+        """Note one more try, of which a failure was predicted with some probability."""
+        self.tries, self._all_fail = self.tries + 1, self._all_fail * predicted
+
+    def judge(self, shares: Mapping[str, float]) -> None:
+        """Take in how the last try came out, as far as it was seen until now."""
+        failed, self.worked = shares.get("failure", 0.0), shares.get("success", 0.0)
+        if self.tries > 1:  # what an earlier try of the run has done is its success
+            self.worked += shares.get("achieved", 0.0)
+        self.possible = failed + self.worked
+        # By how much what was seen speaks for a success, the belief in it beforehand taken out.
+        speaks = (self.worked / (1 - self._all_fail)) / max(failed / self._all_fail, _EDGE)
+        none = self.none
+        likely = none + (1 - none) * speaks
+        likely /= self._all_fail + (1 - self._all_fail) * speaks
+        self.likelihood = max(0.0, 1 - self.possible) + self.possible * likely
+
+    @property
+    def none(self) -> Floats:
+        """How probable it is at every rate that none of them works."""
+        found: Floats = _RATES**self.tries
+        return found
+
+
+@dataclass(slots=True)
+class Tried:
+    """How often an action was tried.
+
+    Attributes:
+        runs: Its tries, as they followed one another.
+    """
+
+    runs: list[_Run]
+
+    @property
+    def times(self) -> float:
+        """Tries that could have worked."""
+        return sum(run.tries * run.possible for run in self.runs)
+
+    @property
+    def failed(self) -> float:
+        """How many of them are thought to have failed."""
+        return self.times - sum(run.worked for run in self.runs)
+
+    @property
+    def likelihood(self) -> Floats:
+        """Of what was seen, for every rate, shape (rates,)."""
+        found: Floats = np.ones_like(_RATES)
+        for run in self.runs:
+            found = found * run.likelihood
+        found /= found.max()
+        return found
+
+    def as_if_failed(self) -> "Tried":
+        """The same if all tries of the last run have failed."""
+        last = _Run(self.runs[-1].action)
+        last.tries, last.possible = self.runs[-1].tries, 1.0
+        last.likelihood = last.none
+        return Tried([*self.runs[:-1], last])
 
 
 class Skills:
@@ -86,6 +150,7 @@ class Skills:
         self._known: dict[tuple[Action | str, float, float], SkillState] = {}
         self._causes: dict[tuple[str, float, float], dict[Cause, float]] = {}
         self._run: _Run | None = None
+        self._latest: list[_Run | None] = []
 
     def of(self, action: Action, mean: float, strength: float) -> SkillState:
         """What is known of an action.
@@ -99,31 +164,18 @@ class Skills:
         key = (action if own else action.name, round(mean, 3), round(strength, 1))
         found = self._known.get(key)
         if found is None:
-            found = self._known[key] = self._worked_out(action, own, mean, strength)
+            causes = self._causes.get((action.name, mean, strength))
+            if causes is None:
+                causes = self._causes[action.name, mean, strength] = _causes(own, mean, strength)
+            found = _worked_out(action, own, causes, mean, strength)
+            if self._run is not None and self._run.action == action:
+                # Where there still is something to do, all tries of the run have failed.
+                own = {**own, action: own[action].as_if_failed()}
+                causes = _causes(own, mean, strength)
+                worst = _worked_out(action, own, causes, mean, strength)
+                found = replace(found, failure=worst.failure, at_worst=worst.dead)
+            self._known[key] = found
         return found
-
-    def _worked_out(
-        self, action: Action, own: "Mapping[Action, Tried]", mean: float, strength: float
-    ) -> SkillState:
-        causes = self._causes.get((action.name, mean, strength))
-        if causes is None:
-            causes = self._causes[action.name, mean, strength] = _causes(own, mean, strength)
-        dead = min(sum(causes.get(each, 0.0) for each in _covering(action)), 1.0)
-        if not own:
-            dead = DEAD
-        others = [tried for other, tried in own.items() if other != action]
-        weights = _prior(mean, strength)
-        for tried in others:
-            weights *= tried.likelihood[:-1]
-        weights /= max(weights.sum(), _EDGE)
-        if action in own:
-            # Alike as skills are, with other objects it may be easier or harder.
-            known = 1 / (1 / ALIKE + 1 / (strength + sum(tried.times for tried in others)))
-            weights = _prior(float(weights @ _RATES[:-1]), known) * own[action].likelihood[:-1]
-            weights /= max(weights.sum(), _EDGE)
-        failure = float(weights @ _RATES[:-1])
-        tries = float((weights / (1 - _RATES[:-1])).sum())
-        return SkillState(dead + (1 - dead) * failure, dead, tries)
 
     def tried(self, action: Action) -> Tried | None:
         """How often an action was tried; None where it never was."""
@@ -141,39 +193,39 @@ class Skills:
         """The actions that were tried."""
         return [action for own in self._tried.values() for action in own]
 
-    def learn(self, action: Action, shares: Mapping[str, float], predicted: float) -> None:
+    def learn(
+        self,
+        action: Action,
+        shares: Mapping[str, float],
+        predicted: float,
+        earlier: Sequence[Mapping[str, float]] = (),
+    ) -> None:
         """Learn from how an action came out, see `Belief.outcome_shares`.
 
         Args:
             action: What was done.
             shares: How it came out.
             predicted: The probability of failure with which that was predicted.
+            earlier: How the actions before it came out, as is known now, the latest first.
         """
-        again = self._run is not None and self._run.action == action
-        if not again:
+        for run, now in zip(self._latest, earlier, strict=False):
+            if run is not None and run is not self._run:
+                run.judge(now)
+        if self._run is not None and self._run.action != action:
             self._run = None
-        failed, worked = shares.get("failure", 0.0), shares.get("success", 0.0)
-        if again:  # what an earlier try of the run has done is its success
-            worked += shares.get("achieved", 0.0)
-        possible = failed + worked
-        if possible < 0.05 or not 0 < predicted < 1:
-            return
-        tried = self._tried.setdefault(action.name, {}).setdefault(
-            action, Tried(0.0, 0.0, np.ones_like(_RATES))
-        )
-        if self._run is None:
-            self._run = _Run(action, tried)
-        run = self._run
-        run.tries, run.all_fail = run.tries + 1, run.all_fail * predicted
-        # By how much what was seen speaks for a success, the belief in it beforehand taken out.
-        speaks = (worked / (1 - run.all_fail)) / max(failed / run.all_fail, _EDGE)
-        none = _RATES**run.tries
-        likely = none + (1 - none) * speaks
-        likely /= run.all_fail + (1 - run.all_fail) * speaks
-        tried.times = run.before.times + run.tries * possible
-        tried.failed = run.before.failed + run.tries * possible - worked
-        tried.likelihood = run.before.likelihood * (max(0.0, 1 - possible) + possible * likely)
-        tried.likelihood /= tried.likelihood.max()
+        possible = shares.get("failure", 0.0) + shares.get("success", 0.0)
+        if self._run is not None:
+            possible += shares.get("achieved", 0.0)
+        if possible >= 0.05 and 0 < predicted < 1:
+            if self._run is None:
+                self._run = _Run(action)
+                tried = self._tried.setdefault(action.name, {}).setdefault(action, Tried([]))
+                tried.runs.append(self._run)
+            self._run.again(predicted)
+            self._run.judge(shares)
+        # Of a run only its last try tells how it came out.
+        self._latest = [None if run is self._run else run for run in self._latest]
+        self._latest = [self._run, *self._latest][:LOOKED_BACK]
         self.learned += 1
         self._known.clear()
         self._causes.clear()
@@ -188,6 +240,41 @@ def _covering(action: Action) -> list[Cause]:
     return [(), *single, *([action.arguments] if len(single) > 1 else [])]
 
 
+def _worked_out(
+    action: Action,
+    own: "Mapping[Action, Tried]",
+    causes: "Mapping[Cause, float]",
+    mean: float,
+    strength: float,
+) -> SkillState:
+    dead = DEAD
+    if own:
+        dead = min(sum(causes.get(each, 0.0) for each in _covering(action)), 1.0)
+    others = [tried for other, tried in own.items() if other != action]
+    weights = _prior(mean, strength)
+    for tried in others:
+        weights *= tried.likelihood[:-1]
+    weights /= max(weights.sum(), _EDGE)
+    if action in own:
+        # Alike as skills are, with other objects it may be easier or harder.
+        known = 1 / (1 / ALIKE + 1 / (strength + sum(tried.times for tried in others)))
+        weights = _prior(float(weights @ _RATES[:-1]), known) * own[action].likelihood[:-1]
+        weights /= max(weights.sum(), _EDGE)
+    failure = float(weights @ _RATES[:-1])
+    tries = float((weights / (1 - _RATES[:-1])).sum())
+    shown = 0.0
+    if action in own:
+        likelihood = own[action].likelihood
+        works = (1 - SUSPECT) * float(_prior(mean, strength) @ likelihood[:-1])
+        shown = SUSPECT * likelihood[-1] / (SUSPECT * likelihood[-1] + works)
+    return SkillState(dead + (1 - dead) * failure, dead, tries, min(dead, shown), dead)
+
+
+def _chance(cause: Cause, action: Action) -> float:
+    """The chance of a cause beforehand."""
+    return DEAD_WITH / (len(_covering(action)) - 1) if cause else DEAD
+
+
 def _causes(own: "Mapping[Action, Tried]", mean: float, strength: float) -> dict[Cause, float]:
     """How probable each cause is, one at most of a skill, by what its tries came to."""
     logs = {action: np.log(np.maximum(tried.likelihood, 1e-300)) for action, tried in own.items()}
@@ -197,7 +284,7 @@ def _causes(own: "Mapping[Action, Tried]", mean: float, strength: float) -> dict
     for action in own:
         for cause in _covering(action):
             of.setdefault(cause, []).append(action)
-    chances = {cause: DEAD_WITH if cause else DEAD for cause in of}
+    chances = {cause: _chance(cause, actions[0]) for cause, actions in of.items()}
     none = np.log(max(1 - sum(chances.values()), 0.5)) + np.logaddexp.reduce(prior + total[:-1])
     found = {}
     for cause, actions in of.items():

@@ -33,6 +33,7 @@ class Judge:
         self._simulation, self._actions = simulation, actions
         self._trial: SteppingTrial | None = None
         self._truths: list[bool] = []
+        self._possible = False
         self.answers: Counter[str] = Counter()
         self.decisions: Counter[str] = Counter()
         self.named: int | None = None
@@ -78,12 +79,13 @@ class Judge:
                 went_on = event.decision in (Decision.GO_ON, Decision.DONE)
                 self.decisions[f"{event.when}|{truth:d}|{went_on:d}"] += 1
             case Acting():
+                self._possible = self._simulation.possible(self._actions[event.action.pddl()])
                 self.longest_repeat = max(self.longest_repeat, event.attempt)
             case Acted() if event.truth is not None:
                 came = event.truth
                 changed = bool(came.added or came.removed)
                 self.failures += not came.succeeded or came.undone is not None
-                self.dead += came.failure is Failure.DEAD
+                self.dead += came.failure is Failure.DEAD and self._possible
                 impossible = came.failure is Failure.PRECONDITION
                 self.wasted += impossible or (came.succeeded and not changed)
 

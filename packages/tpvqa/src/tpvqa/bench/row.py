@@ -17,7 +17,7 @@ class EpisodeRow(BaseModel):
         failures: Actions that failed in truth, or undid something.
         wasted: Actions that could do nothing: their effects held already, or a precondition did
             not.
-        dead: Tries of skills that never work.
+        dead: Tries of skills that never work, of those whose preconditions held in truth.
         named: Tries of a skill that never works when the monitor first said so; None where it
             never did.
         misnamed: Skills that work, of which it said the same.

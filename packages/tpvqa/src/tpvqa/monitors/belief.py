@@ -26,10 +26,11 @@ from tpvqa.monitors.inspection import REPORTED, SENSED, Inspection, Replies
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Ask, AskPerson, Look, Request
+from tpvqa.monitors.scrutiny import unknown
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.monitors.ways import Ways
 from tpvqa.observation import Observation, SensedFact
-from tpvqa.pddl import Action, Atom, Task
+from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
 from tpvqa.vlm import Answer, Reply
@@ -97,7 +98,7 @@ class BeliefMonitor(Learning, PlainArguments):
         )
         self._sight = Sight(self.belief.model)
         self._chooser = Chooser(self.belief.model, self.costs, self._sight)
-        self._ways = Ways(task, self._chooser, self.chances)
+        self._ways = Ways(task, self._chooser, self.chances, self.costs)
         self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._views, self._blind = tuple(views), noise_model
@@ -150,7 +151,9 @@ class BeliefMonitor(Learning, PlainArguments):
         if self.trust is None:
             return None
         chances = deepcopy(self.chances)
-        chances.learn(self.belief.outcome_shares(), self._now.action)
+        if not self._now.learned:
+            shares, action = self.belief.outcome_shares(), self._now.action
+            chances.learn(shares, action, self.belief.earlier_shares())
         return Experience.of(chances, self.trust, self._trials + 1)
 
     @property
@@ -192,8 +195,11 @@ class BeliefMonitor(Learning, PlainArguments):
         if step is not self._stepped:  # a check that is done again predicts nothing again
             self._stepped = step
             self._acted(step)
-        worn = step.repeats_left is not None and step.repeats_left <= 0
-        choice = yield from self._choose(step, barred=step.action if worn else None)
+        barred = step.action if step.repeats_left is not None and step.repeats_left <= 0 else None
+        choice = yield from self._choose(step, barred)
+        if self._ways.learns_now(self._now):
+            self._learn(step.action)
+            choice = yield from self._choose(step, barred)
         return self._verdict(step, choice, acted=True)
 
     def _know(self, step: Step) -> None:
@@ -233,8 +239,9 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _learn(self, action: Action | None) -> None:
         """Learn from how the last action came out, after all that was seen of it."""
-        if action is not None and self._learns:
-            self.chances.learn(self.belief.outcome_shares(), action)
+        if action is not None and self._learns and not self._now.learned:
+            self._now.learned = True
+            self.chances.learn(self.belief.outcome_shares(), action, self.belief.earlier_shares())
         self._chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
     def _begin(self, action: Action | None) -> Inspection:
@@ -262,7 +269,7 @@ class BeliefMonitor(Learning, PlainArguments):
             doubted = [each for each in new if DOUBT < self._likely(each) < 1 - DOUBT]
             if doubted:
                 return Inquiry(doubted[0], 1, 0.0)
-        return self._inquirer.best(
+        found = self._inquirer.best(
             questions,
             table,
             budget,
@@ -270,6 +277,9 @@ class BeliefMonitor(Learning, PlainArguments):
             views=self._open_views,
             person=self._person,
         )
+        if found is None and self._ways.closely(self._now):
+            found = unknown(self._now, self.belief, step.book, budget, self._open_views)
+        return found
 
     def _budget(self) -> Budget:
         costs, now = self.costs, self._now
@@ -285,7 +295,7 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _about_needs(self, book: QuestionBook) -> list[FactQuestion]:
         """Questions about what the plans need: nothing else can change a decision."""
-        atoms: frozenset[Atom] = frozenset().union(*(p.atoms() for p in self._chooser.plans))
+        atoms = self._ways.atoms
         if self._asks_all:
             atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
         return self._now.about(atoms, book)
@@ -345,7 +355,7 @@ class BeliefMonitor(Learning, PlainArguments):
         doubt: it costs next to nothing."""
         if self._now.looks or self._budget().looks <= 0:
             return False
-        felt = self._feeling.by_a_look({a for plan in self._chooser.plans for a in plan.atoms()})
+        felt = self._feeling.by_a_look(self._ways.atoms)
         return any(DOUBT < self.belief.probability(atom) < 1 - DOUBT for atom in felt)
 
     def _shows_something_new(self, question: FactQuestion) -> bool:
@@ -364,13 +374,10 @@ class BeliefMonitor(Learning, PlainArguments):
         elif acted and same(action, step.action, state):
             decision = Decision.REPEAT
         else:
-            places = [
-                number for number, each in enumerate(step.plan.actions) if same(each, action, state)
-            ]
+            places = [n for n, each in enumerate(step.plan.actions) if same(each, action, state)]
             decision = Decision.GO_ON if places else Decision.REPLAN
             place = min(places, key=lambda each: abs(each - step.index), default=None)
-        if self._words is None:
-            self._words = FactWords(step.book)
+        self._words = self._words or FactWords(step.book)
         grounds = Grounds(
             step,
             self._words,
@@ -389,11 +396,6 @@ class BeliefMonitor(Learning, PlainArguments):
             acted or place != step.index
         ):
             self._settled = action
-        plan = None
-        if decision is Decision.REPLAN and action is not None:
-            plan = self._ways.plan(state, action)
-        return Verdict(decision, why, state, step=place, belief=self._marginals(), plan=plan)
-
-    def _marginals(self) -> dict[Atom, float]:
-        atoms = {atom for plan in self._chooser.plans for atom in plan.atoms()}
-        return self.belief.probabilities(sorted(atoms))
+        plan = self._ways.plan(state, action) if action and decision is Decision.REPLAN else None
+        marginals = self.belief.probabilities(sorted(self._ways.atoms))
+        return Verdict(decision, why, state, step=place, belief=marginals, plan=plan)

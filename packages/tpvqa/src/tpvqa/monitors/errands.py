@@ -100,7 +100,7 @@ class Errands:
             task = replace(self._task, goal=Conjunction(tuple(map(Literal, sorted(needed)))))
             going = Chooser(belief.model, self._costs, sight, task)
             going.ahead.learned(chances.skill, chances.rates)
-            ways = Ways(task, going, chances, towards=needed)
+            ways = Ways(task, going, chances, self._costs, towards=needed)
             ways.take(there, state)
             words = FactWords(book)
             facts = [a for a in self._doubted(belief, book) if self._needed(a) == needed]

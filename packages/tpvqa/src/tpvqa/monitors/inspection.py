@@ -49,6 +49,7 @@ class Inspection:
         picture: What tells the latest look from others; None before the first.
         looks: Looks so far.
         questions: Questions so far.
+        learned: Whether it was learned already how the action came out.
         replies: What was answered to each question.
         noticed: What the robot's own skill and sensors told of facts.
     """
@@ -58,6 +59,7 @@ class Inspection:
     picture: Picture | None = None
     looks: int = 0
     questions: int = 0
+    learned: bool = False
     replies: dict[str, Replies] = field(default_factory=dict)
     noticed: dict[Atom, Noticed] = field(default_factory=dict)
     _about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)

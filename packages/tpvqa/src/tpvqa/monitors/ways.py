@@ -6,9 +6,11 @@ from typing import Any
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.chances import Chances
-from tpvqa.belief.choices import Chooser
-from tpvqa.belief.skills import NAMED, SUSPECT
+from tpvqa.belief.choices import LIKELY, Chooser
+from tpvqa.belief.costs import Costs
+from tpvqa.belief.skills import CLOSELY, NAMED, SUSPECT
 from tpvqa.errors import PlannerError
+from tpvqa.monitors.inspection import Inspection
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import PlanFrom, Request
 from tpvqa.pddl import Action, Atom, State, Task
@@ -23,6 +25,7 @@ class Ways:
         task: The task.
         chooser: Compares the plans.
         chances: Says which skills fail.
+        costs: What things cost.
         towards: The facts that are the task's goal, where it is another than the trial's.
     """
 
@@ -31,10 +34,12 @@ class Ways:
         task: Task,
         chooser: Chooser,
         chances: Chances,
+        costs: Costs,
         towards: frozenset[Atom] = frozenset(),
     ):
         self._towards = towards
         self._task, self._chooser, self._chances = task, chooser, chances
+        self._costs = costs
         self._plans: dict[State, Plan] = {}
         self._annotated: dict[State, AnnotatedPlan] = {}
         self._followed: Plan | None = None
@@ -50,6 +55,11 @@ class Ways:
         self._plans[step.state] = step.plan
         if self.annotated(step) is None:
             self._annotate(step.plan, step.state)
+
+    @property
+    def atoms(self) -> frozenset[Atom]:
+        """The facts that the known plans need."""
+        return frozenset[Atom]().union(*(plan.atoms() for plan in self._chooser.plans))
 
     def annotated(self, step: Step) -> AnnotatedPlan | None:
         """The plan that is followed, with what its steps need; None where it was not valid."""
@@ -79,14 +89,22 @@ class Ways:
                 self.take(result, state)
             elif isinstance(result, Unsolvable):
                 self._chooser.ahead.give_up_on(state)
+        dead = self.dead()
         if self._towards:  # an errand is not worth another way
             return
-        dead, state = self.dead(), belief.most_probable()[0]
-        if dead and (state, dead) not in self._sought and not self._task.goal_holds(state):
-            self._sought.add((state, dead))
-            result = yield PlanFrom(state, without=dead)
-            if isinstance(result, Plan):
-                self.take(result, state)
+        for state, weight in belief.states() if dead else ():
+            if weight < LIKELY:
+                break
+            if (state, dead) not in self._sought and self._through(state, dead):
+                self._sought.add((state, dead))
+                result = yield PlanFrom(state, without=dead)
+                if isinstance(result, Plan):
+                    self.take(result, state)
+
+    def _through(self, state: State, dead: frozenset[Action]) -> bool:
+        """Whether the best known way from a state leads through what is dead."""
+        way = self._chooser.way(state)
+        return way is not None and not dead.isdisjoint(way[1].actions[way[0] :])
 
     def suspects(self, action: Action) -> bool:
         """Whether an action begins to look as if it never worked; said once of each."""
@@ -94,6 +112,24 @@ class Ways:
             return False
         self._suspected.add(action)
         return True
+
+    def learns_now(self, now: Inspection) -> bool:
+        """Whether what the last action came to counts for what is decided now, as it may never
+        work; otherwise it does from the next action on."""
+        return now.action is not None and not now.learned and self._suspicious(now.action)
+
+    def closely(self, now: Inspection) -> bool:
+        """Whether how the last action came out should be known, as it may never work.
+
+        No more is asked than one more try is worth.
+        """
+        if now.action is None or now.learned:
+            return False
+        asked = (now.questions + 1) * (self._costs.question + self._costs.look)
+        return asked <= self._costs.action and self._suspicious(now.action)
+
+    def _suspicious(self, action: Action) -> bool:
+        return self._chances.skill(action).at_worst >= CLOSELY
 
     def dead(self) -> frozenset[Action]:
         """The actions that seem never to work, whatever they were tried with."""
@@ -114,7 +150,7 @@ class Ways:
 
     def failing(self, step: Step) -> str:
         """The skill of a step where it seems to be dead, in words."""
-        if self._chances.skill(step.action).dead < NAMED:
+        if self._chances.skill(step.action).shown < NAMED:
             return ""
         tried, failed = self._chances.skills.times(step.action)
         return f"{step.book.say(step.action)} failed {round(failed)} times of {round(tried)}"
