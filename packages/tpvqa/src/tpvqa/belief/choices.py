@@ -10,7 +10,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, JointState, Rates
-from tpvqa.belief.information import Floats
+from tpvqa.belief.information import Floats, opened
 from tpvqa.belief.outlook import CHECKS, Outlook
 from tpvqa.belief.sight import Sight
 from tpvqa.pddl import Action, State
@@ -53,22 +53,35 @@ class Table:
         numbers: The joint states.
         weights: Their probabilities, shape (states,).
         costs: Expected cost of each choice in each joint state, shape (states, choices).
+        work: What each choice has to do there, by what makes it worth being one, shape (limits,
+            states, choices): where any is expected to be negative, it is closed. An answer may
+            open it.
     """
 
     choices: tuple[Choice, ...]
     numbers: tuple[int, ...]
     weights: Floats
     costs: Floats
+    work: Floats
 
     @property
     def expected(self) -> Floats:
-        """The expected cost of every choice, shape (choices,)."""
-        return self.weights @ self.costs
+        """The expected cost of every choice, shape (choices,); of closed ones infinite."""
+        return opened(self.weights @ self.costs, self.weights @ self.work)
 
     @property
     def best(self) -> Choice:
         """The choice that is expected to cost least; of equal ones the first."""
-        return self.choices[int(np.argmin(np.round(self.expected, 9)))]
+        return self.choices[self._place]
+
+    @property
+    def _place(self) -> int:
+        return int(np.argmin(np.round(self.expected, 9)))
+
+    def mistaken(self, by: float) -> float:
+        """The probability that another choice than the best one costs less by so much."""
+        least = self.costs.min(axis=1)
+        return float(self.weights @ (self.costs[:, self._place] > least + by))
 
 
 class Chooser:
@@ -178,13 +191,18 @@ class Chooser:
         choices = [
             each
             for each in self._choices(ranked)
-            if self._allowed(each, current, barred)
-            and self._worth_a_try(each)
-            and not self._idle(each, ranked)
+            if self._allowed(each, current, barred) and self._worth_a_try(each)
         ]
-        possible = [each for each in choices if self._possible(each, ranked)]
-        if any(each.action is not None for each in possible) or self._goal_likely(ranked):
-            choices = possible
+        weights = np.array([weight for _, weight in ranked])
+        work = {each: self._work(each, ranked) for each in choices}
+        acts = any(
+            each.action is not None and (work[each] @ weights >= 0).all() for each in choices
+        )
+        if not acts and not self._goal_likely(
+            ranked
+        ):  # what is hardly possible is better than to end
+            for limits in work.values():
+                limits[1] = 1.0
         if self._stuck(ranked):
             choices = [each for each in choices if each.action is None]
         columns = [
@@ -198,8 +216,9 @@ class Chooser:
         return Table(
             tuple(choices),
             tuple(number for number, _ in ranked),
-            np.array([weight for _, weight in ranked]),
+            weights,
             np.array(columns).reshape(len(choices), len(ranked)).T,
+            np.stack([work[each] for each in choices], axis=2),
         )
 
     def _end(self, ranked: Sequence[tuple[int, float]]) -> Floats:
@@ -307,12 +326,13 @@ class Chooser:
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[Action | None, Choice] = {}
-        least = 0.1 * self._costs.action / self._costs.failure
+        least, left = 0.1 * self._costs.action / self._costs.failure, 1.0
         for number, weight in ranked:
+            if found and (left < least or len(found) >= CHOICES):
+                break
+            left -= weight
             if self.ahead.best(number) is None:
                 continue
-            if found and (weight < least or len(found) >= CHOICES):
-                break
             action = self.ahead.next(number)
             if action not in found:
                 found[action] = Choice(action, self._model.state(number))
@@ -343,33 +363,20 @@ class Chooser:
         same, action = self._model.same_skill, choice.action
         return action is not None and any(same(action, each, choice.state) for each in plan)
 
-    def _idle(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> bool:
-        """Whether an action would almost surely change nothing.
+    def _work(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> Floats:
+        """What a choice has to do in the joint states: what it would change, and what it can, each
+        less how probable that has to be; shape (2, states).
 
         Q-MDP, which takes everything to be known after the next action, would wait for ever.
         """
-        action = choice.action
-        if action is None:
-            return False
-        leads_to, at_work = self._model.outcomes(action), 0.0
-        for number, weight in ranked:
-            if not leads_to[number].achieved:
-                at_work += weight
-                if at_work >= 1 - IDLE:
-                    return False
-        return True
-
-    def _possible(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> bool:
-        """Whether the preconditions of an action are not believed false."""
-        if choice.action is None:
-            return True
-        leads_to, possible, at_work = self._model.outcomes(choice.action), 0.0, 0.0
-        for number, weight in ranked:
-            outcomes = leads_to[number]
-            if not outcomes.achieved:
-                at_work += weight
-                possible += weight * (outcomes.intended is not None)
-        return possible >= FLOOR * at_work
+        found = np.ones((2, len(ranked)))
+        if choice.action is not None:
+            leads_to = self._model.outcomes(choice.action)
+            for place, (number, _) in enumerate(ranked):
+                outcomes = leads_to[number]
+                undone, possible = not outcomes.achieved, outcomes.intended is not None
+                found[:, place] = undone - (1 - IDLE), undone * (possible - FLOOR)
+        return found
 
 
 def _fallen(
