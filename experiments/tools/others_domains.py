@@ -1,14 +1,18 @@
-"""Gets classical domains of others, a kind each with one middling problem. None are shipped.
+"""Gets classical domains nobody tuned for, a kind each with one middling problem. None are shipped.
 
 python experiments/tools/others_domains.py --out others
 tpvqa bench run others/* --vlm oracle:0.8 --monitors belief,tpvqa --conditions limits=none
 
-They come from the wheel of pddlgym 0.0.7 (MIT; Silver and Chitnis 2020), of which only the PDDL
+Most come from the wheel of pddlgym 0.0.7 (MIT; Silver and Chitnis 2020), of which only the PDDL
 files are read. What is changed of them: literals that stand for actions in pddlgym, named in a
 comment `(:actions …)`, are taken out of domain and problem, `(:init …)` is put before `(:goal …)`,
-and a problem is called by its kind. Of a kind's problems the one is taken whose plan is nearest to
-16 actions, among those of 4 to 45 actions, at most 100 objects and 10,000 ground actions that are
-planned in five seconds.
+and a problem is called by its kind. The others are known from planning competitions, and written
+anew (`tpvqa_experiments.abroad.classical`). Of a kind's problems the one is taken whose plan is
+nearest to 16 actions, among those of 4 to 45 actions, at most 100 objects and 10,000 ground actions
+that are planned in five seconds.
+
+A kind is left out where even who sees all does not complete every trial: a disturbance has led into
+a dead end, and no monitor can do better. --dead-ends keeps it.
 """
 
 import argparse
@@ -23,10 +27,17 @@ from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.own_task import own_tasks
+from tpvqa.bench.stage import Stage
+from tpvqa.config import TrialConfig
 from tpvqa.errors import TpvqaError
 from tpvqa.pddl import Task, load_task
 from tpvqa.planning import Plan
 from tpvqa.planning.making import make_planner
+from tpvqa_experiments.abroad import classical
+from tpvqa_experiments.abroad.parts import SEEING, SYMBOLIC, UNBOUND, VLM
+from tpvqa_experiments.abroad.seeing import seeing
 
 WHEEL = "pddlgym==0.0.7"
 SHA256 = "ff601704bef2d27008700e63252d753975a5766409e4e3ba1a9cbfb163252800"
@@ -72,6 +83,10 @@ SECONDS = 5.0
 MOST_OBJECTS = 100
 MOST_ACTIONS = 10_000
 """Ground ones; problems with more are not middling."""
+WATCHED = 40
+DISTURBED = f"{UNBOUND},disturbance=1"
+"""Trials of who sees all, to find dead ends; every failure undoes something there, so that what a
+long trial may come to shows in a short one."""
 
 
 def main() -> None:
@@ -80,17 +95,20 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder to write them to")
     parser.add_argument("--wheel", type=Path, help=f"the wheel; default: pip download {WHEEL}")
     parser.add_argument("--kinds", help="with commas; default: all")
+    parser.add_argument("--dead-ends", action="store_true", help="keep kinds with dead ends, too")
     given = parser.parse_args()
-    kinds = given.kinds.split(",") if given.kinds else list(KINDS)
-    unknown = [kind for kind in kinds if kind not in KINDS]
+    there = [*KINDS, *classical.KINDS]
+    kinds = given.kinds.split(",") if given.kinds else there
+    unknown = [kind for kind in kinds if kind not in there]
     if unknown:
-        sys.exit(f"error: no kind {unknown[0]!r}; there are {', '.join(KINDS)}")
+        sys.exit(f"error: no kind {unknown[0]!r}; there are {', '.join(there)}")
     print(f"{'kind':14} {'plan':>4} {'objects':>7} {'fluents':>7} {'actions':>7}  problem")
     found = []
     with tempfile.TemporaryDirectory() as name:
-        texts = pddl_of(given.wheel or downloaded(Path(name)))
+        fetched = any(kind in KINDS for kind in kinds)
+        texts = pddl_of(given.wheel or downloaded(Path(name))) if fetched else {}
         for kind in kinds:
-            chosen, why = choose(kind, texts, given.out)
+            chosen, why = choose(kind, texts, given.out, dead_ends=given.dead_ends)
             if chosen is None:
                 print(f"{kind:14} left out: {why}", flush=True)
                 continue
@@ -129,43 +147,73 @@ def pddl_of(wheel: Path) -> dict[PurePosixPath, str]:
 
 
 def choose(
-    kind: str, texts: dict[PurePosixPath, str], out: Path
+    kind: str, texts: dict[PurePosixPath, str], out: Path, *, dead_ends: bool = False
 ) -> tuple[dict[str, Any] | None, str]:
     """Write the middling problem of a kind; what it is like, or why there is none."""
-    source = KINDS[kind]
-    domain, literals = plain_domain(texts[PurePosixPath(f"{source}.pddl")])
-    problems = sorted(
-        path for path in texts if path.parent.name in (source, f"{source}_test") and path.suffix
-    )
-    step = max(1, len(problems) // TRIED)
+    source, domain, problems = drawn(kind) if kind in classical.KINDS else found_in(kind, texts)
     best: tuple[int, str, dict[str, Any]] | None = None
     reasons = []
     with tempfile.TemporaryDirectory() as name:
-        for path in problems[::step]:
-            problem = plain_problem(texts[path], kind, literals)
+        for path, problem in problems:
             told = measured(Path(name), domain, problem)
             if isinstance(told, str):
-                reasons.append(f"{path.name}: {told}")
+                reasons.append(f"{PurePosixPath(path).name}: {told}")
                 continue
             away = abs(told["plan"] - MIDDLE)
             if best is None or away < best[0]:
-                stated = {"kind": kind, "domain": f"{source}.pddl", "problem": str(path), **told}
-                best = away, problem, stated
+                best = away, problem, {"kind": kind, "domain": source, "problem": path, **told}
             if away <= NEAR:
                 break
-    if best is None:
-        return None, "; ".join(reasons[:3])
+        if best is None:
+            return None, "; ".join(reasons[:3])
+        written_to(Path(name), domain, best[1])
+        best[2]["seeing"] = completed = seen(Path(name))
+    if completed < 1 and not dead_ends:
+        return None, f"who sees all completes {completed:.0%} of {WATCHED} trials: dead ends"
     folder = out / kind
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "domain.pddl").write_text(domain, encoding="utf-8")
-    (folder / "problem.pddl").write_text(best[1], encoding="utf-8")
+    written_to(folder, domain, best[1])
     return best[2], ""
+
+
+def found_in(
+    kind: str, texts: dict[PurePosixPath, str]
+) -> tuple[str, str, Iterator[tuple[str, str]]]:
+    """The file of a domain of the wheel, its text, and its problems by their files."""
+    source = KINDS[kind]
+    domain, literals = plain_domain(texts[PurePosixPath(f"{source}.pddl")])
+    paths = sorted(
+        path for path in texts if path.parent.name in (source, f"{source}_test") and path.suffix
+    )
+    step = max(1, len(paths) // TRIED)
+    problems = ((str(path), plain_problem(texts[path], kind, literals)) for path in paths[::step])
+    return f"{source}.pddl", domain, problems
+
+
+def drawn(kind: str) -> tuple[str, str, Iterator[tuple[str, str]]]:
+    """The same of a kind that is written here: its problems by their seeds."""
+    own = classical.KINDS[kind]
+    problems = ((f"seed {seed}", own.drawn(kind, seed)) for seed in range(TRIED))
+    return "written anew", own.domain(kind), problems
+
+
+def seen(folder: Path) -> float:
+    """The share of trials that who sees all completes."""
+    [(name, task)] = own_tasks([folder / "problem.pddl"]).items()
+    here, cell = Stage(name, task), Cell(name, SEEING, VLM, SYMBOLIC, DISTURBED)
+    rows = [seeing(here, cell, TrialConfig(), number) for number in range(WATCHED)]
+    return sum(row.completed for row in rows) / len(rows)
+
+
+def written_to(folder: Path, domain: str, problem: str) -> None:
+    """Write the two files of a task."""
+    (folder / "domain.pddl").write_text(domain, encoding="utf-8")
+    (folder / "problem.pddl").write_text(problem, encoding="utf-8")
 
 
 def measured(folder: Path, domain: str, problem: str) -> dict[str, int] | str:
     """A problem in figures; why it is not taken, where it is not."""
-    (folder / "domain.pddl").write_text(domain, encoding="utf-8")
-    (folder / "problem.pddl").write_text(problem, encoding="utf-8")
+    written_to(folder, domain, problem)
     try:
         task: Task = load_task(folder / "domain.pddl", folder / "problem.pddl", timeout=SECONDS)
     except TpvqaError as error:

@@ -8,7 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.information import Floats, Reliability, answers_to_be_sure, gains, joint_gains
+from tpvqa.belief.information import (
+    Floats,
+    Reliability,
+    answers_to_be_sure,
+    answers_to_know,
+    gains,
+    joint_gains,
+    known_gain,
+)
 
 
 def gain(if_true: Floats, if_false: Floats, reliability: Reliability, times: int) -> float:
@@ -17,6 +25,8 @@ def gain(if_true: Floats, if_false: Floats, reliability: Reliability, times: int
     both = gains(
         np.stack([if_false, if_true]),
         np.stack([if_true, if_false]),
+        np.ones((1, 2, len(if_true))),
+        np.ones((1, 2, len(if_true))),
         [others, reliability],
         (2, times, 1),
     )
@@ -24,7 +34,8 @@ def gain(if_true: Floats, if_false: Floats, reliability: Reliability, times: int
 
 
 def joint_gain(weighted: Floats, truths: Floats, each: list[Reliability], times: int) -> float:
-    return float(joint_gains(weighted, truths, each, (3, times))[1])
+    open_all = np.ones((1, *weighted.shape))
+    return float(joint_gains(weighted, open_all, truths, each, (3, times))[1])
 
 
 costs = st.lists(st.floats(0, 50), min_size=2, max_size=4)
@@ -100,6 +111,39 @@ def test_two_answers_can_change_what_neither_changes_alone() -> None:
     alone = [gain(t @ weights, (1 - t) @ weights, sure, 1) for t in truths]
     assert alone == [0.0, 0.0]
     assert joint_gain(weights, truths, [sure, sure], 1) > 0.1
+
+
+def test_an_answer_is_worth_something_where_it_opens_what_is_closed_now() -> None:
+    """Seven facts of a goal, each .98: to do the first again changes too little to be a choice."""
+    probable, right = np.array([0.86, 0.02, 0.12]), 0.8
+    weighted = probable[:, None] * np.array([[0.0, 1.0], [50.0, 1.0], [50.0, 51.0]])
+    work = (probable * (np.array([0.0, 1.0, 0.0]) - 0.03))[None, :, None] * np.array([0.0, 1.0])
+    truths = np.array([[1.0, 0.0, 1.0]])
+    answer = [Reliability(right, 1 - right)]
+    assert joint_gains(weighted, work, truths, answer, (1,)) > 0.1
+    never = work - np.array([0.0, 1.0])
+    assert joint_gains(weighted, never, truths, answer, (1,)) == 0
+    if_true, if_false = truths @ weighted, (1 - truths) @ weighted
+    opens = gains(if_true, if_false, truths @ work, (1 - truths) @ work, answer, (1,))
+    assert opens[0, 0] == pytest.approx(joint_gains(weighted, work, truths, answer, (1,))[0])
+
+
+@given(st.lists(st.lists(st.floats(0, 20), min_size=3, max_size=3), min_size=4, max_size=4))
+def test_to_know_facts_is_worth_what_perfect_answers_are(table: list[list[float]]) -> None:
+    weights = np.array([0.4, 0.3, 0.2, 0.1])[:, None] * np.array(table)
+    truths = np.array([[1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    sure = Reliability(1.0, 0.0)
+    known = known_gain(weights, np.ones((2, 4, 3)), truths)
+    assert isclose(known, joint_gain(weights, truths, [sure, sure], 1), abs_tol=1e-9)
+
+
+def test_answers_to_know() -> None:
+    """From 9 to 1 to 999 to 1 is thrice as far as from 9 to 1 to some 44 to 1."""
+    each = Reliability(0.8, 0.2)
+    far = answers_to_know(0.1, 1e-3, each)
+    assert far == pytest.approx(3 * answers_to_know(0.9, 0.0228, each), rel=0.03)
+    assert answers_to_know(0.9, 1e-3, Reliability(0.8, 0.2, abstains=0.5)) == pytest.approx(2 * far)
+    assert answers_to_know(0.99, 0.05, each) == 1
 
 
 def test_answers_to_be_sure() -> None:

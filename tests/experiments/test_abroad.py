@@ -53,7 +53,8 @@ def test_domains_of_others_lose_what_only_their_library_needs(
     monkeypatch.setattr(tool, "SHA256", sha256(wheel.read_bytes()).hexdigest())
     monkeypatch.setattr(tool, "KINDS", {"lifting": "lift"})
     out = tmp_path / "others"
-    monkeypatch.setattr("sys.argv", ["tool", "--wheel", str(wheel), "--out", str(out)])
+    named = ["--wheel", str(wheel), "--out", str(out), "--kinds", "lifting"]
+    monkeypatch.setattr("sys.argv", ["tool", *named])
     tool.main()
     task = load_task(out / "lifting/domain.pddl", out / "lifting/problem.pddl")
     assert "raise" not in task.predicates

@@ -1,7 +1,6 @@
 """What can be done next, and what each is expected to cost."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
 from tpvqa.belief.sight import Sight
+from tpvqa.belief.table import Choice, Table
 from tpvqa.pddl import Action, State, Task
 
 LIKELY = 0.02
@@ -29,51 +29,6 @@ ROUNDS = 3.0
 """How often it is no surprise to come back to the same action, were every step of it progress."""
 DISTURBED = 0.02
 """In joint states of at least this probability it is worked out what disturbances would cost."""
-
-
-@dataclass(frozen=True, slots=True)
-class Choice:
-    """Something that can be done now.
-
-    Attributes:
-        action: The action to execute; None to end the trial here.
-        state: The most probable joint state in which this is the step to take.
-    """
-
-    action: Action | None
-    state: State
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """The choices with their costs.
-
-    Attributes:
-        choices: What can be done.
-        numbers: The joint states.
-        weights: Their probabilities, shape (states,).
-        costs: Expected cost of each choice in each joint state, shape (states, choices).
-        barred: Choices that are none before more is known, by their places: they only tell what
-            it may be worth to know more.
-    """
-
-    choices: tuple[Choice, ...]
-    numbers: tuple[int, ...]
-    weights: Floats
-    costs: Floats
-    barred: frozenset[int] = frozenset()
-
-    @property
-    def expected(self) -> Floats:
-        """The expected cost of every choice, shape (choices,)."""
-        return self.weights @ self.costs
-
-    @property
-    def best(self) -> Choice:
-        """The choice that is expected to cost least; of equal ones the first."""
-        expected = np.round(self.expected, 9)
-        expected[list(self.barred)] = np.inf
-        return self.choices[int(np.argmin(expected))]
 
 
 class Chooser:
@@ -190,15 +145,18 @@ class Chooser:
         choices = [
             each
             for each in self._choices(ranked)
-            if self._allowed(each, current, barred)
-            and self._worth_a_try(each)
-            and not self._idle(each, ranked)
+            if self._allowed(each, current, barred) and self._worth_a_try(each)
         ]
+        weights = np.array([weight for _, weight in ranked])
+        work = {each: self._work(each, ranked) for each in choices}
+        acts = any(
+            each.action is not None and (work[each] @ weights >= 0).all() for each in choices
+        )
+        if not acts and not self._goal_likely(ranked):  # to try is better than to end
+            for limits in work.values():
+                limits[1] = 1.0
         if self._stuck(ranked):
             choices = [each for each in choices if each.action is None]
-        impossible = {n for n, each in enumerate(choices) if not self._possible(each, ranked)}
-        if len(impossible) == len(choices) - 1 and not self._goal_likely(ranked):
-            impossible.clear()
         columns = [
             self._end(ranked)
             if each.action is None
@@ -210,9 +168,9 @@ class Chooser:
         return Table(
             tuple(choices),
             tuple(number for number, _ in ranked),
-            np.array([weight for _, weight in ranked]),
+            weights,
             np.array(columns).reshape(len(choices), len(ranked)).T,
-            frozenset(impossible),
+            np.stack([work[each] for each in choices], axis=2),
         )
 
     def _end(self, ranked: Sequence[tuple[int, float]]) -> Floats:
@@ -326,12 +284,13 @@ class Chooser:
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[Action | None, Choice] = {}
-        least = 0.1 * self._costs.action / self._costs.failure
+        least, left = 0.1 * self._costs.action / self._costs.failure, 1.0
         for number, weight in ranked:
+            if found and (left < least or len(found) >= CHOICES):
+                break
+            left -= weight
             if self.ahead.best(number) is None:
                 continue
-            if found and (weight < least or len(found) >= CHOICES):
-                break
             action = self.ahead.next(number)
             if action not in found:
                 found[action] = Choice(action, self._model.state(number))
@@ -362,36 +321,20 @@ class Chooser:
         same, action = self._model.same_skill, choice.action
         return action is not None and any(same(action, each, choice.state) for each in plan)
 
-    def _idle(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> bool:
-        """Whether an action would almost surely change nothing.
+    def _work(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> Floats:
+        """What a choice has to do in the joint states: what it would change, and what it can, each
+        less how probable that has to be; shape (2, states).
 
         Q-MDP, which takes everything to be known after the next action, would wait for ever.
         """
-        action = choice.action
-        if action is None:
-            return False
-        leads_to, first, at_work = self._model.outcomes(action), self._model.first, 0.0
-        for number, weight in ranked:
-            if not leads_to[first(number)].achieved:
-                at_work += weight
-                if at_work >= 1 - IDLE:
-                    return False
-        return True
-
-    def _possible(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> bool:
-        """Whether the preconditions of an action are not believed false."""
-        if choice.action is None:
-            return True
-        leads_to, first = self._model.outcomes(choice.action), self._model.first
-        possible = at_work = 0.0
-        for number, weight in ranked:
-            outcomes = leads_to[first(number)]
-            if not outcomes.achieved:
-                at_work += weight
-                possible += weight * (outcomes.intended is not None)
-                if possible > 2 * FLOOR:  # whatever comes
-                    return True
-        return possible >= FLOOR * at_work
+        found = np.ones((2, len(ranked)))
+        if choice.action is not None:
+            leads_to, first = self._model.outcomes(choice.action), self._model.first
+            for place, (number, _) in enumerate(ranked):
+                outcomes = leads_to[first(number)]
+                undone, possible = not outcomes.achieved, outcomes.intended is not None
+                found[:, place] = undone - (1 - IDLE), undone * (possible - FLOOR)
+        return found
 
 
 def _fallen(

@@ -221,7 +221,7 @@ class Evidence:
         right = (rates.yes_if_true + 1 - rates.yes_if_false) / 2
         if self._trust is not None:
             right = 0.5 + _share(self._trust, rates.yes_if_true, rates.yes_if_false) * (right - 0.5)
-        return answers_to_be_sure(right, self._calibration.repeat_same_view)
+        return answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
 
     def expect(self, question: FactQuestion, view: str | None) -> Reliability:
         """What the next answer to a question, at a new look from a view, is worth."""

@@ -17,6 +17,9 @@ Floats = NDArray[np.float64]
 TIMES = (1, 3, 8, 20, 60)
 """How often a question is thought to be asked in a row."""
 
+CLOSED = 1e-12
+"""A sum that is less negative than this is nought."""
+
 
 @dataclass(frozen=True, slots=True)
 class Reliability:
@@ -43,9 +46,26 @@ def answers_to_be_sure(right: float, repeat: float = 0.0) -> float:
         right: Probability that an answer is right.
         repeat: Probability that a further look repeats the last answer.
     """
+    return max(1.0, (log(50) - log(3)) / _drift(right) / max(1 - repeat, 0.05))
+
+
+def answers_to_know(likely: float, doubt: float, each: Reliability) -> float:
+    """How many answers it takes until a fact is in doubt no more, by Wald's (1945) test.
+
+    Args:
+        likely: Probability of the fact.
+        doubt: So improbable the contrary has to become.
+        each: What is expected of one answer.
+    """
+    surer = max(likely, 1 - likely)
+    way = log(1 / doubt - 1) - log(surer / (1 - surer))
+    right = (1 + each.yes_if_true - each.yes_if_false) / 2
+    return max(1.0, way / _drift(right) / (1 - each.abstains))
+
+
+def _drift(right: float) -> float:
     right = min(max(right, 0.51), 0.99)
-    drift = (2 * right - 1) * log(right / (1 - right))
-    return max(1.0, (log(50) - log(3)) / drift / max(1 - repeat, 0.05))
+    return (2 * right - 1) * log(right / (1 - right))
 
 
 @lru_cache(maxsize=4096)
@@ -71,9 +91,17 @@ def _begins(times: tuple[int, ...]) -> NDArray[np.intp]:
     return np.cumsum([0, *(each + 1 for each in times[:-1])])
 
 
+def opened(costs: Floats, work: Floats) -> Floats:
+    """The costs of decisions, infinite where one is closed: something it has to do, along the first
+    axis, is negative."""
+    return costs if work.min() >= 0 else np.where(work.min(axis=0) < -CLOSED, np.inf, costs)
+
+
 def gains(
     if_true: Floats,
     if_false: Floats,
+    work_if_true: Floats,
+    work_if_false: Floats,
     reliabilities: Sequence[Reliability],
     times: tuple[int, ...],
 ) -> Floats:
@@ -83,17 +111,24 @@ def gains(
         if_true: Of every decision its expected cost where yes is right, times the probability
             of that; shape (questions, decisions).
         if_false: The same where no is right.
+        work_if_true: What every decision then has to do, see `opened`, shape (limits, questions,
+            decisions).
+        work_if_false: The same where no is right.
         reliabilities: Of each answer to each question; answers are independent.
         times: How many answers; several numbers are compared.
 
     Returns:
         The expected saving, shape (questions, times), never negative.
     """
-    now = (if_true + if_false).min(axis=1)
+    now = opened(if_true + if_false, work_if_true + work_if_false).min(axis=1)
     true = np.array([_all_counts(round(each.yes_if_true, 3), times) for each in reliabilities])
     false = np.array([_all_counts(round(each.yes_if_false, 3), times) for each in reliabilities])
     answers = np.array([1 - each.abstains for each in reliabilities])
-    costs = true[:, :, None] * if_true[:, None] + false[:, :, None] * if_false[:, None]
+    true, false = true[:, :, None], false[:, :, None]
+    costs = opened(
+        true * if_true[:, None] + false * if_false[:, None],
+        true * work_if_true[:, :, None] + false * work_if_false[:, :, None],
+    )
     then = np.add.reduceat(costs.min(axis=2), _begins(times), axis=1)
     saved: Floats = np.maximum(0.0, answers[:, None] * (now[:, None] - then))
     return saved
@@ -101,6 +136,7 @@ def gains(
 
 def joint_gains(
     weighted: Floats,
+    work: Floats,
     truths: Floats,
     reliabilities: Sequence[Reliability],
     times: tuple[int, ...],
@@ -113,6 +149,7 @@ def joint_gains(
     Args:
         weighted: Probability of every joint state times the cost of every choice in it, shape
             (states, choices).
+        work: The same of what every choice has to do in it, see `opened`.
         truths: Where yes is right, ones and zeros, shape (questions, states).
         reliabilities: Of one answer to each question.
         times: How many answers to each; several numbers are compared.
@@ -127,9 +164,22 @@ def joint_gains(
         if_false = _majorities(round(each.yes_if_false, 3), times)
         yes = 0.5 + right * (if_true * truth + if_false * (1 - truth) - 0.5)
         chances = np.concatenate([chances * yes, chances * (1 - yes)], axis=1)
-    now = weighted.sum(axis=0).min()
-    saved: Floats = np.maximum(0.0, now - (chances @ weighted).min(axis=2).sum(axis=1))
+    now = opened(weighted.sum(axis=0), work.sum(axis=1)).min()
+    then = opened(chances @ weighted, chances @ work[:, None]).min(axis=2).sum(axis=1)
+    saved: Floats = np.maximum(0.0, now - then)
     return saved
+
+
+def known_gain(weighted: Floats, work: Floats, truths: Floats) -> float:
+    """How much less the best decision costs once all of some facts are known; arguments as those
+    of `joint_gains`."""
+    _, alike = np.unique(np.packbits(truths > 0, axis=0).T, axis=0, return_inverse=True)
+    order = np.argsort(alike, kind="stable")
+    starts = np.flatnonzero(np.diff(alike[order], prepend=-1))
+    costs = np.add.reduceat(weighted[order], starts, axis=0)
+    then = opened(costs, np.add.reduceat(work[:, order], starts, axis=1))
+    now = opened(weighted.sum(axis=0), work.sum(axis=1)).min()
+    return max(0.0, float(now - then.min(axis=1).sum()))
 
 
 @lru_cache(maxsize=4096)

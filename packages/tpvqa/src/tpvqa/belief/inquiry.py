@@ -4,11 +4,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from tpvqa.belief.choices import Table
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import PERSON, PERSONS_VIEW, Evidence, Picture
 from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.information import TIMES, Floats, Reliability, gains, joint_gains
+from tpvqa.belief.information import (
+    TIMES,
+    Floats,
+    Reliability,
+    answers_to_know,
+    gains,
+    joint_gains,
+    known_gain,
+    opened,
+)
+from tpvqa.belief.table import Table
 from tpvqa.questions.question import FactQuestion
 
 DOUBT = 1e-3
@@ -83,16 +92,19 @@ class Inquirer:
         if budget.questions <= 0:
             return None
         weighted = table.weights[:, None] * table.costs
-        total = weighted.sum(axis=0)
-        now = float(total.min())
+        work = table.weights[:, None] * table.work
+        now = float(table.expected.min())
         # Q-MDP takes a mistake to be noticed at once; it is noticed so many answers later.
         late = self._evidence.answers_to_be_sure()
         asking, looking = self._costs.question / late, self._costs.look / late
         truths = self._model.truths([each.atoms for each in questions], table.numbers)
         likely = (truths @ table.weights).tolist()
-        if_true = truths @ weighted
-        if_false = total - if_true
-        most = (now - if_true.min(axis=1) - if_false.min(axis=1)).tolist()
+        if_true, work_if_true = truths @ weighted, truths @ work
+        if_false = weighted.sum(axis=0) - if_true
+        work_if_false = work.sum(axis=1)[:, None] - work_if_true
+        known = opened(if_true, work_if_true).min(axis=1)
+        known += opened(if_false, work_if_false).min(axis=1)
+        most = (now - known).tolist()
         found: Inquiry | None = None
         doubted: list[_Doubted] = []
         worth: list[_Doubted] = []
@@ -102,7 +114,14 @@ class Inquirer:
             unable = self._evidence.silent(question.text, PERSONS_VIEW)
             if person and self._costs.person is not None and not unable:
                 one = slice(place, place + 1)
-                told = gains(if_true[one], if_false[one], _PERSONS, (1,))
+                told = gains(
+                    if_true[one],
+                    if_false[one],
+                    work_if_true[:, one],
+                    work_if_false[:, one],
+                    _PERSONS,
+                    (1,),
+                )
                 saving = float(told[0, 0]) - self._costs.person
                 found = _better(found, Inquiry(question, 1, saving, person=True))
             open_views = views(question)
@@ -113,6 +132,7 @@ class Inquirer:
                 place,
                 question,
                 self._evidence.expect(question, open_views[0]),
+                likely[place],
             )
             doubted.append(doubt)
             if most[place] > asking:  # else even the truth would not be worth a question
@@ -120,7 +140,14 @@ class Inquirer:
         if worth:
             places = [each.place for each in worth]
             reliabilities = [each.reliability for each in worth]
-            saved = gains(if_true[places], if_false[places], reliabilities, TIMES).tolist()
+            saved = gains(
+                if_true[places],
+                if_false[places],
+                work_if_true[:, places],
+                work_if_false[:, places],
+                reliabilities,
+                TIMES,
+            ).tolist()
             most_saved, asked = 0.0 if found is None else found.saving, None
             for each, own in zip(worth, saved, strict=True):
                 text = each.question.text
@@ -138,14 +165,54 @@ class Inquirer:
             doubted.sort(key=lambda each: each.urgent)
             first = doubted[:TOGETHER]
             own_truths = truths[[each.place for each in first]]
-            found = self._together(first, own_truths, weighted, budget, asking, looking, found)
+            found = self._together(
+                first, own_truths, weighted, work, budget, asking, looking, found
+            )
+        ending, action = table.best.action is None, self._costs.action
+        if len(doubted) > 1 and (ending or table.mistaken(action / 2) > 0.5):
+            own_truths = truths[[each.place for each in doubted]]
+            found = self._all(
+                doubted,
+                own_truths,
+                weighted,
+                work,
+                budget,
+                asking + looking if not ending else self._costs.question + self._costs.look,
+                self._costs.failure if ending else action,
+                found,
+            )
         return found
+
+    def _all(
+        self,
+        doubted: "Sequence[_Doubted]",
+        truths: Floats,
+        weighted: Floats,
+        work: Floats,
+        budget: Budget,
+        price: float,
+        stake: float,
+        found: Inquiry | None,
+    ) -> Inquiry | None:
+        """The first question, where it is worth asking about all that is in doubt until it is
+        known.
+
+        Where a goal has many facts, each is likely and all together are not: none alone is worth a
+        question then, nor are a few.
+        """
+        doubt = min(self._costs.question / stake, 0.5)
+        answers = sum(answers_to_know(each.likely, doubt, each.reliability) for each in doubted)
+        if answers > budget.questions:
+            return found
+        saving = known_gain(weighted, work, truths) - answers * price
+        return _better(found, Inquiry(doubted[0].question, 1, saving))
 
     def _together(
         self,
         doubted: "Sequence[_Doubted]",
         truths: Floats,
         weighted: Floats,
+        work: Floats,
         budget: Budget,
         asking: float,
         looking: float,
@@ -153,7 +220,7 @@ class Inquirer:
     ) -> Inquiry | None:
         """The first of several questions, where their answers together are worth more."""
         reliabilities = [each.reliability for each in doubted]
-        saved = joint_gains(weighted, truths, reliabilities, TIMES).tolist()
+        saved = joint_gains(weighted, work, truths, reliabilities, TIMES).tolist()
         for times, gain in zip(TIMES, saved, strict=True):
             if times * len(doubted) > budget.questions or times > budget.looks:
                 break
@@ -173,6 +240,7 @@ class _Doubted(NamedTuple):
     place: int
     question: FactQuestion
     reliability: Reliability
+    likely: float
 
 
 _PERSONS = (Reliability(PERSON, 1 - PERSON),)

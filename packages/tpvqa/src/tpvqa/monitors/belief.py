@@ -7,7 +7,7 @@ from typing import Any
 from tpvqa.belief.ablations import belief_without
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
-from tpvqa.belief.choices import Choice, Chooser, Table
+from tpvqa.belief.choices import Chooser
 from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.evidence import Evidence, Picture
 from tpvqa.belief.experience import Experience
@@ -16,6 +16,7 @@ from tpvqa.belief.first import Prior
 from tpvqa.belief.inquiry import DOUBT, Budget, Inquirer, Inquiry
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.sight import Sight
+from tpvqa.belief.table import Choice, Table
 from tpvqa.belief.trust import Trust
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.belief_settings import BeliefSettings
