@@ -179,6 +179,7 @@ class Inquirer:
                 budget,
                 asking + looking if not ending else self._costs.question + self._costs.look,
                 self._costs.failure if ending else action,
+                self._costs.person if person else None,
                 found,
             )
         return found
@@ -192,6 +193,7 @@ class Inquirer:
         budget: Budget,
         price: float,
         stake: float,
+        person: float | None,
         found: Inquiry | None,
     ) -> Inquiry | None:
         """The first question, where it is worth asking about all that is in doubt until it is
@@ -202,10 +204,13 @@ class Inquirer:
         """
         doubt = min(self._costs.question / stake, 0.5)
         answers = sum(answers_to_know(each.likely, doubt, each.reliability) for each in doubted)
-        if answers > budget.questions:
+        saving, first = known_gain(weighted, work, truths), doubted[0].question
+        if person is not None and not self._evidence.silent(first.text, PERSONS_VIEW):
+            told = Inquiry(first, 1, saving - len(doubted) * person, person=True)
+            found = _better(found, told)
+        if answers > min(budget.questions, len(doubted) * budget.looks):
             return found
-        saving = known_gain(weighted, work, truths) - answers * price
-        return _better(found, Inquiry(doubted[0].question, 1, saving))
+        return _better(found, Inquiry(first, 1, saving - answers * price))
 
     def _together(
         self,
