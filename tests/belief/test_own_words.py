@@ -235,3 +235,8 @@ def test_a_calibration_keeps_it_and_is_the_same_one_without(tmp_path: Path) -> N
     assert known.fingerprint != before.fingerprint
     known.save(tmp_path / "c.json")
     assert Calibration.load(tmp_path / "c.json") == known
+
+
+def test_what_was_never_seen_in_many_actions_is_still_possible() -> None:
+    whole, own = fit_skills(reports(1000, 1, 30_000, 0))
+    assert 0 < own.false_alarms <= whole.false_alarms < own.notices

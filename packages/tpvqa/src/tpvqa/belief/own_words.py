@@ -20,6 +20,8 @@ _NOTICES, _FALSE_ALARMS = 0.09, 0.01
 """The default as rates: a reported failure counts as above, and no report as next to nothing."""
 
 Share = Annotated[float, Field(gt=0, lt=1)]
+LEAST = 1e-6
+"""No report or reading is rarer than this."""
 
 
 class _Worth(BaseModel):
@@ -143,8 +145,8 @@ def _sensor(predicate: str, rows: Sequence[LabelledReading]) -> SensorWorth:
     return SensorWorth(
         predicate=predicate,
         rows=len(rows),
-        says_if_true=round(if_true, 6),
-        says_if_false=round(if_false, 6),
+        says_if_true=_inside(if_true),
+        says_if_false=_inside(if_false),
         surely=round(sum(abs(_log_odds(row.probability)) for row in rows) / len(rows), 6),
     )
 
@@ -171,13 +173,18 @@ def _skill(
 ) -> SkillWorth:
     def share(wider: float, *, failed: bool) -> float:
         reported = [row.reported for row in rows if row.failed == failed]
-        return round((sum(reported) + REPORTS * wider) / (len(reported) + REPORTS), 6)
+        return _inside((sum(reported) + REPORTS * wider) / (len(reported) + REPORTS))
 
     found = share(notices, failed=True), share(false_alarms, failed=False)
     alarms, noticed = min(found), max(found)  # a report never speaks for the opposite
     if found[0] < found[1]:
         alarms = noticed = sum(found) / 2
     return SkillWorth(action=action, rows=len(rows), notices=noticed, false_alarms=alarms)
+
+
+def _inside(share: float) -> float:
+    """A share in six digits; however many were counted, none is impossible."""
+    return round(min(max(share, LEAST), 1 - LEAST), 6)
 
 
 def of_action(skills: Sequence[SkillWorth], action: str) -> SkillWorth | None:
