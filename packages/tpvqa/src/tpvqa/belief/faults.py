@@ -23,6 +23,13 @@ class Rebinding(Protocol):
         """The action that the skill truly is."""
 
 
+class Showing(Protocol):
+    """Says from where a form of fact is shown."""
+
+    def needed(self, atom: Atom, task: Task) -> frozenset[Atom] | None:
+        """What has to hold so that a fact is shown; None where it has not this form."""
+
+
 class FaultRules(Protocol):
     """How a domain misbehaves, as its world file says."""
 
@@ -33,6 +40,10 @@ class FaultRules(Protocol):
     @property
     def rebind(self) -> Sequence[Rebinding]:
         """Arguments that skills do not take."""
+
+    @property
+    def shown(self) -> Sequence[Showing]:
+        """What a camera shows only from certain places."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,37 +9,35 @@ from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Chooser
 from tpvqa.belief.doubts import Doubts
-from tpvqa.belief.evidence import Evidence, Picture
+from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
 from tpvqa.belief.first import Prior
-from tpvqa.belief.inquiry import DOUBT, Budget, Inquirer, Inquiry
+from tpvqa.belief.inquiry import DOUBT, Inquirer, Inquiry
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice, Table
 from tpvqa.belief.trust import Trust
 from tpvqa.events.decision import Decision
+from tpvqa.monitors.asking import Asking
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.monitors.capabilities import Learning
+from tpvqa.monitors.errands import Errand, Errands
 from tpvqa.monitors.feeling import Feeling
 from tpvqa.monitors.first_look import first_look, first_verdict
-from tpvqa.monitors.inspection import REPORTED, SENSED, Inspection, Replies
+from tpvqa.monitors.inspection import REPORTED, Inspection
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
-from tpvqa.monitors.requests import Ask, AskPerson, Look, Request
+from tpvqa.monitors.requests import Request
 from tpvqa.monitors.scrutiny import unknown
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.monitors.ways import Ways
-from tpvqa.observation import Observation, SensedFact
 from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
-from tpvqa.vlm import Answer, Reply
 
 MOST_FACTS = 250_000
 """In all joint states that were met; those that are not possible any more are forgotten then."""
-SAME = 3
-"""Looks in a row that may show a picture which the question was asked of already."""
 
 
 class BeliefMonitor(Learning, PlainArguments):
@@ -98,19 +96,27 @@ class BeliefMonitor(Learning, PlainArguments):
             self.belief, calibration, self.trust, skill=settings.skill, doubts=doubts
         )
         self._sight = Sight(self.belief.model)
-        self._chooser = Chooser(self.belief.model, self.costs, self._sight)
-        self._ways = Ways(task, self._chooser, self.chances, self.costs)
+        chooser = Chooser(self.belief.model, self.costs, self._sight)
+        self._task_ways = Ways(task, chooser, self.chances, self.costs)
+        self._errands = Errands(task, () if rules is None else rules.shown, self.costs)
+        self._errand: Errand | None = None
+        self._past: Errand | None = None
         self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
-        self._views, self._blind = tuple(views), noise_model
         self._feeling = Feeling(self._sight, senses, self.evidence.noticed(task))
-        self._looks = self._questions = 0
+        self._asking = Asking(
+            self.belief,
+            self.evidence,
+            self.costs,
+            self._feeling,
+            views,
+            blind=noise_model,
+            felt=lambda: self._learn(None),
+        )
         self._words: FactWords | None = None
-        self._person = self.costs.person is not None
         self._settled: Action | None = None
         self._undo = () if rules is None else rules.undo
         self._stepped: Step | None = None
-        self._now = self._begin(None)
 
     @classmethod
     def from_spec(
@@ -162,21 +168,39 @@ class BeliefMonitor(Learning, PlainArguments):
         """Whether the problem or the priors leave open how the world is at first."""
         return bool(self.task.left_open) or self._priors.opens
 
+    @property
+    def _ways(self) -> Ways:
+        """The ways to what is aimed at: to the goal, or to where something of it is seen."""
+        return self._task_ways if self._errand is None else self._errand.ways
+
+    @property
+    def _chooser(self) -> Chooser:
+        return self._ways.chooser
+
+    @property
+    def _choosers(self) -> list[Chooser]:
+        every = [self._task_ways, *([] if self._errand is None else [self._errand.ways])]
+        return [ways.chooser for ways in every]
+
+    @property
+    def _now(self) -> Inspection:
+        return self._asking.now
+
     def first(self, book: QuestionBook) -> Check:
         """Look, where there are too many initial states to weigh; and plan from a likely one."""
         prior = Prior(self.task, self._priors, self._undo)
-        now = self._now = self._begin(None)
+        now = self._asking.begin()
         self.evidence.weigh(prior)
         yield from first_look(
             prior,
             self.evidence,
             book,
             now,
-            views=self._open_views,
-            budget=self._budget,
-            picture=self._telling,
+            views=self._asking.open_views,
+            budget=self._asking.budget,
+            picture=self._asking.telling,
         )
-        self._looks, self._questions = now.looks, now.questions
+        self._asking.looks, self._asking.questions = now.looks, now.questions
         self.evidence.weigh(self.belief)
         self.belief.begin(prior.states())
         return (yield from first_verdict(self.belief, prior, FactWords(book), now))
@@ -207,67 +231,72 @@ class BeliefMonitor(Learning, PlainArguments):
         """Annotate the plan that is being followed, and know what the trial still allows."""
         if self._feeling.asked_by(step.book):
             self._learn(None)
-        self._chooser.ahead.allow(step.actions_left)
-        self._chooser.changes_left = step.replans_left
-        self._ways.follow(step)
+        for chooser in self._choosers:
+            chooser.ahead.allow(step.actions_left)
+            chooser.changes_left = step.replans_left
+        if self._errand is None and not (self._past and self._past.ways.knows(step.plan)):
+            self._ways.follow(step)
 
     def _acted(self, step: Step) -> None:
         self._learn(self._now.action)
         if self.belief.model.facts > MOST_FACTS:
             numbers = self.belief.renew()
-            self._chooser.renumbered(self.belief.model, numbers)
+            for chooser in self._choosers:
+                chooser.renumbered(self.belief.model, numbers)
             self._inquirer.renumbered(self.belief.model)
         if self._ways.suspects(step.action):
             self.evidence.doubt(step.action, self._sight)
         self.evidence.rests_on(step.action)
-        self._chooser.acted(self.belief, step.action)
+        for chooser in self._choosers:
+            chooser.acted(self.belief, step.action)
         self.belief.act(step.action, self.chances.rates_of(step.action))
-        self._now = self._begin(step.action)
+        self._asking.begin(step.action)
         before = {atom: self.belief.probability(atom) for atom in self._now.effects}
         self.evidence.acted(step.action.name, failed=step.reported)
         for atom, was in before.items():
             self._now.notice(atom, was, self.belief.probability(atom), REPORTED)
-        self._sense(step.sensed)
-
-    def _sense(self, facts: Sequence[SensedFact]) -> None:
-        """Take in what the robot itself has measured."""
-        if self._feeling.take(facts, self._now.effects):
-            self._learn(None)
-        for fact in facts:
-            was = self.belief.probability(fact.atom)
-            self.evidence.take_sensed(fact.atom, fact.probability)
-            self._now.notice(fact.atom, was, self.belief.probability(fact.atom), SENSED)
+        self._asking.sense(step.sensed)
 
     def _learn(self, action: Action | None) -> None:
         """Learn from how the last action came out, after all that was seen of it."""
         if action is not None and self._learns and not self._now.learned:
             self._now.learned = True
             self.chances.learn(self.belief.outcome_shares(), action, self.belief.earlier_shares())
-        self._chooser.ahead.learned(self.chances.skill, self.chances.rates)
-
-    def _begin(self, action: Action | None) -> Inspection:
-        return Inspection(action, next(iter(self._views), None))
+        for chooser in self._choosers:
+            chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
     def _choose(self, step: Step, barred: Action | None = None) -> Generator[Request, Any, Choice]:
         while True:
             yield from self._ways.seek(self.belief)
-            if self._may_feel():
-                yield from self._look(self._now.view)
+            yield from self._asking.feel(self._ways.atoms)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
             inquiry = self._inquire(step, table)
-            if inquiry is None:
-                return table.best
-            for _ in range(inquiry.times):
-                yield from self._ask(inquiry.question, person=inquiry.person)
-                if not inquiry.person and not self._open_views(inquiry.question):
-                    break
+            if inquiry is not None:
+                yield from self._asking.inquire(inquiry)
+                continue
+            best = table.best
+            if best.action is None and self._errand is not None:
+                self._errand, self._past = None, self._errand  # there; now it is looked
+            elif best.action is not None or not (yield from self._sets_out(step)):
+                return best
+
+    def _sets_out(self, step: Step) -> Generator[Request, Any, bool]:
+        """Whether a goal that is out of sight is worth going to, before the trial ends."""
+        self._errand = yield from self._errands.seek(
+            step, self.belief, self.evidence, self._chooser, self._sight, self.chances
+        )
+        return self._errand is not None
 
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
-        budget = self._budget()
+        budget = self._asking.budget()
         questions = self._about_needs(step.book)
         if self._asks_all and budget.questions > 0:
-            new = (q for q in questions if q.text not in self._now.replies and self._open_views(q))
-            doubted = [each for each in new if DOUBT < self._likely(each) < 1 - DOUBT]
+            new = (
+                q
+                for q in questions
+                if q.text not in self._now.replies and self._asking.open_views(q)
+            )
+            doubted = [each for each in new if DOUBT < self._asking.likely(each) < 1 - DOUBT]
             if doubted:
                 return Inquiry(doubted[0], 1, 0.0)
         found = self._inquirer.best(
@@ -275,24 +304,12 @@ class BeliefMonitor(Learning, PlainArguments):
             table,
             budget,
             picture=self._now.picture,
-            views=self._open_views,
-            person=self._person,
+            views=self._asking.open_views,
+            person=self._asking.person,
         )
         if found is None and self._ways.closely(self._now):
-            found = unknown(self._now, self.belief, step.book, budget, self._open_views)
+            found = unknown(self._now, self.belief, step.book, budget, self._asking.open_views)
         return found
-
-    def _budget(self) -> Budget:
-        costs, now = self.costs, self._now
-        questions = costs.questions_per_trial - self._questions
-        looks = costs.looks_per_trial - self._looks
-        return Budget(
-            min(costs.questions_per_step - now.questions, questions),
-            min(costs.looks_per_step - now.looks, looks),
-        )
-
-    def _likely(self, question: FactQuestion) -> float:
-        return self.belief.probability(question.atom, question.alike)
 
     def _about_needs(self, book: QuestionBook) -> list[FactQuestion]:
         """Questions about what the plans need: nothing else can change a decision."""
@@ -300,71 +317,6 @@ class BeliefMonitor(Learning, PlainArguments):
         if self._asks_all:
             atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
         return self._now.about(atoms, book)
-
-    def _open_views(self, question: FactQuestion) -> list[str | None]:
-        """From where a question may still find an answer, the next one first.
-
-        They go round: another view repeats the last answer less than the same one does.
-        """
-        turn = self._now.looks % len(self._views) if self._views else 0
-        views: list[str | None] = [*self._views[turn:], *self._views[:turn]]
-        return [view for view in views or [None] if not self.evidence.silent(question.text, view)]
-
-    def _ask(self, question: FactQuestion, *, person: bool) -> Generator[Request, Any, None]:
-        now, before = self._now, self._likely(question)
-        if person:
-            answer: Answer = yield AskPerson(question)
-            self._person = answer.reply is not Reply.UNKNOWN
-            self.evidence.take_from_person(question, answer.reply)
-        else:
-            looks = 0
-            while not self._shows_something_new(question):
-                if looks == SAME:  # there is no other picture of it to be had
-                    self.evidence.silence(question.text, now.view)
-                    looks = 0
-                open_views = self._open_views(question)
-                if not open_views:
-                    return
-                yield from self._look(open_views[0])
-                looks += 1
-            answers: list[Answer] = yield Ask((question,))
-            answer = answers[0]
-            self._questions += 1
-            now.questions += 1
-            self.evidence.take(question, answer, now.picture, now.view)
-        if answer.reply in (Reply.YES, Reply.NO):
-            told = Replies(question.atoms, before)
-            now.replies.setdefault(question.text, told).replies.append(answer.reply)
-
-    def _look(self, view: str | None) -> Generator[Request, Any, None]:
-        now = self._now
-        now.view = view
-        seen: Observation = yield Look(view)
-        self._sense(seen.facts)
-        self._feeling.looked(seen.facts)
-        now.picture = self._telling(seen)
-        self._looks += 1
-        now.looks += 1
-
-    def _telling(self, seen: Observation) -> Picture:
-        """What tells one look from another: the pictures, or else the look's number."""
-        pictures = () if self._blind else tuple(frame.data for frame in seen.frames.values())
-        return pictures or seen.look
-
-    def _may_feel(self) -> bool:
-        """Whether a look, the first since the last action, senses what a plan needs and is in
-        doubt: it costs next to nothing."""
-        if self._now.looks or self._budget().looks <= 0:
-            return False
-        felt = self._feeling.by_a_look(self._ways.atoms)
-        return any(DOUBT < self.belief.probability(atom) < 1 - DOUBT for atom in felt)
-
-    def _shows_something_new(self, question: FactQuestion) -> bool:
-        """Whether the latest picture may tell more than what a question was answered before."""
-        text, now = question.text, self._now
-        if now.picture is None or self.evidence.asked_of(text, now.picture):
-            return False
-        return not self.evidence.silent(text, now.view)
 
     def _verdict(self, step: Step, choice: Choice, *, acted: bool) -> Verdict:
         state, action, place = choice.state, choice.action, None
@@ -388,11 +340,13 @@ class BeliefMonitor(Learning, PlainArguments):
             self._ways.annotated(step),
             acted,
             unseen=self.evidence.unseen,
-            questions_left=self._budget().questions > 0,
+            questions_left=self._asking.budget().questions > 0,
             actions_left=step.actions_left,
             failing=self._ways.failing(step),
         )
         why = reason(grounds, decision, action, state, place)
+        if self._errand is not None:
+            why = f"{self._errand.why}; {why}"
         if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
             acted or place != step.index
         ):

@@ -3,15 +3,17 @@
 from collections import Counter
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import Evidence
+from tpvqa.belief.faults import Showing
 from tpvqa.belief.inquiry import DOUBT
 from tpvqa.belief.sight import Sight
+from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import PlanFrom, Request
 from tpvqa.monitors.ways import Ways
 from tpvqa.pddl import Atom, Conjunction, Literal, State, Task
@@ -23,29 +25,16 @@ OFTEN = 3
 """How often one and the same place is gone to, at most."""
 
 
-class Showing(Protocol):
-    """Says from where a form of fact is shown."""
-
-    def needed(self, atom: Atom, task: Task) -> frozenset[Atom] | None:
-        """What has to hold so that a fact is shown; None where it has not this form."""
-
-
 @dataclass(frozen=True, slots=True)
 class Errand:
     """Something that is brought about for the sake of a look.
 
     Attributes:
-        task: The task with that as its goal.
-        chooser: Compares the ways there.
-        ways: Knows them.
-        plan: The plan that it began with.
+        ways: The ways there.
         why: What is to be looked at, in words.
     """
 
-    task: Task
-    chooser: Chooser
     ways: Ways
-    plan: Plan
     why: str
 
 
@@ -67,24 +56,26 @@ class Errands:
 
     def seek(
         self,
+        step: Step,
         belief: Belief,
         evidence: Evidence,
         chooser: Chooser,
         sight: Sight,
         chances: Chances,
-        book: QuestionBook,
     ) -> Generator[Request, Any, Errand | None]:
         """An errand that is worth its way; None where there is none.
 
         Args:
+            step: Where the trial stands.
             belief: What is believed.
             evidence: What answers are worth.
             chooser: Knows what is left to do where the goal does not hold.
             sight: What can be seen at all.
             chances: Of failures.
-            book: What can be asked.
         """
-        state, _ = belief.most_probable()
+        state, book = belief.most_probable()[0], step.book
+        if not self._shown or step.replans_left == 0:
+            return None
         savings = self._savings(belief, chooser, state, book)
         asking = evidence.answers_to_be_sure() * (self._costs.question + self._costs.look)
         for needed, saving in sorted(savings.items(), key=lambda each: (-each[1], sorted(each[0]))):
@@ -95,7 +86,11 @@ class Errands:
             if not isinstance(there, Plan):
                 continue
             back = yield from self._back(state, there)
-            if back is None or saving <= (len(there.actions) + back) * self._costs.action + asking:
+            if back is None:
+                continue
+            steps = len(there.actions) + back
+            too_many = step.actions_left is not None and steps > step.actions_left
+            if too_many or saving <= steps * self._costs.action + asking:
                 continue
             task = replace(self._task, goal=Conjunction(tuple(map(Literal, sorted(needed)))))
             going = Chooser(belief.model, self._costs, sight, task)
@@ -105,7 +100,7 @@ class Errands:
             words = FactWords(book)
             facts = [a for a in self._doubted(belief, book) if self._needed(a) == needed]
             why = " and ".join(f"{words.of(a)} {belief.probability(a):.2f}" for a in facts)
-            return Errand(task, going, ways, there, f"{why} cannot be seen from here")
+            return Errand(ways, f"{why} cannot be seen from here")
         return None
 
     def _savings(

@@ -104,7 +104,8 @@ def _reason(
     facts = [_fact(grounds, each) for each in missing[:SAID]]
     there = _instead(grounds, missing[:SAID], state) or _news(grounds, state)
     if decision is Decision.REPEAT:
-        facts = facts or [f"{there} would be mended by it"]
+        if not facts and grounds.plan is not None:
+            facts = [f"{there} would be mended by it"]
         return "; ".join((*facts, f"{said} again"))
     if decision is Decision.REPLAN:
         return "; ".join((*facts, f"replanning from {there}"))

@@ -27,6 +27,9 @@ class Ways:
         chances: Says which skills fail.
         costs: What things cost.
         towards: The facts that are the task's goal, where it is another than the trial's.
+
+    Attributes:
+        chooser: Compares the plans.
     """
 
     def __init__(
@@ -38,7 +41,7 @@ class Ways:
         towards: frozenset[Atom] = frozenset(),
     ):
         self._towards = towards
-        self._task, self._chooser, self._chances = task, chooser, chances
+        self.chooser, self._task, self._chances = chooser, task, chances
         self._costs = costs
         self._plans: dict[State, Plan] = {}
         self._annotated: dict[State, AnnotatedPlan] = {}
@@ -56,22 +59,26 @@ class Ways:
         if self.annotated(step) is None:
             self._annotate(step.plan, step.state)
 
+    def knows(self, plan: Plan) -> bool:
+        """Whether a plan is one of those that were made here."""
+        return any(plan.actions == known.actions for known in self._plans.values())
+
     @property
     def atoms(self) -> frozenset[Atom]:
         """The facts that the known plans need."""
-        return frozenset[Atom]().union(*(plan.atoms() for plan in self._chooser.plans))
+        return frozenset[Atom]().union(*(plan.atoms() for plan in self.chooser.plans))
 
     def annotated(self, step: Step) -> AnnotatedPlan | None:
         """The plan that is followed, with what its steps need; None where it was not valid."""
         actions = step.plan.actions
-        return next((plan for plan in self._chooser.plans if plan.actions == actions), None)
+        return next((plan for plan in self.chooser.plans if plan.actions == actions), None)
 
     def plan(self, state: State, action: Action) -> Plan | None:
         """A known plan from a state that begins with an action."""
         found = self._plans.get(state)
         if found is not None and found.actions[:1] == (action,):
             return found
-        way = self._chooser.way(state)
+        way = self.chooser.way(state)
         if way is None:
             return None
         place, plan = way
@@ -80,7 +87,7 @@ class Ways:
 
     def seek(self, belief: Belief) -> Generator[Request, Any, None]:
         """Have plans made for what is likely, and without what does not work."""
-        while (state := self._chooser.unplanned(belief)) is not None:
+        while (state := self.chooser.unplanned(belief)) is not None:
             if state in self._plans:  # other plans have taken its place meanwhile
                 self._annotate(self._plans[state], state)
                 continue
@@ -88,7 +95,7 @@ class Ways:
             if isinstance(result, Plan):
                 self.take(result, state)
             elif isinstance(result, Unsolvable):
-                self._chooser.ahead.give_up_on(state)
+                self.chooser.ahead.give_up_on(state)
         dead = self.dead()
         if self._towards:  # an errand is not worth another way
             return
@@ -103,7 +110,7 @@ class Ways:
 
     def _through(self, state: State, dead: frozenset[Action]) -> bool:
         """Whether the best known way from a state leads through what is dead."""
-        way = self._chooser.way(state)
+        way = self.chooser.way(state)
         return way is not None and not dead.isdisjoint(way[1].actions[way[0] :])
 
     def suspects(self, action: Action) -> bool:
@@ -166,7 +173,7 @@ class Ways:
             try:
                 needs = regress(self._task, plan.actions, state)
             except PlannerError:
-                self._chooser.ahead.give_up_on(state)
+                self.chooser.ahead.give_up_on(state)
                 return
             known = self._annotated[state] = AnnotatedPlan(self._task, plan.actions, needs)
-        self._chooser.ahead.add(known)
+        self.chooser.ahead.add(known)

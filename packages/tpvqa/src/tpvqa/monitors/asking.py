@@ -1,0 +1,161 @@
+"""Looks and questions of a belief monitor: what is asked, from where, and what comes of it."""
+
+from collections.abc import Callable, Collection, Generator, Sequence
+from typing import Any
+
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.costs import Costs
+from tpvqa.belief.evidence import Evidence, Picture
+from tpvqa.belief.inquiry import DOUBT, Budget, Inquiry
+from tpvqa.monitors.feeling import Feeling
+from tpvqa.monitors.inspection import SENSED, Inspection, Replies
+from tpvqa.monitors.requests import Ask, AskPerson, Look, Request
+from tpvqa.observation import Observation, SensedFact
+from tpvqa.pddl import Action, Atom
+from tpvqa.questions import FactQuestion
+from tpvqa.vlm import Answer, Reply
+
+SAME = 3
+"""Looks in a row that may show a picture which the question was asked of already."""
+
+
+class Asking:
+    """Looks, asks, and takes what comes of it into the belief.
+
+    Args:
+        belief: What is believed.
+        evidence: Takes answers in.
+        costs: What may be asked and looked at.
+        feeling: Knows which facts the robot senses.
+        views: The views that the world can be looked at from, the default one first.
+        blind: Whether answers do not depend on the picture, but on the look.
+        felt: Called where more is known to be shown than before.
+
+    Attributes:
+        now: What happened since the last action.
+        looks: Looks in this trial.
+        questions: Questions in this trial.
+        person: Whether a person can be asked.
+    """
+
+    def __init__(
+        self,
+        belief: Belief,
+        evidence: Evidence,
+        costs: Costs,
+        feeling: Feeling,
+        views: Sequence[str],
+        *,
+        blind: bool,
+        felt: Callable[[], None],
+    ):
+        self._belief, self._evidence, self._costs = belief, evidence, costs
+        self._feeling, self._felt = feeling, felt
+        self._views, self._blind = tuple(views), blind
+        self.looks = self.questions = 0
+        self.person = costs.person is not None
+        self.now = self._begun(None)
+
+    def begin(self, action: Action | None = None) -> Inspection:
+        """Note that an action was executed: what was seen before is past."""
+        self.now = self._begun(action)
+        return self.now
+
+    def _begun(self, action: Action | None) -> Inspection:
+        return Inspection(action, next(iter(self._views), None))
+
+    def budget(self) -> Budget:
+        """What may still be asked and looked at before the next action."""
+        costs, now = self._costs, self.now
+        questions = costs.questions_per_trial - self.questions
+        looks = costs.looks_per_trial - self.looks
+        return Budget(
+            min(costs.questions_per_step - now.questions, questions),
+            min(costs.looks_per_step - now.looks, looks),
+        )
+
+    def likely(self, question: FactQuestion) -> float:
+        """The probability that yes is right."""
+        return self._belief.probability(question.atom, question.alike)
+
+    def open_views(self, question: FactQuestion) -> list[str | None]:
+        """From where a question may still find an answer, the next one first.
+
+        They go round: another view repeats the last answer less than the same one does.
+        """
+        turn = self.now.looks % len(self._views) if self._views else 0
+        views: list[str | None] = [*self._views[turn:], *self._views[:turn]]
+        return [view for view in views or [None] if not self._evidence.silent(question.text, view)]
+
+    def inquire(self, inquiry: Inquiry) -> Generator[Request, Any, None]:
+        """Ask what was found to be worth asking."""
+        for _ in range(inquiry.times):
+            yield from self._ask(inquiry.question, person=inquiry.person)
+            if not inquiry.person and not self.open_views(inquiry.question):
+                break
+
+    def _ask(self, question: FactQuestion, *, person: bool) -> Generator[Request, Any, None]:
+        now, before = self.now, self.likely(question)
+        if person:
+            answer: Answer = yield AskPerson(question)
+            self.person = answer.reply is not Reply.UNKNOWN
+            self._evidence.take_from_person(question, answer.reply)
+        else:
+            looks = 0
+            while not self._shows_something_new(question):
+                if looks == SAME:  # there is no other picture of it to be had
+                    self._evidence.silence(question.text, now.view)
+                    looks = 0
+                open_views = self.open_views(question)
+                if not open_views:
+                    return
+                yield from self._look(open_views[0])
+                looks += 1
+            answers: list[Answer] = yield Ask((question,))
+            answer = answers[0]
+            self.questions += 1
+            now.questions += 1
+            self._evidence.take(question, answer, now.picture, now.view)
+        if answer.reply in (Reply.YES, Reply.NO):
+            told = Replies(question.atoms, before)
+            now.replies.setdefault(question.text, told).replies.append(answer.reply)
+
+    def feel(self, atoms: Collection[Atom]) -> Generator[Request, Any, None]:
+        """Look, once after an action, where that senses something of these that is in doubt: it
+        costs next to nothing."""
+        if self.now.looks or self.budget().looks <= 0:
+            return
+        felt = self._feeling.by_a_look(atoms)
+        if any(DOUBT < self._belief.probability(atom) < 1 - DOUBT for atom in felt):
+            yield from self._look(self.now.view)
+
+    def _look(self, view: str | None) -> Generator[Request, Any, None]:
+        now = self.now
+        now.view = view
+        seen: Observation = yield Look(view)
+        self.sense(seen.facts)
+        self._feeling.looked(seen.facts)
+        now.picture = self.telling(seen)
+        self.looks += 1
+        now.looks += 1
+
+    def sense(self, facts: Sequence[SensedFact]) -> None:
+        """Take in what the robot itself has measured."""
+        if self._feeling.take(facts, self.now.effects):
+            self._felt()
+        for fact in facts:
+            was = self._belief.probability(fact.atom)
+            self._evidence.take_sensed(fact.atom, fact.probability)
+            self.now.notice(fact.atom, was, self._belief.probability(fact.atom), SENSED)
+
+    def telling(self, seen: Observation) -> Picture:
+        """What tells one look from another: the pictures, or else the look's number."""
+        pictures = () if self._blind else tuple(frame.data for frame in seen.frames.values())
+        return pictures or seen.look
+
+    def _shows_something_new(self, question: FactQuestion) -> bool:
+        """Whether the latest picture may tell more than what a question was answered before."""
+        text, now = question.text, self.now
+        if now.picture is None or self._evidence.asked_of(text, now.picture):
+            return False
+        return not self._evidence.silent(text, now.view)

@@ -1,0 +1,86 @@
+"""Goals out of sight in the end: gone back to and looked at where that is worth the steps."""
+
+import itertools
+from pathlib import Path
+
+import pytest
+
+from tests.ward import DOMAIN
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import MemoryWriter
+from tpvqa.events import Event
+from tpvqa.events.events import Acted, Answered, Asked, Decided, Ended, PlanMade
+from tpvqa.vlm import Reply
+
+PROBLEM = """(define (problem lamps) (:domain ward)
+ (:objects hall store theatre - room lamp pump - tool anna - patient)
+ (:init (at hall) (free) (in lamp theatre) (in pump hall) (lies anna theatre) (needs anna lamp))
+ (:goal (and (in lamp store) (at hall))))"""
+SHOWN = "shown: [{fact: '(in ?t ?r)', where: '(at ?r)'}]"
+
+
+def run(folder: Path, episode: int, shown: str = SHOWN) -> tuple[Ended, list[Event]]:
+    for name, text in (
+        ("domain.pddl", DOMAIN),
+        ("problem.pddl", PROBLEM),
+        ("world.yaml", shown),
+    ):
+        (folder / name).write_text(text)
+    config = TrialConfig().but(
+        task={
+            "domain": str(folder / "domain.pddl"),
+            "problem": str(folder / "problem.pddl"),
+            "world_file": str(folder / "world.yaml"),
+        },
+        seed=3,
+        episode=episode,
+        vlm={"spec": "oracle:0.9"},
+        world={"spec": "symbolic"},
+        monitor={"spec": "belief"},
+        simulation={"failure": 0.4, "disturbance": 0.9},
+        limits={"repeats": "none", "replans": "none", "actions": "50x"},
+    )
+    writer = MemoryWriter(resumable=False)
+    with Trial(config) as trial:
+        ended = trial.run(writer)
+    return ended, writer.events
+
+
+def errands(events: list[Event]) -> list[str]:
+    return [e.reason for e in events if isinstance(e, Decided) and "cannot be seen" in e.reason]
+
+
+@pytest.fixture(scope="module")
+def gone(tmp_path_factory: pytest.TempPathFactory) -> tuple[Ended, list[Event]]:
+    """The first trial in which the robot went back for a look."""
+    folder = tmp_path_factory.mktemp("ward")
+    for episode in range(40):
+        ended, events = run(folder, episode)
+        if errands(events):
+            return ended, events
+    raise AssertionError("nothing was gone back to in any of forty trials")
+
+
+def test_a_goal_out_of_sight_is_gone_back_to_and_looked_at(
+    gone: tuple[Ended, list[Event]],
+) -> None:
+    ended, events = gone
+    assert ended.completed
+    assert ended.because == "goal"
+    first = next(n for n, e in enumerate(events) if isinstance(e, Decided) and errands([e]))
+    assert any(isinstance(e, PlanMade) and e.towards == ("(at store)",) for e in events[:first])
+    went = next(e for e in events[first:] if isinstance(e, Acted))
+    assert went is not None
+    seen = [
+        answered.answers[0].reply
+        for asked, answered in itertools.pairwise(events[first:])
+        if isinstance(asked, Asked) and isinstance(answered, Answered)
+        if asked.questions[0].atom == "(in lamp store)"
+    ]
+    assert Reply.YES in seen or Reply.NO in seen
+
+
+def test_where_everything_is_shown_there_is_nothing_to_go_back_for(tmp_path: Path) -> None:
+    told = [run(tmp_path, episode, shown="shown: []")[1] for episode in range(3)]
+    assert not any(isinstance(event, PlanMade) and event.towards for each in told for event in each)
