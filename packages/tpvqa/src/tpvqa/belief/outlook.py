@@ -7,7 +7,7 @@ from tpvqa.belief.annotated import AnnotatedPlan, Wanted
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import GIVEN_UP, NAMED, SHOWN, SkillState
+from tpvqa.belief.skills import DOUBTED, FOREGONE, GIVEN_UP, NAMED, SHOWN, SkillState
 from tpvqa.pddl import Action, State, Task
 
 CHECKS = 2.0
@@ -136,7 +136,12 @@ class Outlook:
         skill = self.skill(action)
         won = (1 - skill.failure) * self.failure
         hopeless = skill.dead >= NAMED and won < self._costs.action
-        return skill.shown >= SHOWN and (skill.dead >= GIVEN_UP or hopeless)
+        tried = skill.shown >= SHOWN and self._tried_enough(skill)
+        return tried and (skill.dead >= GIVEN_UP or hopeless)
+
+    def _tried_enough(self, skill: SkillState) -> bool:
+        """Whether so much was spent on tries in vain that it may be given up."""
+        return skill.vain * self._costs.action >= FOREGONE * self.failure
 
     def blocked(self, number: int) -> bool:
         """Whether the way from a joint state leads through a skill that is given up."""
@@ -193,6 +198,8 @@ class Outlook:
             skill = self.skill(action)
             likely = skill.dead >= NAMED or skill.at_worst >= GIVEN_UP
             known = skill.at_worst if likely and not self._sight.hidden(action) else 0.0
+            if not self._tried_enough(skill):
+                known = min(known, DOUBTED)
             self._dead[action] = known
         return known
 

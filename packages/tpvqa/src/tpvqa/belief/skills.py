@@ -33,6 +33,12 @@ GIVEN_UP = 0.95
 SHOWN = 0.7
 """Nor is it before its own tries have shown it with this probability."""
 
+FOREGONE = 0.4
+"""What may be spent on trying a skill in vain, of what a failed task costs, before it is given up:
+how hard skills can be is known worse than what it costs to be wrong about it (a ski rental)."""
+DOUBTED = 0.9
+"""As how dead it counts at most until then."""
+
 _RATES: Floats = np.array([*np.linspace(0.01, 0.99, 50), 1.0])
 _EDGE = 1e-9
 
@@ -48,6 +54,7 @@ class SkillState:
         shown: Probability that every try fails, by its own tries: what those with other objects
             came to makes it suspected, and no more.
         at_worst: The probability of `dead` if its latest tries in a row have all failed.
+        vain: Tries of the skill that are thought to have failed, whatever with.
     """
 
     failure: float
@@ -55,6 +62,7 @@ class SkillState:
     tries: float
     shown: float = 0.0
     at_worst: float = 0.0
+    vain: float = 0.0
 
 
 class _Run:
@@ -267,7 +275,8 @@ def _worked_out(
         likelihood = own[action].likelihood
         works = (1 - SUSPECT) * float(_prior(mean, strength) @ likelihood[:-1])
         shown = SUSPECT * likelihood[-1] / (SUSPECT * likelihood[-1] + works)
-    return SkillState(dead + (1 - dead) * failure, dead, tries, min(dead, shown), dead)
+    vain = sum(tried.failed for tried in own.values())
+    return SkillState(dead + (1 - dead) * failure, dead, tries, min(dead, shown), dead, vain)
 
 
 def _chance(cause: Cause, action: Action) -> float:
