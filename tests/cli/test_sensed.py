@@ -131,8 +131,14 @@ def test_a_skill_that_is_said_to_notice_its_failures_is_heard(
             planner, monitor, rules=tmp_path / "world.yaml", seed=seed, failure=failure
         )
         assert ended.completed
+        failed = 0
         for acted, decided in disinfected(events):
-            assert (decided.decision is Decision.REPEAT) == (acted.report == "failed")
+            repeats = decided.decision is Decision.REPEAT
+            if acted.report == "failed":
+                assert repeats
+            elif failed < 3:  # after some failures in a row one *done* may be worth another try
+                assert not repeats
+            failed = failed + 1 if acted.report == "failed" else 0
             assert "as the skill reports" in decided.reason
             decisions.append(decided.decision)
         assert failure or ended.actions == 6

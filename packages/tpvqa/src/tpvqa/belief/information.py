@@ -94,7 +94,9 @@ def _begins(times: tuple[int, ...]) -> NDArray[np.intp]:
 def opened(costs: Floats, work: Floats) -> Floats:
     """The costs of decisions, infinite where one is closed: something it has to do, along the first
     axis, is negative."""
-    return costs if work.min() >= 0 else np.where(work.min(axis=0) < -CLOSED, np.inf, costs)
+    if not work.size or work.min() >= 0:
+        return costs
+    return np.where(work.min(axis=0) < -CLOSED, np.inf, costs)
 
 
 def gains(
