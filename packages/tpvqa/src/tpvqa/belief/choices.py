@@ -330,10 +330,14 @@ class Chooser:
         found = np.ones((2, len(ranked)))
         if choice.action is not None:
             leads_to, first = self._model.outcomes(choice.action), self._model.first
+            # Who does in vain what nothing shows never learns that it is in vain.
+            hidden = self._sight.hidden(choice.action)
+            works = 1 - self.ahead.skill(choice.action).failure if hidden else 1.0
             for place, (number, _) in enumerate(ranked):
                 outcomes = leads_to[first(number)]
                 undone, possible = not outcomes.achieved, outcomes.intended is not None
-                found[:, place] = undone - (1 - IDLE), undone * (possible - FLOOR)
+                changes = works * (undone and possible)
+                found[:, place] = changes - (1 - IDLE), undone * (possible - FLOOR)
         return found
 
 
