@@ -1,23 +1,13 @@
 """Plans to other facts than the goal."""
 
-from collections.abc import Iterator
-
 import pytest
 
 from tests.planning.test_without import DOMAIN, PROBLEM
 from tpvqa.pddl import Atom, Task, task_from_text
 from tpvqa.planning import Plan, Planner, Unsolvable
-from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.towards import plan_towards
 
 COMMENTED = PROBLEM.replace("(:goal", "; (:goal (lit))\n(:goal")
-
-
-@pytest.fixture(scope="module")
-def planner() -> Iterator[Planner]:
-    planner = FastDownward()
-    yield planner
-    planner.close()
 
 
 @pytest.fixture(scope="module")

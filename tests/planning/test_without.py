@@ -1,13 +1,10 @@
 """Plans without certain actions."""
 
-from collections.abc import Iterator
-
 import pytest
 
 from tpvqa.pddl import Task, load_task, task_from_text
 from tpvqa.pddl.validation import validate
 from tpvqa.planning import Plan, Planner, Unsolvable
-from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.without import plan_without
 
 DOMAIN = """; (:action ghost) in a comment
@@ -20,13 +17,6 @@ DOMAIN = """; (:action ghost) in a comment
 PROBLEM = """(define (problem p) (:domain rooms) (:objects a b c d)
   (:init (at a) (door a b) (door b d) (door a c) (door c d)) (:goal (and (at d) (lit))))
 """
-
-
-@pytest.fixture(scope="module")
-def planner() -> Iterator[Planner]:
-    planner = FastDownward()
-    yield planner
-    planner.close()
 
 
 @pytest.fixture(scope="module")

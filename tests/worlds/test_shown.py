@@ -59,6 +59,7 @@ def test_the_first_rule_of_a_fact_counts(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
+        ("shown: [{fact: '(in ?t ?r)', where: []}]", "name what has to hold"),
         ("shown: [{fact: '(in ?t ?r)'}]", "needs 'fact' and 'where'"),
         ("shown: [{fact: '(in ?t ?r)', where: '(at ?x)'}]", r"does not speak of \?x"),
         ("shown: [{fact: '(in ?t ?r)', where: '(nowhere ?r)'}]", "no predicate 'nowhere'"),

@@ -81,7 +81,6 @@ class Errands:
         for needed, saving in sorted(savings.items(), key=lambda each: (-each[1], sorted(each[0]))):
             if saving <= self._costs.action + asking or self._gone[needed] >= OFTEN:
                 continue
-            self._gone[needed] += 1
             there = yield PlanFrom(state, towards=needed)
             if not isinstance(there, Plan):
                 continue
@@ -92,6 +91,7 @@ class Errands:
             too_many = step.actions_left is not None and steps > step.actions_left
             if too_many or saving <= steps * self._costs.action + asking:
                 continue
+            self._gone[needed] += 1
             task = replace(self._task, goal=Conjunction(tuple(map(Literal, sorted(needed)))))
             going = Chooser(belief.model, self._costs, sight, task)
             going.ahead.learned(chances.skill, chances.rates)
@@ -118,9 +118,14 @@ class Errands:
             found[needed] = sum(
                 weight * max(0.0, lost - chooser.ahead.to_go(number))
                 for number, weight in belief.weights.items()
-                if not all(goal.holds(belief.model.state(number)) for goal in goals)
+                if not self._hold(goals, belief.model.state(number))
             )
         return found
+
+    def _hold(self, goals: Sequence[Literal], state: State) -> bool:
+        """Whether some goals hold in a state, derived ones too."""
+        full = self._task.extend(state)
+        return all(goal.holds(full) for goal in goals)
 
     def _doubted(self, belief: Belief, book: QuestionBook) -> list[Atom]:
         """Facts of the goal that are not sure, and that can be asked."""

@@ -158,6 +158,8 @@ def _shown_rule(entry: Place, task: Task) -> ShownRule:
         if unbound := pattern.variables - fact.variables:
             raise place.wrong(f"{pattern}: {fact} does not speak of {min(unbound)}")
         where.append(pattern)
+    if not where:
+        raise parts["where"].wrong("name what has to hold, e.g. where: (near ?c)")
     return ShownRule(fact, tuple(where))
 
 
