@@ -19,10 +19,14 @@ LIKELY = 0.02
 """Joint states of at least this probability get a plan of their own."""
 UNLIKELY = 4
 """Plans between two actions from joint states that are less probable than that."""
+ENDS = 2
+"""Plans between two actions from where a way may end as nothing shows that it is not the way."""
 CHOICES = 6
 """Choices that are compared, at most."""
 IDLE = 0.97
 """An action that changes nothing with this probability is no choice."""
+HIDDEN_IDLE = 0.99
+"""The same where nothing shows what it does: what it costs tells how often it is worth doing."""
 FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
 ROUNDS = 3.0
@@ -68,7 +72,7 @@ class Chooser:
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._sought: set[State] = set()
-        self._unlikely = 0
+        self._unlikely = self._ends = 0
         self._done: list[tuple[int, Action]] = []
         self.changes_left: int | None = None
 
@@ -80,7 +84,7 @@ class Chooser:
     def acted(self, belief: Belief, action: Action) -> None:
         """Note that an action is executed, before the belief predicts what it leads to."""
         self._sought.clear()
-        self._unlikely = 0
+        self._unlikely = self._ends = 0
         self._done.append((belief.ranked()[0][0], action))
 
     def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
@@ -116,11 +120,28 @@ class Chooser:
                 found = found or state
                 together += weight
         if together < LIKELY or self._unlikely >= UNLIKELY:
-            return None
+            return self._foreseen()
         self._unlikely += 1
         if found is not None:
             self._sought.add(found)
         return found
+
+    def foresees(self) -> bool:
+        """Whether a way on may end where no plan is known, so that one is worth having."""
+        return self._foreseen(sought=False) is not None
+
+    def _foreseen(self, *, sought: bool = True) -> State | None:
+        """The most probable such end; noted as one for which a plan is sought, or not."""
+        ends = self._commitments.unplanned
+        if not ends or self._ends >= ENDS:
+            return None
+        state = max(ends, key=ends.__getitem__)
+        if ends[state] < LIKELY or state in self._sought or state in self.ahead.hopeless:
+            return None
+        if sought:
+            self._ends += 1
+            self._sought.add(state)
+        return state
 
     def table(
         self,
@@ -142,6 +163,7 @@ class Chooser:
             for known in (self._going, self._led, self._cost):
                 known.clear()
         ranked = belief.ranked()
+        self._commitments.unplanned.clear()
         choices = [
             each
             for each in self._choices(ranked)
@@ -179,16 +201,7 @@ class Chooser:
 
     def _column(self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates) -> Floats:
         """The expected costs of an action in the joint states."""
-        together = {}
-        if not self._sight.complete:
-            together = self._commitments.made(
-                action,
-                (
-                    (other, weight * share)
-                    for number, weight in ranked
-                    for share, other, _ in self._successors(action, number, weight, rates)
-                ),
-            )
+        together = self._together(action, ranked, rates)
         if together:
             return np.array([self._paid(action, *each, rates, together) for each in ranked])
         costs, first, found = self._cost.setdefault(action, {}), self._model.first, list[float]()
@@ -201,6 +214,21 @@ class Chooser:
                 known = costs[number, near] = self._paid(action, number, weight, rates, together)
             found.append(known)
         return np.array(found)
+
+    def _together(
+        self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates
+    ) -> dict[int, float]:
+        """What is left to pay after an action where joint states look alike."""
+        if self._sight.complete:
+            return {}
+        return self._commitments.made(
+            action,
+            (
+                (other, weight * share)
+                for number, weight in ranked
+                for share, other, _ in self._successors(action, number, weight, rates)
+            ),
+        )
 
     def _paid(
         self,
@@ -260,7 +288,9 @@ class Chooser:
             if action is not None:
                 outcomes = self._model.outcomes(action)[number]
                 if outcomes.intended is not None and not outcomes.achieved:
-                    cost = self._paid(action, number, float(near), rates, {})
+                    scale = DISTURBED if near else 0.0  # only shares of it count
+                    together = self._together(action, [(number, scale)], rates)
+                    cost = self._paid(action, number, float(near), rates, together)
                     known = max(0.0, cost - self.ahead.to_go(number))
             self._going[number, near] = known
         return known
@@ -333,11 +363,12 @@ class Chooser:
             # Who does in vain what nothing shows never learns that it is in vain.
             hidden = self._sight.hidden(choice.action)
             works = 1 - self.ahead.skill(choice.action).failure if hidden else 1.0
+            idle = HIDDEN_IDLE if hidden else IDLE
             for place, (number, _) in enumerate(ranked):
                 outcomes = leads_to[first(number)]
                 undone, possible = not outcomes.achieved, outcomes.intended is not None
                 changes = works * (undone and possible)
-                found[:, place] = changes - (1 - IDLE), undone * (possible - FLOOR)
+                found[:, place] = changes - (1 - idle), undone * (possible - FLOOR)
         return found
 
 

@@ -49,6 +49,7 @@ class Outlook:
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
         self._rates = Rates()
         self._lost: float | None = None
+        self._most_repeated: float | None = None
         self._standing: list[tuple[AnnotatedPlan, _Places]] | None = None
         self._places: dict[AnnotatedPlan, _Places] = {}
         self.version = 0
@@ -184,12 +185,29 @@ class Outlook:
         if known is None:
             skill = self.skill(action)
             if self._sight.hidden(action):
-                known = _unseen(skill.failure, self._costs.action, self.failure)
+                known = sum(self.unseen(action))
             else:
                 checks = CHECKS * (self._costs.question + self._costs.look)
                 known = min(skill.tries, 20.0) * (self._costs.action + checks)
             self._steps[action] = known
         return known
+
+    def unseen(self, action: Action, needed: float = 1.0) -> tuple[float, float]:
+        """What a step costs of which nothing shows whether it did anything.
+
+        Args:
+            action: The step.
+            needed: How probable it is that it still has something to do.
+
+        Returns:
+            What its tries cost, as many as the risk that is left is worth; and that risk, where it
+            had something to do.
+        """
+        failure, cost, lost = self.skill(action).failure, self._costs.action, self.failure
+        tries, risk = 1, failure
+        while needed * risk * (1 - failure) * lost > cost and tries < 20:
+            tries, risk = tries + 1, risk * failure
+        return tries * cost, risk * lost
 
     def dead(self, action: Action) -> float:
         """How probable it is that the way ends at a step, as its skill never works."""
@@ -226,7 +244,7 @@ class Outlook:
             steps = self._longest() + 2
             works = 1 - self._rates.failure
             unchecked = steps * self._costs.action + (1 - works**steps) * self.failure
-            cost = min(steps * self._usual_step(), unchecked)
+            cost = min(steps * self._usual_step() + self._repeated(), unchecked)
         else:
             place, plan = found
             steps = len(plan.actions) - place
@@ -268,6 +286,21 @@ class Outlook:
         checks = CHECKS * (self._costs.question + self._costs.look)
         return (self._costs.action + checks) / max(1 - self._rates.failure, 0.05)
 
+    def _repeated(self) -> float:
+        """What the repeats of steps that nothing shows cost in a plan, above steps that are seen.
+
+        Where no plan is known they are as many as in the dearest known one: otherwise what nobody
+        has a plan for would look better than what everything is planned for.
+        """
+        if self._most_repeated is None:
+            usual, hidden = self._usual_step(), self._sight.hidden
+            more = (
+                sum(self.step(action) - usual for action in plan.actions if hidden(action))
+                for plan in self.plans
+            )
+            self._most_repeated = max(0.0, *more) if self.plans else 0.0
+        return self._most_repeated
+
     @property
     def progress(self) -> float:
         """Steps of a plan that a try brings nearer to the goal: successes less what is undone."""
@@ -288,7 +321,7 @@ class Outlook:
         self._dead: dict[Action, float] = {}
         self._blocks: dict[int, int] = {}
         self._to_go: dict[int, float] = {}
-        self._lost = None
+        self._lost = self._most_repeated = None
         self._standing = None
 
 
@@ -305,11 +338,3 @@ class _Unknown:
 
 
 _UNKNOWN = _Unknown()
-
-
-def _unseen(failure: float, action: float, lost: float) -> float:
-    """What a step costs whose effects nothing shows: so many tries, and the risk that is left."""
-    tries, risk = 1, failure
-    while risk * (1 - failure) * lost > action and tries < 20:
-        tries, risk = tries + 1, risk * failure
-    return tries * action + risk * lost

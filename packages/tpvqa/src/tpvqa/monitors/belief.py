@@ -270,6 +270,8 @@ class BeliefMonitor(Learning, PlainArguments):
             yield from self._ways.seek(self.belief)
             yield from self._asking.feel(self._ways.atoms)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
+            if self._chooser.foresees():
+                continue
             inquiry = self._inquire(step, table)
             if inquiry is not None:
                 yield from self._asking.inquire(inquiry)
