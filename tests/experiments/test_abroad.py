@@ -16,7 +16,7 @@ from tpvqa.errors import BenchError
 from tpvqa.pddl import load_task
 from tpvqa_experiments.abroad import AbroadBench, Part, run_abroad_bench
 from tpvqa_experiments.abroad.bench import blocks_in, sensed, tasks_in
-from tpvqa_experiments.abroad.parts import SEEING, Extent
+from tpvqa_experiments.abroad.parts import REPEATING, SEEING, Extent
 from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.abroad.tables import lines
 
@@ -97,6 +97,21 @@ def test_a_bench_abroad_goes_on_where_it_was_stopped(tmp_path: Path) -> None:
     assert blind is not None
     assert blind > 1
     assert "| build_tower |" in (tmp_path / "abroad.md").read_text()
+
+
+def test_repetition_costs_more_the_oftener_and_nothing_where_sensors_tell(tmp_path: Path) -> None:
+    ward = {name: task for name, task in tasks_in(ROOT / "examples").items() if "medicine" in name}
+    extent = Extent(own=ward, sensed=sensed(ward), monitors=("tp",), episodes=6)
+    bench = AbroadBench(parts=(Part.OWN, Part.SENSED), extent=extent)
+    found = run_abroad_bench(bench, tmp_path)
+    hidden, told = (
+        {line.monitor: line for line in lines(found[part])} for part in (Part.OWN, Part.SENSED)
+    )
+    assert list(hidden) == ["tp", *REPEATING, SEEING]
+    quotients = {name: hidden[name].quotient or 0.0 for name in REPEATING}
+    assert 1 < quotients["seeing:2"] < quotients["seeing:5"]
+    assert hidden["seeing:5"].completion.rate == 1
+    assert [told[name].quotient for name in REPEATING] == [1] * 5  # it sees as much as who sees all
 
 
 def test_a_part_without_tasks_says_what_to_name(tmp_path: Path) -> None:

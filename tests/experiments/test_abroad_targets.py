@@ -7,7 +7,7 @@ import pytest
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa_experiments.abroad import Part
-from tpvqa_experiments.abroad.parts import SEEING
+from tpvqa_experiments.abroad.parts import REPEATING, SEEING
 from tpvqa_experiments.abroad.targets import targets
 
 Made = Callable[[int], dict[str, object]]
@@ -61,6 +61,27 @@ def test_actions_are_compared_with_who_sees_all_where_both_completed(
     }
     assert reached(Part.OWN, made)["actions over those of who sees all"] is told
     assert reached(Part.OWN, {own: made[own]})["actions over those of who sees all"] is None
+
+
+def test_the_least_by_repetition_is_the_fewest_that_complete_often_enough() -> None:
+    own, limit = cell("ward"), cell("ward", SEEING)
+    made = {own: 25, limit: 10, cell("ward", REPEATING[0]): 11, cell("ward", REPEATING[1]): 14}
+    found = {
+        of: rows(
+            of,
+            50,
+            lambda n, of=of, actions=actions: {  # type: ignore[misc]
+                "completed": n % 2 == 0 or of.monitor != REPEATING[0],
+                "actions": actions,
+            },
+        )
+        for of, actions in made.items()
+    }
+    (told,) = (check for check in targets({Part.OWN: found}) if "repetition" in check.what)
+    assert told.measured is not None
+    assert told.measured.value == pytest.approx(1.4)
+    assert told.reached is None
+    assert told.note.endswith("ward 2")
 
 
 def test_a_dead_skill_counts_where_it_was_tried() -> None:

@@ -14,7 +14,8 @@ from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.tasks import find_task
-from tpvqa_experiments.abroad.parts import SEEING, Extent, Part, believes
+from tpvqa_experiments.abroad.parts import SEEING, Extent, Part, believes, limits_of
+from tpvqa_experiments.abroad.repeating import repeating
 from tpvqa_experiments.abroad.results import write_results
 from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.belief import calibrations as learnt
@@ -32,7 +33,7 @@ class AbroadBench:
         parts: Which parts.
         extent: How much of them.
         calibration_episodes: Trials that each calibration is learnt from.
-        limit: Whether to measure who sees all, too.
+        limit: Whether to measure the limits, too: who sees all, and what repetition can do.
         common: Seed, rates of faults, limits.
     """
 
@@ -51,15 +52,12 @@ class AbroadBench:
         return found
 
     def limits(self) -> dict[Cell, int]:
-        """How many episodes of who sees all, in every task and condition that is run.
-
-        Where a skill is dead there are none: it plans as if every skill worked.
-        """
+        """How many episodes of each limit, in every task and condition that is run."""
         found: dict[Cell, int] = {}
         for part in self.parts if self.limit else ():
-            if part is not Part.DEAD:
-                for cell, episodes in self.extent.cells(part):
-                    limit = replace(cell, monitor=SEEING)
+            for cell, episodes in self.extent.cells(part):
+                for name in limits_of(part):
+                    limit = replace(cell, monitor=name)
                     found[limit] = max(episodes, found.get(limit, 0))
         return found
 
@@ -154,15 +152,16 @@ def _limits(
         here, missing = stage(cell.task, own.get(cell.task)), ledger.missing(cell, count)
         for first in range(0, len(missing), AT_ONCE):
             numbers = missing[first : first + AT_ONCE]
-            yield [seeing(here, cell, bench.common, number) for number in numbers]
+            run = seeing if cell.monitor == SEEING else repeating
+            yield [run(here, cell, bench.common, number) for number in numbers]
 
 
 def _rows(
     bench: AbroadBench, part: Part, ledger: Ledger, limits: Mapping[Cell, int]
 ) -> Iterator[tuple[Cell, Sequence[EpisodeRow]]]:
     for cell, count in bench.extent.cells(part):
-        limit = replace(cell, monitor=SEEING)
-        for each in (cell, limit) if limit in limits else (cell,):
+        beside = (replace(cell, monitor=name) for name in limits_of(part))
+        for each in (cell, *(limit for limit in beside if limit in limits)):
             rows = ledger.of(each, count)
             if rows:
                 yield each, rows

@@ -17,6 +17,8 @@ MONITORS = (
 )
 SEEING = "seeing"
 """What stands in rows for the limit: who knows the true state after every action."""
+REPEATING = tuple(f"{SEEING}:{times}" for times in range(1, 6))
+"""And for that of repetition: who sees what can be seen, and does the rest so many times."""
 VLM = "oracle:0.8"
 SYMBOLIC = "symbolic"
 UNBOUND = "limits=none"
@@ -122,6 +124,21 @@ class Extent:
                 for task in tasks:
                     for monitor in self.monitors:
                         yield Cell(task, monitor, vlm, SYMBOLIC, told)
+
+
+def limits_of(part: Part) -> tuple[str, ...]:
+    """The limits beside the monitors of a part.
+
+    Where a skill is dead there are none: they plan as if every skill worked.
+    """
+    if part is Part.DEAD:
+        return ()
+    return (*(REPEATING if part in (Part.OWN, Part.SENSED) else ()), SEEING)
+
+
+def is_limit(monitor: str) -> bool:
+    """Whether a row is that of a limit, and of no monitor."""
+    return monitor.partition(":")[0] == SEEING
 
 
 def believes(monitor: str) -> bool:

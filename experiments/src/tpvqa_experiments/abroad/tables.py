@@ -9,7 +9,7 @@ from typing import Any
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import Interval, wilson
-from tpvqa_experiments.abroad.parts import SEEING, Part
+from tpvqa_experiments.abroad.parts import SEEING, Part, is_limit
 from tpvqa_experiments.belief.markdown import rate, table
 
 PATIENCE = 8
@@ -68,11 +68,16 @@ class Line:
 
 
 def lines(rows: Rows) -> list[Line]:
-    """A line for every VLM, condition and monitor, in the order of the cells; the limit last."""
+    """A line for every VLM, condition and monitor, in the order of the cells; limits last."""
     keys = dict.fromkeys((cell.vlm, cell.condition, cell.monitor) for cell in rows)
     groups = list(dict.fromkeys(key[:2] for key in keys))
-    ordered = sorted(keys, key=lambda key: (groups.index(key[:2]), key[2] == SEEING))
+    ordered = sorted(keys, key=lambda key: (groups.index(key[:2]), *_last(key[2])))
     return [_line(rows, *key) for key in ordered]
+
+
+def _last(monitor: str) -> tuple[bool, bool]:
+    """Orders monitors: limits come last, who sees all as the last of them."""
+    return is_limit(monitor), monitor == SEEING
 
 
 def _line(rows: Rows, vlm: str, condition: str, monitor: str) -> Line:
@@ -196,7 +201,7 @@ def _over_tasks(part: Part, rows: Rows) -> str:
 
 def _by_task(rows: Rows) -> str:
     """A line for every task and condition: completion, actions, questions an action."""
-    monitors = sorted(dict.fromkeys(cell.monitor for cell in rows), key=SEEING.__eq__)
+    monitors = sorted(dict.fromkeys(cell.monitor for cell in rows), key=_last)
     found = []
     for task, vlm, condition in dict.fromkeys((c.task, c.vlm, c.condition) for c in rows):
         cells = [

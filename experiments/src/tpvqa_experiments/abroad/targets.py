@@ -7,7 +7,7 @@ from statistics import fmean, median, stdev
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import wilson
-from tpvqa_experiments.abroad.parts import BELIEF, SEEING, Part
+from tpvqa_experiments.abroad.parts import BELIEF, REPEATING, SEEING, Part
 from tpvqa_experiments.abroad.tables import PATIENCE, Rows, asked, paired_actions
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.resampling import Estimate, difference, ratio
@@ -79,6 +79,35 @@ def _beside_seeing(name: str, part: Part, own: Own, rows: Rows) -> Iterator[Chec
     ]
     most = TIMES_SEEING[part]
     yield _most(name, "actions over those of who sees all", most, _mean(found))
+    yield from _by_repetition(name, part, own, rows)
+
+
+def _by_repetition(name: str, part: Part, own: Own, rows: Rows) -> Iterator[Check]:
+    """What whoever sees all that can be seen needs: the fewest that complete often enough."""
+    what = "the same, least possible by repetition"
+    told = [_least(cell, part, rows) for cell in own]
+    found = [least for least in told if least is not None]
+    times = ", ".join(
+        f"{cell.task} {each[0]}" for cell, each in zip(own, told, strict=True) if each
+    )
+    least = _mean([each for _, each in found]) if len(found) == len(told) else None
+    yield Check(
+        name, what, "–", least, None, f"every hidden step so often: {times}" if times else ""
+    )
+
+
+def _least(cell: Cell, part: Part, rows: Rows) -> tuple[int, Estimate] | None:
+    """How often hidden steps are done in the least, and its actions over those of who sees all."""
+    seeing = rows.get(replace(cell, monitor=SEEING), ())
+    enough = {
+        times: ratio(*pairs, "actions")
+        for times, limit in enumerate(REPEATING, start=1)
+        if (each := rows.get(replace(cell, monitor=limit), ()))
+        and _done(each) >= COMPLETION[part]
+        and (pairs := _both_done(each, seeing))
+    }
+    least = min(enough, key=lambda times: enough[times].value, default=None)
+    return None if least is None else (least, enough[least])
 
 
 def _elsewhere(name: str, part: Part, own: Own, rows: Rows) -> Iterator[Check]:

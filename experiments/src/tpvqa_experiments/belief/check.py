@@ -15,7 +15,7 @@ class Check:
         what: The figure.
         target: What it must be.
         measured: The figure with its interval; None where it was not measured.
-        reached: Whether it is; None where it was not measured.
+        reached: Whether it is; None where it was not measured, or is there to compare with.
         note: What else there is to say.
     """
 

@@ -33,7 +33,9 @@ def targets_markdown(checks: Sequence[Check]) -> str:
     last = ""
     for check in checks:
         measured = "–" if check.measured is None else _estimate(check.measured)
-        reached = REACHED[check.reached] + (f" ({check.note})" if check.note else "")
+        untold = check.reached is None and check.measured is not None
+        said = "" if untold else REACHED[check.reached]
+        reached = f"{said} ({check.note})".strip() if check.note else said
         condition = check.condition if check.condition != last else ""
         lines.append((condition, check.what, check.target, measured, reached))
         last = check.condition
