@@ -16,7 +16,9 @@ from tpvqa.chance import chance
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.worlds.dead import NOTHING_DEAD, Dead
+from tpvqa.worlds.earlier_truth import EarlierTruth, fingerprint
 from tpvqa.worlds.outcome import Failure, Outcome
+from tpvqa.worlds.people import somebody_moves
 from tpvqa.worlds.sensing import Sensors
 from tpvqa.worlds.shown import shown
 from tpvqa.worlds.undo import Undoing
@@ -43,6 +45,7 @@ class Simulation:
         failure: Probability that an action fails although it is possible.
         disturbance: Probability that a failure also undoes an achieved fact.
         spontaneous: Probability that an achieved fact is undone after a success.
+        moved: Probability that somebody moves a thing after an action that disturbed nothing.
         redo: What comes of an action whose effects hold already.
         dead: Skills that never work.
         undoing: What disturbances undo; by default what the rules say.
@@ -59,6 +62,7 @@ class Simulation:
         failure: float = FAILURE,
         disturbance: float = DISTURBANCE,
         spontaneous: float = 0.0,
+        moved: float = 0.0,
         redo: Redo | str = Redo.FREE,
         dead: Dead = NOTHING_DEAD,
         undoing: Sequence[Undoing] | None = None,
@@ -68,11 +72,13 @@ class Simulation:
     ):
         self.task, self.rules = task, rules or WorldRules()
         self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
+        self.moved = moved
         self.redo, self.dead = Redo(redo), dead
         self.undoing = self.rules.undo if undoing is None else undoing
         self.start = task.init if start is None else start
         self.seed, self.episode = seed, episode
         self.state: State = self.start
+        self.before: State = self.start
         self.attempts: Counter[str] = Counter()
         self.ended: list[Atom] = []
         self._sensors = Sensors(self.rules.sensed, task)
@@ -92,10 +98,13 @@ class Simulation:
 
     def execute(self, action: Action) -> Outcome:
         """Try an action on the true state, and tell what skill and sensors notice."""
-        if not (self.rules.sensed or self.rules.reports):
-            return self._tried(action)
+        self.before = self.state
         attempt, truly = self.attempts[action.pddl()], self.truly(action)
         outcome = self._tried(action)
+        if self.moved and outcome.undone is None:
+            outcome = self._among_people(outcome, action, attempt)
+        if not (self.rules.sensed or self.rules.reports):
+            return outcome
         report = next((r for r in self.rules.reports if r.action in (None, action.name)), None)
         reported = report is not None and report.reports(
             failed=not outcome.succeeded,
@@ -160,6 +169,19 @@ class Simulation:
         """Whether all effects of an action hold already, so that it has nothing left to do."""
         return self.task.apply(self.state, action) == self.state
 
+    def _among_people(self, outcome: Outcome, action: Action, attempt: int) -> Outcome:
+        draw = chance(self.seed, self.episode, "moved", action.pddl(), attempt)
+        if draw.random() >= self.moved:
+            return outcome
+        found = somebody_moves(self.task, self.state, draw)
+        if found is None:
+            return outcome
+        gone, after = found
+        self._become(after)
+        return replace(
+            outcome, undone=gone, undoing=f"somebody moves the {gone.arguments[0]}", after=after
+        )
+
     def _become(self, after: State) -> None:
         self.ended += sorted(self.state - after)
         self.state = after
@@ -179,6 +201,7 @@ class Simulation:
             "state": [atom.pddl() for atom in sorted(self.state)],
             "attempts": dict(self.attempts),
             "ended": [atom.pddl() for atom in self.ended],
+            "changed": [atom.pddl() for atom in sorted(self.state ^ self.before)],
         }
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
@@ -191,8 +214,10 @@ class Simulation:
         state = frozenset(map(Atom.parse, snapshot["state"]))
         ended = list(map(Atom.parse, snapshot["ended"]))
         attempts = {str(name): operator.index(n) for name, n in snapshot["attempts"].items()}
-        self.task.check_state(state | {*ended})
+        changed = frozenset(map(Atom.parse, snapshot.get("changed", ())))  # none in older logs
+        self.task.check_state(state | {*ended} | changed)
         self.state, self.attempts, self.ended = state, Counter(attempts), ended
+        self.before = state ^ changed
 
 
 class SimulatedTruth:
@@ -207,6 +232,7 @@ class SimulatedTruth:
     def __init__(self, simulation: Simulation, visible: Callable[[Atom], bool] | None = None):
         self._simulation = simulation
         self._visible = visible
+        self._scene: tuple[State, str] | None = None
 
     @property
     def state(self) -> State:
@@ -231,3 +257,14 @@ class SimulatedTruth:
     def successful(self, action: Action) -> bool:
         """Whether all effects of an action hold now."""
         return self._simulation.achieved(action)
+
+    def scene(self) -> str:
+        """A fingerprint of the true state."""
+        state = self._simulation.state
+        if self._scene is None or self._scene[0] != state:
+            self._scene = state, fingerprint(state)
+        return self._scene[1]
+
+    def earlier(self) -> "EarlierTruth":
+        """What was true before the last action; at first what is true now."""
+        return EarlierTruth(self._simulation.task, self._simulation.before, self.visible)
