@@ -72,7 +72,7 @@ def made_up(folder: Path, *, wrong: float = 0.1, problems: int = 16, twice: bool
     scenes: list[dict[str, Any]] = []
     answers: list[tuple[Any, ...]] = []
     for problem in range(problems):
-        stacks: Stacks = [[], [], []]
+        stacks: Stacks = [[], []]
         for block in rng.sample("rgb", 3):
             rng.choice(stacks).append(block)
         for model in ("erring", "seeing-through"):

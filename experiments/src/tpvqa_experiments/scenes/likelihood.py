@@ -73,25 +73,48 @@ class Encoder:
 def learn(scenes: Sequence[Scene], encoder: Encoder) -> dict[str, Array]:
     """The weights of every VLM that answered some of the scenes."""
     across = max(rows.shape[1] for scene in scenes for rows in encoder.rows(scene))
-    counts = weights_of(scenes)
-    present = np.concatenate([encoder.true_rows(scene, across) for scene in scenes])
-    answers = np.concatenate([scene.answers for scene in scenes])
     sizes = [len(scene.answers) for scene in scenes]
-    # An abstention says neither yes nor no.
-    counted = np.repeat(counts, sizes) * (answers >= 0)
-    models = np.repeat([scene.model for scene in scenes], sizes)
-    yes = (answers == 1).astype(float)
-    vocabulary = encoder.vocabulary
-    common = logistic(
-        present, yes, counted, mean=np.zeros(encoder.size), width=vocabulary.widths(WIDTHS)
+    answers = np.concatenate([scene.answers for scene in scenes])
+    rows = _Rows(
+        present=np.concatenate([encoder.true_rows(scene, across) for scene in scenes]),
+        predicate=np.concatenate([predicates(scene.shape) for scene in scenes]),
+        yes=(answers == 1).astype(float),
+        # An abstention says neither yes nor no.
+        counts=np.repeat(weights_of(scenes), sizes) * (answers >= 0),
     )
-    found = {}
-    for model in sorted(set(models.tolist())):
-        own = models == model
-        found[model] = logistic(
-            present[own], yes[own], counted[own], mean=common, width=vocabulary.widths(OWN_WIDTHS)
-        )
-    return found
+    models = np.repeat([scene.model for scene in scenes], sizes)
+    vocabulary = encoder.vocabulary
+    common = rows.fitted(np.zeros(encoder.size), vocabulary.widths(WIDTHS))
+    own_widths = vocabulary.widths(OWN_WIDTHS)
+    return {
+        model: rows.of(models == model).fitted(common, own_widths)
+        for model in sorted(set(models.tolist()))
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class _Rows:
+    """Answers to learn from: their features, their predicates, and how much each counts."""
+
+    present: Rows
+    predicate: Rows
+    yes: Array
+    counts: Array
+
+    def of(self, chosen: NDArray[np.bool_]) -> "_Rows":
+        return _Rows(*(getattr(self, name)[chosen] for name in self.__slots__))
+
+    def fitted(self, mean: Array, width: Array) -> Array:
+        # No feature belongs to two predicates, so they are fitted one after the other.
+        for predicate in range(len(PREDICATES)):
+            own = self.of(self.predicate == predicate)
+            mean = logistic(own.present, own.yes, own.counts, mean=mean, width=width)
+        return mean
+
+
+def predicates(shape: Shape) -> Rows:
+    """The place in `PREDICATES` of every fact's own."""
+    return np.array([PREDICATES.index(look.predicate) for look in looks(shape)], np.int64)
 
 
 def weights_of(scenes: Sequence[Scene]) -> Array:

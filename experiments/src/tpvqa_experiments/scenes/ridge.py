@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 STEPS = 20
-ENOUGH = 1e-3
+ENOUGH = 0.02
 
 
 def logistic(

@@ -20,7 +20,7 @@ from tpvqa_experiments.scenes.likelihood import Evidence
 from tpvqa_experiments.scenes.ridge import Array
 
 FIRST = 3.0
-EXPONENT_STEPS = (0.2, 0.1, 0.05)
+EXPONENT_STEPS = (0.8, 0.4, 0.2, 0.1, 0.05)
 SHARES = (0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4)
 DULLED = (0.2, 0.3, 0.4, 0.5, 0.6)
 KEPT = 1500
