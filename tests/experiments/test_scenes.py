@@ -24,6 +24,7 @@ from tpvqa_experiments.scenes.judged import Reading
 from tpvqa_experiments.scenes.likelihood import Encoder, evidence, learn
 from tpvqa_experiments.scenes.naive import learn_rates, naive_log_belief
 from tpvqa_experiments.scenes.recorded import facts, read_scenes
+from tpvqa_experiments.scenes.ridge import logistic
 from tpvqa_experiments.scenes.situations import holds, looks
 from tpvqa_experiments.scenes.weighing import Sample, Weighing, choose
 
@@ -223,6 +224,18 @@ def test_a_belief_sums_to_one_and_its_set_holds_what_it_says(
         assert reading.sure == pytest.approx(ranked[0])
         assert reading.within or belief[truth] <= ranked[reading.states - 1] + 1e-12
         assert reading.within or not reading.right
+
+
+def test_weights_are_found_where_answers_are_nearly_all_alike() -> None:
+    rng = np.random.default_rng(1)
+    present = np.stack([rng.integers(0, 4, 5000), rng.integers(4, 30, 5000)], axis=1)
+    yes = (rng.random(5000) < 0.001).astype(float)
+    mean, width = np.full(30, -1.0), np.full(30, 30.0)
+    found = logistic(present, yes, np.ones(5000), mean=mean, width=width)
+    gradient = (found - mean) / width**2
+    p = 1 / (1 + np.exp(-found[present].sum(axis=1)))
+    np.add.at(gradient, present, (p - yes)[:, None])
+    assert np.abs(gradient).max() < 0.01
 
 
 def test_the_naive_belief_sums_to_one(tmp_path: Path) -> None:

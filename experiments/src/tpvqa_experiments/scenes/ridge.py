@@ -42,9 +42,16 @@ def _newton(
     prior = np.append(mean, 0.0)
     precision = np.append(width**-2.0, 1.0)
     pairs = (present[:, :, None] * size + present[:, None, :]).ravel()
+
+    def cost(weights: Array) -> float:
+        odds = weights[present].sum(axis=1)
+        unlikely = np.logaddexp(0.0, odds) - yes * odds
+        return float(counts @ unlikely + precision @ (weights - prior) ** 2 / 2)
+
     weights = prior.copy()
+    least = cost(weights)
     for _ in range(STEPS):
-        p = 1 / (1 + np.exp(-weights[present].sum(axis=1)))
+        p = np.exp(-np.logaddexp(0.0, -weights[present].sum(axis=1)))
         gradient = np.bincount(present.ravel(), np.repeat(counts * (p - yes), across), size)
         curved = np.repeat(counts * p * (1 - p), across * across)
         hessian = np.bincount(pairs, curved, size * size).reshape(size, size)
@@ -53,7 +60,10 @@ def _newton(
         gradient += precision * (weights - prior)
         hessian[np.diag_indices(size)] += precision
         step = np.linalg.solve(hessian, gradient)
-        weights -= step
+        # A whole step may go too far where answers are nearly all alike.
+        while (found := cost(weights - step)) > least and np.abs(step).max() > ENOUGH:
+            step /= 2
+        weights, least = weights - step, found
         if np.abs(step).max() < ENOUGH:
             break
     return weights[:-1]
