@@ -226,11 +226,11 @@ def test_a_belief_sums_to_one_and_its_set_holds_what_it_says(
         assert reading.within or not reading.right
 
 
-def test_weights_are_found_where_answers_are_nearly_all_alike() -> None:
+def test_weights_are_found_where_answers_are_far_from_what_is_expected() -> None:
     rng = np.random.default_rng(1)
     present = np.stack([rng.integers(0, 4, 5000), rng.integers(4, 30, 5000)], axis=1)
-    yes = (rng.random(5000) < 0.001).astype(float)
-    mean, width = np.full(30, -1.0), np.full(30, 30.0)
+    yes = (rng.random(5000) < 0.1).astype(float)
+    mean, width = np.full(30, 6.0), np.full(30, 3.0)
     found = logistic(present, yes, np.ones(5000), mean=mean, width=width)
     gradient = (found - mean) / width**2
     p = 1 / (1 + np.exp(-found[present].sum(axis=1)))

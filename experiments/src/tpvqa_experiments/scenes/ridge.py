@@ -60,7 +60,7 @@ def _newton(
         gradient += precision * (weights - prior)
         hessian[np.diag_indices(size)] += precision
         step = np.linalg.solve(hessian, gradient)
-        # A whole step may go too far where answers are nearly all alike.
+        # A whole step may go too far where answers are far from what is expected.
         while (found := cost(weights - step)) > least and np.abs(step).max() > ENOUGH:
             step /= 2
         weights, least = weights - step, found
