@@ -53,7 +53,7 @@ def columns_of(answers: Answers) -> list[str]:
 def facts_of(columns: Sequence[str]) -> Iterator[str]:
     """The facts of a scene in the order in which wrong answers are noted."""
     blocks = "".join(columns)
-    yield from (f"on {above},{below}" for above in blocks for below in blocks if above != below)
+    yield from (f"on {above},{below}" for above in blocks for below in blocks)
     yield from (f"clear {block}" for block in blocks)
     for block in blocks:
         yield from (f"incolumn {block},c{number + 1}" for number in range(len(columns)))

@@ -22,7 +22,7 @@ Fact = tuple[str, ...]
 def facts_of(columns: Arrangement) -> Iterator[Fact]:
     """The facts of a scene, in the order in which its wrong answers are noted."""
     blocks = "".join(columns)
-    yield from (("on", above, below) for above in blocks for below in blocks if above != below)
+    yield from (("on", above, below) for above in blocks for below in blocks)
     yield from (("clear", block) for block in blocks)
     for block in blocks:
         yield from (("incolumn", block, f"c{number + 1}") for number in range(len(columns)))
