@@ -26,10 +26,10 @@ COLUMNS = (
     ("embedded", "embedded", "images"),
     ("embedded, paper's simulator", "embedded", "images:paper"),
     ("paper-table", "paper-table", "symbolic"),
-    ("gemma-3-12b", "recorded:gemma-3-12b", "symbolic"),
-    ("internvl3-8b", "recorded:internvl3-8b", "symbolic"),
-    ("gpt-4.1-nano", "recorded:gpt-4.1-nano", "symbolic"),
-    ("qwen2.5-vl-72b", "recorded:qwen2.5-vl-72b", "symbolic"),
+    ("gemma-3-12b", "recorded:gemma-3-12b:fresh", "symbolic"),
+    ("internvl3-8b", "recorded:internvl3-8b:fresh", "symbolic"),
+    ("gpt-4.1-nano", "recorded:gpt-4.1-nano:fresh", "symbolic"),
+    ("qwen2.5-vl-72b", "recorded:qwen2.5-vl-72b:fresh", "symbolic"),
 )
 """How a column is called, its VLM and its world."""
 COMPLETION = (

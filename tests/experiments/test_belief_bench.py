@@ -199,14 +199,14 @@ def test_calibrations_are_learnt_under_another_seed(
 
 
 def test_recorded_vlms_are_calibrated_on_the_other_half() -> None:
-    cell = Cell("eat_apple", "belief", "recorded:gemma-3-12b:1", "symbolic")
-    assert source_of(cell).vlm == "recorded:gemma-3-12b:0"
+    cell = Cell("eat_apple", "belief", "recorded:gemma-3-12b:1:fresh", "symbolic")
+    assert source_of(cell).vlm == "recorded:gemma-3-12b:0:fresh"
     seen = Cell("eat_apple", "belief", "embedded", "images")
     assert source_of(seen).world == "images"
     assert source_of(seen, "kitchen").world == "kitchen"
     extent = Extent()
     places = {
-        (cell.task == "build_tower", cell.vlm.endswith(":1"))
+        (cell.task == "build_tower", cell.vlm.endswith(":1:fresh"))
         for cell, _ in extent.cells(Part.RECORDED)
     }
     assert places == {(True, True), (False, True)}

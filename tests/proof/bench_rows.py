@@ -33,7 +33,7 @@ PAPER_CELLS = (
     ("eat_apple", "palmevqa", "embedded"),
     ("eat_apple", "effectvqa", "oracle:0.8"),
     ("clean_dishes", "successvqa", "oracle:0.8"),
-    ("serve_breakfast", "tpvqa", "recorded:gemma-3-12b"),
+    ("serve_breakfast", "tpvqa", "recorded:gemma-3-12b:fresh"),
 )
 """Task, monitor and VLM of cells of the paper's bench."""
 PAPER_EPISODES = 4

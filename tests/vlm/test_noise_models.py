@@ -30,6 +30,9 @@ class Truth:
     def visible(self, atom: Atom) -> bool:
         return True
 
+    def scene(self) -> str:
+        return "the only one"
+
     def possible(self, action: Action) -> bool:
         return self.yes
 
@@ -84,7 +87,7 @@ def test_the_table_has_no_column_for_other_tasks(task: Task) -> None:
 def test_a_recorded_model_errs_as_often_as_it_did(
     model: str, yes: bool, task: Task, book: QuestionBook
 ) -> None:
-    vlm = made(f"recorded:{model}", truth=Truth(yes=yes), task=task)
+    vlm = made(f"recorded:{model}:fresh", truth=Truth(yes=yes), task=task)
     question = book.fact(Literal(Atom("in_hand", ("bread", "left"))), way=Way.PRECONDITION)
     told = recordings(model, "igibson").of("precondition", "holding", truth=yes)
     expected = sum(r.count for r in told if r.yes) / sum(r.count for r in told)
@@ -113,7 +116,10 @@ def test_about_whole_actions_nothing_was_recorded(task: Task, book: QuestionBook
     assert [answer.reply for answer in answers] == [Reply.UNKNOWN] * 3
 
 
-@pytest.mark.parametrize("spec", ["recorded", "recorded:internvl3-8b:2", "paper-table:x"])
+@pytest.mark.parametrize(
+    "spec",
+    ["recorded", "recorded:internvl3-8b:2", "recorded:internvl3-8b:fresh:0", "paper-table:x"],
+)
 def test_arguments_that_mean_nothing(spec: str, task: Task) -> None:
     with pytest.raises(PluginError):
         made(spec, truth=Truth(yes=True), task=task)

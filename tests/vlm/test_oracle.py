@@ -34,6 +34,9 @@ class Truth:
     def visible(self, atom: Atom) -> bool:
         return True
 
+    def scene(self) -> str:
+        return str(sorted(map(str, self.facts)))
+
     def possible(self, action: Action) -> bool:
         return self.is_possible
 
@@ -185,6 +188,7 @@ def test_a_damaged_snapshot_is_an_error(damaged: dict[str, object]) -> None:
         ("oracle", 1.0, 0.0, "oracle:1"),
         ("oracle:0.8", 0.8, 0.0, "oracle:0.8"),
         ("oracle:0.8:0.5", 0.8, 0.5, "oracle:0.8:0.5"),
+        ("oracle:0.8:0:0.74", 0.8, 0.0, "oracle:0.8:0:0.74"),
     ],
 )
 def test_its_specifications(spec: str, accuracy: float, rho: float, name: str) -> None:
@@ -193,7 +197,16 @@ def test_its_specifications(spec: str, accuracy: float, rho: float, name: str) -
 
 
 @pytest.mark.parametrize(
-    "spec", ["oracle:2", "oracle:x", "oracle:nan", "oracle:-0.1", "oracle:0.8:7", "oracle:1:1:1"]
+    "spec",
+    [
+        "oracle:2",
+        "oracle:x",
+        "oracle:nan",
+        "oracle:-0.1",
+        "oracle:0.8:7",
+        "oracle:1:1:2",
+        "oracle:1:1:1:1",
+    ],
 )
 def test_a_wrong_specification_says_what_to_write(spec: str) -> None:
     with pytest.raises(PluginError, match="oracle:ACCURACY"):

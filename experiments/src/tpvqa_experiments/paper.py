@@ -18,7 +18,7 @@ from tpvqa.config import Limits, TrialConfig
 from tpvqa.defaults import looks
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.questions import Way
-from tpvqa.vlm.making import make_vlm
+from tpvqa.vlm.making import in_full, make_vlm
 from tpvqa.vlm.metrics import measure
 from tpvqa_experiments.balanced import Judged, balanced
 from tpvqa_experiments.paper_table import PAPER_TABLE
@@ -66,7 +66,7 @@ class PaperBench:
         """The cells of the tables."""
         return [
             Cell(task, monitor, vlm, world, condition)
-            for vlm in self.vlms
+            for vlm in map(in_full, self.vlms)
             for world in (self.worlds if looks(vlm) else ("symbolic",))
             for condition, monitors in self.monitors.items()
             for task in self.tasks

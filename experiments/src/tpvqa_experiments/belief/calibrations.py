@@ -16,7 +16,10 @@ from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.defaults import looks
+from tpvqa.vlm.recorded.spec import RecordedSpec
 from tpvqa.vlm.recorded.vlm import told_by
+
+RECORDED = "recorded:"
 
 SURVEY = "survey"
 """Who asks noise models: it asks regardless of the answers, so that all of them count."""
@@ -50,8 +53,8 @@ def source_of(cell: Cell, embedded_world: str = "images") -> Source:
         embedded_world: Where the embedded network's trials are run.
     """
     vlm, world = cell.believed or cell.vlm, cell.world
-    if vlm.startswith("recorded:") and vlm.endswith((":0", ":1")):
-        vlm = vlm[:-1] + ("0" if vlm.endswith("1") else "1")
+    if vlm.startswith(RECORDED):
+        vlm = RECORDED + str(RecordedSpec.parse(vlm.removeprefix(RECORDED)).other_half())
     if vlm == "embedded":
         world = embedded_world
     return Source(cell.task, vlm, world)
@@ -94,7 +97,7 @@ def calibrations(
         heard = OwnWords()
         rows = gather(cell, away, range(episodes), own=own.get(source.task), heard=heard)
         found[source] = fit(rows, source.vlm, chosen_looks=looking)
-        if source.vlm.startswith("recorded:"):
+        if source.vlm.startswith(RECORDED):
             found[source] = _of_recordings(source, rows, found[source])
         if hearing:
             found[source] = found[source].hearing(heard)
@@ -107,7 +110,7 @@ def _of_recordings(
     source: Source, rows: Collection[LabelledAnswer], drawn: Calibration
 ) -> Calibration:
     """What recorded answers teach, each once in a group. Trials only tell how looks repeat."""
-    told = told_by(source.vlm.removeprefix("recorded:"), stage(source.task).task)
+    told = told_by(source.vlm.removeprefix(RECORDED), stage(source.task).task)
     recordings = label_recordings(told, {(row.way, row.predicate) for row in rows})
     kinds = {(way, truth) for way in ("precondition", "effect") for truth in (True, False)}
     distinct = sum(each.count for way, truth in kinds for each in told.of(way, "", truth=truth))

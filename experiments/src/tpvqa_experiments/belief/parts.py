@@ -108,7 +108,7 @@ class Extent:
                     for task in DOMAIN_TASKS[environment]:
                         if task in self.tasks:
                             for monitor in (BELIEF, *RECORDED_RIVALS):
-                                cell = Cell(task, monitor, f"recorded:{model}:1", SYMBOLIC)
+                                cell = Cell(task, monitor, recorded(model), SYMBOLIC)
                                 yield cell, self._count(monitor)
             case Part.WRONG_MODEL:
                 for rate in TRUE_RATES:
@@ -167,7 +167,7 @@ class Extent:
                     if task in self.tasks:
                         for monitor in (BELIEF, *RECORDED_FIELD):
                             yield (
-                                Cell(task, monitor, f"recorded:{model}:1", SYMBOLIC, condition),
+                                Cell(task, monitor, recorded(model), SYMBOLIC, condition),
                                 self.rivals // 2,
                             )
 
@@ -199,6 +199,11 @@ def knowing(rate: str) -> str:
     """The belief monitor that believes a rate of faults as it truly is."""
     name, _, value = rate.partition("=")
     return f"{BELIEF}:{name}_rate={value}"
+
+
+def recorded(model: str) -> str:
+    """A recorded model on one half of its problems, whose errors are drawn afresh at every look."""
+    return f"recorded:{model}:1:fresh"
 
 
 def believes(monitor: str) -> bool:

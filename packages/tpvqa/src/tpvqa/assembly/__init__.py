@@ -38,7 +38,7 @@ from tpvqa.text_files import kept_text
 from tpvqa.trial import trial
 from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
-from tpvqa.vlm.making import make_vlm
+from tpvqa.vlm.making import in_full, make_vlm
 from tpvqa.worlds import Restorable, World
 from tpvqa.worlds.capabilities import has_pictures, is_simulated, truth_of
 from tpvqa.worlds.making import make_world
@@ -162,7 +162,8 @@ class Trial:
         senses = senses_of(world, self.task)
         context |= {"truth": truth_of(world), "views": views_of(world), "senses": senses}
         named = config.vlm.spec or (None if vlm is None else vlm.name)
-        self.vlm_spec = named or default_vlm(pictures=has_pictures(world))
+        named = named or default_vlm(pictures=has_pictures(world))
+        self.vlm_spec = in_full(named) if vlm is None else named
         self.known = experience
         self.calibration = calibration or shipped_calibration(self.vlm_spec)
         context |= {

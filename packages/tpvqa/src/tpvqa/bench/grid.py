@@ -13,6 +13,7 @@ from tpvqa.monitors.capabilities import asks_actions
 from tpvqa.plugins import Kind, load_spec, split
 from tpvqa.tasks import find_task
 from tpvqa.vlm.capabilities import answers_facts_only
+from tpvqa.vlm.making import in_full
 from tpvqa.worlds.capabilities import has_pictures
 
 
@@ -61,7 +62,7 @@ class Grid:
         if self.vlms:
             return [
                 (vlm, world)
-                for vlm in self.vlms
+                for vlm in map(in_full, self.vlms)
                 for world in self.worlds or [default_world(files, vlm)]
             ]
         return [

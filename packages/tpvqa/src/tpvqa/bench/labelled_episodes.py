@@ -22,6 +22,7 @@ from tpvqa.labelling.recorded import said_in_trial
 from tpvqa.labelling.rows import labelled_rows
 from tpvqa.labelling.session import check_vlm
 from tpvqa.pddl import Atom, Task, task_from_text
+from tpvqa.vlm.making import as_logged, in_full
 from tpvqa.worlds import Report
 from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
@@ -108,8 +109,9 @@ def label_episodes(
         events = read_episode(folder)
         started = events[0]
         assert isinstance(started, Started)
-        vlm = vlm or started.vlm
-        check_vlm(folder, started.vlm, vlm)
+        answered = as_logged(started.vlm)
+        vlm = in_full(vlm) if vlm else answered
+        check_vlm(folder, answered, vlm)
         recorded = read_recorded(folder)
         if (recorded.folder / LABELS).exists():
             labelled.append(recorded)

@@ -136,6 +136,7 @@ def calibrate(
     from tpvqa.bench.reliability import lines
     from tpvqa.defaults import default_vlm
     from tpvqa.errors import TpvqaError
+    from tpvqa.vlm.making import in_full
 
     if trials is None and any(layer.values for layer in layers if layer is not _SHORT):
         raise TpvqaError("How trials are run is for --trials N; leave it out otherwise.")
@@ -163,7 +164,7 @@ def calibrate(
         name, rows = _from_pictures(vlm or default_vlm(), pictures, own, hidden=hidden)
     else:
         assert trials is not None
-        name = vlm or default_vlm(pictures=not problems)
+        name = in_full(vlm or default_vlm(pictures=not problems))
         tasks_of_own = own_tasks(
             problems, domain=domain, questions=questions, world_file=world_file
         )

@@ -17,6 +17,7 @@ from tpvqa.config.layers import NAMEABLE, Key, Setting, settings
 from tpvqa.errors import EpisodeError, NotNamedError
 from tpvqa.events import Started
 from tpvqa.plugins import Kind, is_plain, split
+from tpvqa.vlm.making import as_logged
 
 _KINDS = {
     ("world", "spec"): Kind.WORLD,
@@ -68,6 +69,8 @@ def config_of(
         config = config.but(**({key[0]: {key[1]: chosen}} if len(key) > 1 else {key[0]: chosen}))
     if missing:
         raise NotNamedError(place, [*_words(given), *missing])
+    if config.vlm.spec == started.vlm:
+        config = config.but(vlm={"spec": as_logged(started.vlm)})
     return config
 
 

@@ -18,6 +18,24 @@ class FactsOnly:
     """It answers questions about facts only, never about whole actions."""
 
 
+class SaidInFull:
+    """What its arguments leave open means something else than in logs of before.
+
+    So logs and rows of benches hold its specification in full, and what is not in full there is
+    meant as it was meant then.
+    """
+
+    @classmethod
+    def in_full(cls, arguments: str) -> str:
+        """The arguments, with what they leave open."""
+        raise NotImplementedError
+
+    @classmethod
+    def of_before(cls, arguments: str) -> str:
+        """The arguments in full, by what they meant when they were not yet written so."""
+        raise NotImplementedError
+
+
 def is_noise_model(vlm: object) -> bool:
     """Whether a VLM, or a class of VLMs, is a noise model."""
     return issubclass(class_of(vlm), NoiseModel)

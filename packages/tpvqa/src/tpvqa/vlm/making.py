@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from tpvqa.errors import PluginError
-from tpvqa.plugins import Kind, load_spec, make_from
-from tpvqa.vlm.capabilities import is_noise_model
+from tpvqa.errors import PluginError, TpvqaError
+from tpvqa.plugins import Kind, class_of, load_spec, make_from, split
+from tpvqa.vlm.capabilities import SaidInFull, is_noise_model
 from tpvqa.vlm.protocol import VLM
 
 
@@ -33,3 +33,30 @@ def make_vlm(spec: str, context: Mapping[str, Any]) -> tuple[VLM, set[str]]:
         )
     entitled = ("truth", "simulation")
     return make_from(Kind.VLM, spec, context, entitled=entitled, protocol=VLM)
+
+
+def in_full(spec: str) -> str:
+    """A specification with what it leaves open, as logs and rows hold it.
+
+    Raises:
+        TpvqaError: There is no such VLM, or its arguments are not understood.
+    """
+    target = class_of(load_spec(Kind.VLM, spec))
+    name, arguments = split(spec)
+    return f"{name}:{target.in_full(arguments)}" if issubclass(target, SaidInFull) else spec
+
+
+def as_logged(spec: str) -> str:
+    """What the specification of a log means: in one of before, what it meant then.
+
+    A VLM that is not installed is called as the log calls it.
+
+    Raises:
+        PluginError: Its arguments are not understood.
+    """
+    try:
+        target = class_of(load_spec(Kind.VLM, spec))
+    except TpvqaError:
+        return spec
+    name, arguments = split(spec)
+    return f"{name}:{target.of_before(arguments)}" if issubclass(target, SaidInFull) else spec

@@ -12,6 +12,7 @@ from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import NoiseModel
 from tpvqa.vlm.out_of_sight import out_of_sight
 from tpvqa.vlm.protocol import TruthSource
+from tpvqa.vlm.scenes import scene_of, tells_scenes
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +32,12 @@ class Oracle(NoiseModel):
     pictures it cannot see what the world file says is not shown.
 
     Real errors repeat: with probability `rho` it gives its last answer again when it looks again
-    at an unchanged fact. Otherwise each look is drawn afresh; the draw is a function of seed,
-    episode, the question's text, its true answer and the look. As a VLM hears only words, two
-    questions in the same words are the same question, and get the same answer within one look.
+    at an unchanged fact. And they last: with probability `persistent` an answer is the scene's own
+    draw, the same each time that this is asked of this scene (true state and view) in the trial,
+    so that two answers to a question about a scene correlate by the square of it. Otherwise each
+    look is drawn afresh; the draw is a function of seed, episode, the question's text, its true
+    answer and the look. As a VLM hears only words, two questions in the same words are the same
+    question, and get the same answer within one look.
 
     Its P(yes) is `accuracy` where it says yes and 1 - `accuracy` where it says no: how reliable
     the model believes itself to be, which is exact by construction.
@@ -42,11 +46,13 @@ class Oracle(NoiseModel):
         truth: What is true in the world.
         accuracy: Probability that a fresh answer is right.
         rho: Probability that a further look at an unchanged fact repeats the last answer.
+        persistent: The lasting share: probability that an answer is the scene's own draw.
         seed: The user's seed.
         episode: Number of the episode under this seed.
 
     Raises:
-        PluginError: `accuracy` or `rho` is not a probability.
+        PluginError: One of the three is not a probability, or errors are to last in a world that
+            does not tell scenes apart.
     """
 
     def __init__(
@@ -55,13 +61,19 @@ class Oracle(NoiseModel):
         *,
         accuracy: float = 1.0,
         rho: float = 0.0,
+        persistent: float = 0.0,
         seed: int = 0,
         episode: int = 0,
     ) -> None:
-        for what, value in (("accuracy", accuracy), ("rho", rho)):
+        shares = {"accuracy": accuracy, "rho": rho, "lasting share": persistent}
+        for what, value in shares.items():
             if not 0 <= value <= 1:
                 raise PluginError(f"The oracle's {what} is {value}; it must lie between 0 and 1.")
         self.accuracy, self.rho = float(accuracy), float(rho)
+        self.persistent = float(persistent)
+        if persistent:
+            fresh = f"oracle:{accuracy:g}:{rho:g}"
+            tells_scenes(truth, f"{fresh}:{persistent:g}", fresh)
         self._truth, self._seed, self._episode = truth, seed, episode
         self._last: dict[str, _LastAnswer] = {}
 
@@ -69,35 +81,37 @@ class Oracle(NoiseModel):
     def from_spec(
         cls, arguments: str, *, truth: TruthSource, seed: int = 0, episode: int = 0
     ) -> "Oracle":
-        """Make it from `ACCURACY[:RHO]`; without arguments it never errs.
+        """Make it from `ACCURACY[:RHO[:PERSISTENT]]`; without arguments it never errs.
 
         Raises:
-            PluginError: The arguments are not one or two probabilities.
+            PluginError: The arguments are not one to three probabilities.
         """
         words = arguments.split(":") if arguments else []
         try:
             numbers = [float(word) for word in words]
         except ValueError:
             numbers = [-1.0]
-        if len(numbers) > 2 or not all(0 <= number <= 1 for number in numbers):
+        if len(numbers) > 3 or not all(0 <= number <= 1 for number in numbers):
             raise PluginError(
-                f"'oracle:{arguments}' is not understood. Write oracle, oracle:ACCURACY or "
-                "oracle:ACCURACY:RHO with numbers between 0 and 1, e.g. oracle:0.8:0.5."
+                f"'oracle:{arguments}' is not understood. Write oracle, oracle:ACCURACY, "
+                "oracle:ACCURACY:RHO or oracle:ACCURACY:RHO:PERSISTENT with numbers between 0 "
+                "and 1, e.g. oracle:0.8:0.5, or oracle:0.8:0:0.74 for errors that last."
             )
-        accuracy = numbers[0] if numbers else 1.0
-        rho = numbers[1] if len(numbers) > 1 else 0.0
-        return cls(truth, accuracy=accuracy, rho=rho, seed=seed, episode=episode)
+        given = dict(zip(("accuracy", "rho", "persistent"), numbers, strict=False))
+        return cls(truth, **given, seed=seed, episode=episode)
 
     @property
     def name(self) -> str:
         """The specification it can be made from again, e.g. "oracle:0.8:0.5"."""
         name = f"oracle:{self.accuracy:g}"
+        if self.persistent:
+            return f"{name}:{self.rho:g}:{self.persistent:g}"
         return f"{name}:{self.rho:g}" if self.rho else name
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
-        """Answer every question, in order; only the number of the look matters."""
+        """Answer every question, in order; only look and scene matter, never the pictures."""
         return [
-            out_of_sight(observation, each, self._truth) or self._answer(observation.look, each)
+            out_of_sight(observation, each, self._truth) or self._answer(observation, each)
             for each in questions
         ]
 
@@ -129,10 +143,10 @@ class Oracle(NoiseModel):
                 "The episode is damaged, or was written by another version."
             ) from error
 
-    def _answer(self, look: int, question: Question) -> Answer:
+    def _answer(self, observation: Observation, question: Question) -> Answer:
         truth = self._true_answer(question)
+        yes = self._yes(observation, question, truth=truth)
         accuracy = self.accuracy_of(question)
-        yes = self._yes(look, question.text, accuracy, truth=truth)
         return Answer(
             question=question,
             reply=Reply.YES if yes else Reply.NO,
@@ -142,8 +156,12 @@ class Oracle(NoiseModel):
         )
 
     def accuracy_of(self, question: Question) -> float:
-        """The probability that a fresh answer to a question is right."""
+        """How reliable it believes itself to be: what its P(yes) says."""
         return self.accuracy
+
+    def right_of(self, question: Question, *, truth: bool) -> float:
+        """The probability that a fresh answer is right; by default what it believes."""
+        return self.accuracy_of(question)
 
     def _true_answer(self, question: Question) -> bool:
         match question:
@@ -154,15 +172,21 @@ class Oracle(NoiseModel):
             case ActionQuestion():
                 return self._truth.successful(question.action)
 
-    def _yes(self, look: int, text: str, accuracy: float, *, truth: bool) -> bool:
+    def _yes(self, observation: Observation, question: Question, *, truth: bool) -> bool:
+        look, text = observation.look, question.text
         last = self._last.get(text)
         if last is not None and last.look == look:
             return last.yes
         key = (text, truth, look)
-        right = chance(self._seed, self._episode, "answer", *key).random() < accuracy
-        yes = truth if right else not truth
+        drawn = self._drawn("answer", *key)
+        if self.persistent and self._drawn("answer lasts", *key) < self.persistent:
+            scene = scene_of(observation, self._truth)
+            drawn = self._drawn("answer of the scene", text, truth, scene)
+        yes = truth if drawn < self.right_of(question, truth=truth) else not truth
         if self.rho and last is not None and last.truth == truth:
-            again = chance(self._seed, self._episode, "answer again", *key).random()
-            yes = last.yes if again < self.rho else yes
+            yes = last.yes if self._drawn("answer again", *key) < self.rho else yes
         self._last[text] = _LastAnswer(look, truth, yes)
         return yes
+
+    def _drawn(self, purpose: str, *key: object) -> float:
+        return chance(self._seed, self._episode, purpose, *key).random()

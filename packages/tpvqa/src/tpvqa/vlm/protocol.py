@@ -46,3 +46,17 @@ class TruthSource(Protocol):
 
     def successful(self, action: Action) -> bool:
         """Whether all effects of an action hold now."""
+
+    def scene(self) -> str:
+        """Tells scenes apart: the same for the same true state, in every process, and no other.
+
+        Only what errs the same in the same scene asks for it; see `vlm.scenes`.
+        """
+
+
+@runtime_checkable
+class Remembering(TruthSource, Protocol):
+    """What is true in a world that also knows what was true before the last action."""
+
+    def earlier(self) -> TruthSource:
+        """What was true before the last action; at first what is true now."""

@@ -16,6 +16,7 @@ from tpvqa.chance import chance
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.worlds.dead import NOTHING_DEAD, Dead
+from tpvqa.worlds.earlier_truth import EarlierTruth, fingerprint
 from tpvqa.worlds.outcome import Failure, Outcome
 from tpvqa.worlds.sensing import Sensors
 from tpvqa.worlds.shown import shown
@@ -73,6 +74,7 @@ class Simulation:
         self.start = task.init if start is None else start
         self.seed, self.episode = seed, episode
         self.state: State = self.start
+        self.before: State = self.start
         self.attempts: Counter[str] = Counter()
         self.ended: list[Atom] = []
         self._sensors = Sensors(self.rules.sensed, task)
@@ -92,6 +94,7 @@ class Simulation:
 
     def execute(self, action: Action) -> Outcome:
         """Try an action on the true state, and tell what skill and sensors notice."""
+        self.before = self.state
         if not (self.rules.sensed or self.rules.reports):
             return self._tried(action)
         attempt, truly = self.attempts[action.pddl()], self.truly(action)
@@ -180,6 +183,7 @@ class Simulation:
             "state": [atom.pddl() for atom in sorted(self.state)],
             "attempts": dict(self.attempts),
             "ended": [atom.pddl() for atom in self.ended],
+            "changed": [atom.pddl() for atom in sorted(self.state ^ self.before)],
         }
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
@@ -192,8 +196,10 @@ class Simulation:
         state = frozenset(map(Atom.parse, snapshot["state"]))
         ended = list(map(Atom.parse, snapshot["ended"]))
         attempts = {str(name): operator.index(n) for name, n in snapshot["attempts"].items()}
-        self.task.check_state(state | {*ended})
+        changed = frozenset(map(Atom.parse, snapshot.get("changed", ())))  # none in older logs
+        self.task.check_state(state | {*ended} | changed)
         self.state, self.attempts, self.ended = state, Counter(attempts), ended
+        self.before = state ^ changed
 
 
 class SimulatedTruth:
@@ -208,6 +214,7 @@ class SimulatedTruth:
     def __init__(self, simulation: Simulation, visible: Callable[[Atom], bool] | None = None):
         self._simulation = simulation
         self._visible = visible
+        self._scene: tuple[State, str] | None = None
 
     @property
     def state(self) -> State:
@@ -232,3 +239,14 @@ class SimulatedTruth:
     def successful(self, action: Action) -> bool:
         """Whether all effects of an action hold now."""
         return self._simulation.achieved(action)
+
+    def scene(self) -> str:
+        """A fingerprint of the true state."""
+        state = self._simulation.state
+        if self._scene is None or self._scene[0] != state:
+            self._scene = state, fingerprint(state)
+        return self._scene[1]
+
+    def earlier(self) -> "EarlierTruth":
+        """What was true before the last action; at first what is true now."""
+        return EarlierTruth(self._simulation.task, self._simulation.before, self.visible)

@@ -3,18 +3,21 @@
 from bisect import bisect
 from collections.abc import Mapping, Sequence
 from itertools import accumulate
+from random import Random
 
 from tpvqa.chance import chance
-from tpvqa.errors import PluginError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions.question import FactQuestion, Question, Way
 from tpvqa.vlm.answer import Answer, Reply
-from tpvqa.vlm.capabilities import FactsOnly, NoiseModel
+from tpvqa.vlm.capabilities import FactsOnly, NoiseModel, SaidInFull
 from tpvqa.vlm.out_of_sight import out_of_sight
 from tpvqa.vlm.protocol import TruthSource
-from tpvqa.vlm.recorded.answers import Recording, Recordings, models, recordings
+from tpvqa.vlm.recorded.answers import Recording, Recordings
+from tpvqa.vlm.recorded.lasting import Lasting, lasting
+from tpvqa.vlm.recorded.spec import Errors, RecordedSpec
+from tpvqa.vlm.scenes import scene_of, tells_scenes
 
 COUNTERPART: Mapping[str, str] = {
     "near": "reachable",
@@ -34,46 +37,84 @@ _KIND = {
 }
 
 
-class Recorded(NoiseModel, FactsOnly, PlainArguments):
+class Recorded(NoiseModel, FactsOnly, PlainArguments, SaidInFull):
     """Draws answers from those that a model gave to questions of the same kind.
 
     A noise model, not a VLM. An answer with its P(yes) is drawn from the model's recorded answers
     of the same kind (precondition or effect), of the same predicate where it has 30 of them (in
     each half 15), and of the same truth. Within one look the same question gets the same answer.
 
-    What is assumed: that errors depend on nothing else, so that answers at different looks are
-    independent; that questions about where else a thing is are answered as preconditions are; and
-    for the household that its predicates are as hard as their counterparts (`COUNTERPART`). About
-    whole actions nothing was recorded: such questions are *unknown*.
+    Errors last as they did in the record (see `Lasting`): a share of the answers is the scene's own
+    draw, the same each time that this is asked of this scene, part of which is one for the whole
+    trial; only the rest is drawn at each look.
+
+    What is assumed: that errors depend on nothing else; that questions about where else a thing is
+    are answered as preconditions are; and for the household that its predicates are as hard as
+    their counterparts (`COUNTERPART`). About whole actions nothing was recorded: such questions are
+    *unknown*.
 
     Args:
         truth: What is true in the world.
         told: The recorded answers.
         spec: What it was made from.
+        lasts: What share of them lasts; None for answers that are drawn anew at every look.
         seed: The user's seed.
         episode: Number of the episode under this seed.
+
+    Raises:
+        PluginError: Errors are to last in a world that does not tell scenes apart.
     """
 
     def __init__(
-        self, truth: TruthSource, told: Recordings, *, spec: str, seed: int = 0, episode: int = 0
-    ):
+        self,
+        truth: TruthSource,
+        told: Recordings,
+        *,
+        spec: str,
+        lasts: Lasting | None = None,
+        seed: int = 0,
+        episode: int = 0,
+    ) -> None:
         self._truth, self._told, self._spec = truth, told, spec
-        self._seed, self._episode = seed, episode
+        self._lasts, self._seed, self._episode = lasts, seed, episode
+        if lasts is not None:
+            tells_scenes(truth, spec, f"{spec.removesuffix(f':{Errors.LASTING}')}:{Errors.FRESH}")
 
     @classmethod
     def from_spec(
         cls, arguments: str, *, truth: TruthSource, task: Task, seed: int = 0, episode: int = 0
     ) -> "Recorded":
-        """Make it from `recorded:MODEL[:HALF]`, with HALF 0 or 1 for one half of the problems.
+        """Make it from `recorded:MODEL[:HALF][:fresh]`, with HALF 0 or 1 for one half of the
+        problems.
 
         The environment is blocksworld for a domain of that name, else igibson.
 
         Raises:
             UnknownNameError: No such model was recorded, or not in that environment.
-            PluginError: The arguments are others.
+            PluginError: The arguments are others, or errors are to last in a world that does not
+                tell scenes apart.
         """
-        told = told_by(arguments, task)
-        return cls(truth, told, spec=f"recorded:{arguments}", seed=seed, episode=episode)
+        spec = RecordedSpec.parse(arguments).with_errors(Errors.LASTING)
+        told = spec.told(task)
+        fresh = spec.errors is Errors.FRESH
+        return cls(
+            truth,
+            told,
+            spec=f"recorded:{spec}",
+            lasts=None if fresh else lasting(told.model, told.environment),
+            seed=seed,
+            episode=episode,
+        )
+
+    @classmethod
+    def in_full(cls, arguments: str) -> str:
+        """Says that errors last, where nothing is said."""
+        return str(RecordedSpec.parse(arguments).with_errors(Errors.LASTING))
+
+    @classmethod
+    def of_before(cls, arguments: str) -> str:
+        """Says that errors are drawn afresh, where nothing is said: all once were."""
+        return str(RecordedSpec.parse(arguments).with_errors(Errors.FRESH))
 
     @property
     def name(self) -> str:
@@ -81,22 +122,21 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments):
         return self._spec
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
-        """Answer every question, in order; only the number of the look matters."""
+        """Answer every question, in order; only look and scene matter, never the pictures."""
         return [
-            out_of_sight(observation, each, self._truth) or self._answer(observation.look, each)
+            out_of_sight(observation, each, self._truth) or self._answer(observation, each)
             for each in questions
         ]
 
-    def _answer(self, look: int, question: Question) -> Answer:
+    def _answer(self, observation: Observation, question: Question) -> Answer:
         if not isinstance(question, FactQuestion):
             return _silent(question, "No answers to questions about whole actions were recorded.")
         truth = question.true_in(self._truth.holds)
         choice = drawn_from(self._told, question.way, question.subject, truth=truth)
         if not choice:
             return _silent(question, "No answers to questions of this kind were recorded.")
-        draw = chance(self._seed, self._episode, "recorded answer", question.text, truth, look)
         shares = list(accumulate(recording.count for recording in choice))
-        told = choice[bisect(shares, draw.randrange(shares[-1]))]
+        told = choice[bisect(shares, self._place(observation, question.text, shares[-1], truth))]
         return Answer(
             question,
             Reply.YES if told.yes else Reply.NO,
@@ -105,22 +145,33 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments):
             text="yes" if told.yes else "no",
         )
 
+    def _place(self, observation: Observation, text: str, count: int, truth: bool) -> int:
+        """Which of so many recorded answers it is."""
+        key, lasts = (text, truth), self._lasts
+        if lasts is None or self._drawn("lasts", *key, observation.look) >= lasts.scene:
+            draw = self._chance("recorded answer", *key, observation.look)
+            return draw.randrange(count)
+        # In one scale for all kinds: asked otherwise, the same words are answered alike.
+        scene = scene_of(observation, self._truth)
+        if self._drawn("lasts for the trial", *key, scene) < lasts.trial:
+            return int(self._drawn("of the trial", *key) * count)
+        return int(self._drawn("of the scene", *key, scene) * count)
+
+    def _drawn(self, purpose: str, *key: object) -> float:
+        return self._chance(f"recorded answer {purpose}", *key).random()
+
+    def _chance(self, purpose: str, *key: object) -> Random:
+        return chance(self._seed, self._episode, purpose, *key)
+
 
 def told_by(arguments: str, task: Task) -> Recordings:
-    """The answers that MODEL[:HALF] stands for in the environment of a task.
+    """The answers that MODEL[:HALF][:fresh] stands for in the environment of a task.
 
     Raises:
         UnknownNameError: No such model was recorded, or not in that environment.
         PluginError: The arguments are others.
     """
-    model, _, half = arguments.partition(":")
-    if not model or half not in ("", "0", "1"):
-        raise PluginError(
-            f"'recorded:{arguments}' is not understood. Write recorded:MODEL or "
-            f"recorded:MODEL:HALF (0 or 1), with a model of {', '.join(models())}."
-        )
-    environment = "blocksworld" if task.domain_name == "blocksworld" else "igibson"
-    return recordings(model, environment, int(half) if half else None)
+    return RecordedSpec.parse(arguments).told(task)
 
 
 def drawn_from(told: Recordings, way: Way, predicate: str, *, truth: bool) -> tuple[Recording, ...]:
