@@ -23,6 +23,7 @@ _BROUGHT: Mapping[str, Mapping[str, str]] = {
         "dataset": HOUSEHOLD,
         "bench paper": EXPERIMENTS,
         "bench belief": EXPERIMENTS,
+        "bench viplan": EXPERIMENTS,
     },
 }
 
