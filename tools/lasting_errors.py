@@ -113,6 +113,19 @@ def main() -> None:
     for environment, models in fitted.items():
         for name, entry in models.items():
             print(environment, name or "all", json.dumps(entry))
+    for environment in fitted:
+        pooled = Record()
+        for (where, model), record in records.items():
+            if where == environment:
+                for problem, runs in record.problems.items():
+                    pooled.problems[f"{model} {problem}"] = runs
+        found = {_after(n): pooled.correlation(_after(n), [*pooled.problems]) for n in range(1, 9)}
+        print(environment, {kind: round(each, 2) for kind, each in found.items()})
+
+
+def _after(enumerations: int) -> str:
+    """The kind of pairs in other scenes, by how much later the second one was."""
+    return f"other scene, {min(enumerations, 8)} later"
 
 
 def _entry(
@@ -212,6 +225,9 @@ def _sums(
                 rate = rates.get(_group(one, fact, truth))
                 if truth == still and rate is not None:
                     sums[KINDS[not same]].add(yes - rate, again - rate)
+                    if not same:
+                        later = int(other["number"]) - int(one["number"])
+                        sums[_after(later)].add(yes - rate, again - rate)
     return sums
 
 

@@ -22,6 +22,7 @@ undo:
     [
         (("--disturbance", 0.5, "--failure", 0), "--disturbance has no effect: only a failed"),
         (("--world", "scripted", "--redo", "risky"), "--redo has no effect: a script says"),
+        (("--moved", 0.2), "--moved has no effect: nothing can be put elsewhere"),
         (
             ("--true-start", "start.txt"),
             "--true-start has no effect: the state is that of the problem",

@@ -201,7 +201,7 @@ def test_a_start_and_things_elsewhere_do_not_go_together() -> None:
 def test_settings_of_a_bench_are_as_before_where_the_world_behaves(tmp_path: Path) -> None:
     usual = common_settings(TrialConfig())
     assert usual.keys() >= {"failure", "disturbance", "spontaneous"}
-    assert not usual.keys() & {"redo", "dead", "true_start", "elsewhere"}
+    assert not usual.keys() & {"redo", "moved", "dead", "true_start", "elsewhere"}
     start = tmp_path / "start.txt"
     start.write_text("(on knife fridge)")
     told = common_settings(TrialConfig().but(simulation={"true_start": str(start), "dead": "find"}))

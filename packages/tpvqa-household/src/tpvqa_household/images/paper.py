@@ -32,6 +32,7 @@ class PaperSimulation(Simulation):
             failure=simulation.failure,
             disturbance=simulation.disturbance,
             spontaneous=simulation.spontaneous,
+            moved=simulation.moved,
             redo=simulation.redo,
             dead=simulation.dead,
             start=simulation.start,

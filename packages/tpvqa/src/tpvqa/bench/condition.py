@@ -10,7 +10,7 @@ LIMITS = ("repeats", "replans", "actions", "seconds")
 UNBOUND = {"repeats": "none", "replans": "none", "actions": "50x"}
 """What `limits=none` stands for: who does not come to an end with these has failed."""
 STARTS = {"start": "what", "priors": "priors"}
-FAULTS = ("redo", "dead", "elsewhere")
+FAULTS = ("redo", "moved", "dead", "elsewhere")
 OTHERS = (*FAULTS, "limits", "planner", "wording", "believed", "carried", *STARTS)
 
 
@@ -75,7 +75,7 @@ def not_understood(condition: str, meant: str = "") -> BenchError:
     return BenchError(
         f"The condition {shown(condition)} is not understood{meant or '.'} Write settings with "
         f"commas: rates of faults ({', '.join(RATES)}), redo=free, risky or refused, "
-        "dead=SKILL, elsewhere=THINGS, limits "
+        "moved=RATE, dead=SKILL, elsewhere=THINGS, limits "
         f"({', '.join(LIMITS)}; limits=none), planner=PLANNER, wording=paper, start=unknown, "
         "priors=FILE, believed=VLM, carried=EPISODES; for example failure=0.4,actions=30"
     )

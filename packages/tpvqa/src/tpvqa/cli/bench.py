@@ -87,8 +87,8 @@ def run(
             help="What differs between cells: settings with commas, conditions with semicolons (or "
             "the option several times), e.g. ';failure=0.4,actions=30', where nothing before the "
             "semicolon stands for no change. Settings: failure, disturbance, spontaneous, redo, "
-            "dead, elsewhere, repeats, replans, actions, seconds, limits=none, planner, believed, "
-            "carried."
+            "moved, dead, elsewhere, repeats, replans, actions, seconds, limits=none, planner, "
+            "believed, carried."
         ),
     ] = None,
     episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 100,

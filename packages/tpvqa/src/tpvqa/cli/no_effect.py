@@ -1,6 +1,7 @@
 """Settings of a simulated world that were given and change nothing."""
 
 from collections.abc import Collection, Iterator
+from random import Random
 from typing import TYPE_CHECKING
 
 from tpvqa.config.layers import Key, settings
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
     from tpvqa.pddl.pattern import Pattern
     from tpvqa.worlds.simulation import Simulation
 
-_OF_CHANCE = ("failure", "disturbance", "spontaneous", "redo")
+_OF_CHANCE = ("failure", "disturbance", "spontaneous", "moved", "redo")
 """Settings that a script takes the place of."""
 
 
@@ -38,6 +39,7 @@ def without_effect(trial: "Trial", given: Collection[Key]) -> list[str]:
 def _why(trial: "Trial", simulation: "Simulation | None", name: str) -> str:
     """Why a setting changes nothing; empty where it does."""
     from tpvqa.plugins import split
+    from tpvqa.worlds.people import somebody_moves
 
     if simulation is None:
         return f"the world {trial.world_spec} is not simulated"
@@ -50,6 +52,8 @@ def _why(trial: "Trial", simulation: "Simulation | None", name: str) -> str:
             return "only a failed action disturbs something, and --failure is 0"
         if not _can_be_undone(trial, simulation):
             return "nothing that the plan achieves can be undone"
+    if name == "moved" and not somebody_moves(trial.task, simulation.state, Random(0)):
+        return "nothing can be put elsewhere without changing more than its place"
     if name == "true_start" and simulation.start == trial.task.init:
         return "the state is that of the problem"
     return ""

@@ -115,7 +115,8 @@ class VLMConfig(_Part):
     spec: str | None = setting(
         "--vlm",
         "embedded (the default where there are pictures), openai:MODEL, or a noise model: "
-        "oracle[:ACCURACY[:RHO]] (the default where there are none).",
+        "oracle[:ACCURACY[:RHO[:PERSISTENT]]] (the default where there are none), "
+        "recorded:MODEL[:HALF][:fresh], flawed:KIND[:…].",
     )
     base_url: Annotated[str | None, AfterValidator(_address)] = setting(
         "--base-url", "Address of an OpenAI-like server."
@@ -217,6 +218,7 @@ class SimulationConfig(_Part):
     spontaneous: float = setting(
         "--spontaneous", "P(something is undone after a success).", 0.0, ge=0, le=1
     )
+    moved: float = setting("--moved", "P(somebody moves a thing after an action).", 0.0, ge=0, le=1)
     redo: Literal["free", "risky", "refused"] = setting(
         "--redo",
         "What comes of an action whose effects hold already: free (nothing happens), risky (it "

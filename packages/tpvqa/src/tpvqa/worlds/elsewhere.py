@@ -39,11 +39,11 @@ def elsewhere(
     state, moved = task.init, 0
     draw = chance(seed, episode, "elsewhere", task.name, count)
     handled = _handled(task, plan(task.init) or ())
-    places = {thing: found for thing, found in _places(task).items() if thing in handled}
+    places = {thing: found for thing, found in places_of(task).items() if thing in handled}
     for thing in draw.sample(sorted(places), len(places)):
         if moved == count:
             break
-        others = list(_others(places[thing], state, task))
+        others = [each for each in elsewhere_of(places[thing], state, task) if each != task.init]
         tried = draw.sample(others, min(len(others), MOST_TRIED))
         found = next((other for other in tried if plan(other) is not None), None)
         if found is not None:
@@ -63,8 +63,8 @@ def _handled(task: Task, plan: Sequence[Action]) -> set[str]:
     return {name for action in plan for name in action.arguments} - always
 
 
-def _places(task: Task) -> dict[str, list[Atom]]:
-    """Where each thing can be, as facts of the predicate of the one that is true."""
+def places_of(task: Task) -> dict[str, list[Atom]]:
+    """Where each thing can be, as facts of the predicate of the one that is true at first."""
     found: dict[str, list[Atom]] = {}
     known = {(atom.predicate, atom.arguments[1:]) for atom in task.atoms() | task.init}
     for group in task.mutex_groups:
@@ -83,7 +83,14 @@ def _places(task: Task) -> dict[str, list[Atom]]:
     return found
 
 
-def _others(places: list[Atom], state: State, task: Task) -> Iterator[State]:
+def elsewhere_of(places: Sequence[Atom], state: State, task: Task) -> Iterator[State]:
+    """The states in which one thing is elsewhere and all mutex groups still hold.
+
+    Args:
+        places: Where the thing can be.
+        state: The one where it is not.
+        task: Gives the groups.
+    """
     here = state & {*places}
     for place in places:
         if place not in here:
@@ -105,7 +112,7 @@ def _repaired(state: State, place: Atom, task: Task) -> State | None:
                 return None
             after |= {fitting[0]}
     consistent = all(_fits(after, atom, task) for atom in after)
-    return after if consistent and after != task.init else None
+    return after if consistent else None
 
 
 def _fits(state: State, atom: Atom, task: Task) -> bool:

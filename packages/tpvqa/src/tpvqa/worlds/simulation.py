@@ -18,6 +18,7 @@ from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.worlds.dead import NOTHING_DEAD, Dead
 from tpvqa.worlds.earlier_truth import EarlierTruth, fingerprint
 from tpvqa.worlds.outcome import Failure, Outcome
+from tpvqa.worlds.people import somebody_moves
 from tpvqa.worlds.sensing import Sensors
 from tpvqa.worlds.shown import shown
 from tpvqa.worlds.undo import Undoing
@@ -44,6 +45,7 @@ class Simulation:
         failure: Probability that an action fails although it is possible.
         disturbance: Probability that a failure also undoes an achieved fact.
         spontaneous: Probability that an achieved fact is undone after a success.
+        moved: Probability that somebody moves a thing after an action that disturbed nothing.
         redo: What comes of an action whose effects hold already.
         dead: Skills that never work.
         undoing: What disturbances undo; by default what the rules say.
@@ -60,6 +62,7 @@ class Simulation:
         failure: float = FAILURE,
         disturbance: float = DISTURBANCE,
         spontaneous: float = 0.0,
+        moved: float = 0.0,
         redo: Redo | str = Redo.FREE,
         dead: Dead = NOTHING_DEAD,
         undoing: Sequence[Undoing] | None = None,
@@ -69,6 +72,7 @@ class Simulation:
     ):
         self.task, self.rules = task, rules or WorldRules()
         self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
+        self.moved = moved
         self.redo, self.dead = Redo(redo), dead
         self.undoing = self.rules.undo if undoing is None else undoing
         self.start = task.init if start is None else start
@@ -95,10 +99,12 @@ class Simulation:
     def execute(self, action: Action) -> Outcome:
         """Try an action on the true state, and tell what skill and sensors notice."""
         self.before = self.state
-        if not (self.rules.sensed or self.rules.reports):
-            return self._tried(action)
         attempt, truly = self.attempts[action.pddl()], self.truly(action)
         outcome = self._tried(action)
+        if self.moved and outcome.undone is None:
+            outcome = self._among_people(outcome, action, attempt)
+        if not (self.rules.sensed or self.rules.reports):
+            return outcome
         report = next((r for r in self.rules.reports if r.action in (None, action.name)), None)
         reported = report is not None and report.reports(
             failed=not outcome.succeeded,
@@ -163,6 +169,19 @@ class Simulation:
     def achieved(self, action: Action) -> bool:
         """Whether all effects of an action hold already, so that it has nothing left to do."""
         return self.task.apply(self.state, action) == self.state
+
+    def _among_people(self, outcome: Outcome, action: Action, attempt: int) -> Outcome:
+        draw = chance(self.seed, self.episode, "moved", action.pddl(), attempt)
+        if draw.random() >= self.moved:
+            return outcome
+        found = somebody_moves(self.task, self.state, draw)
+        if found is None:
+            return outcome
+        gone, after = found
+        self._become(after)
+        return replace(
+            outcome, undone=gone, undoing=f"somebody moves the {gone.arguments[0]}", after=after
+        )
 
     def _become(self, after: State) -> None:
         self.ended += sorted(self.state - after)
