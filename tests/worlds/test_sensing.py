@@ -139,6 +139,16 @@ def test_a_skill_reports_as_many_failures_as_it_notices(tmp_path: Path) -> None:
     assert 0.03 < worked < 0.2
 
 
+def test_a_skill_that_refuses_what_is_impossible_notices_no_other_failure(tmp_path: Path) -> None:
+    told = rules("reports: [{refuses: 1}]", tmp_path)
+    for failure in (0.0, 1.0):
+        world = SymbolicWorld(Simulation(TASK, told, failure=failure))
+        assert world.execute(DISINFECT).report is Report.FAILED  # the drawer is shut
+        assert world.execute(OPEN).report is Report.DONE
+    noticing = rules("reports: [{notices: 1}]", tmp_path)
+    assert SymbolicWorld(Simulation(TASK, noticing)).execute(DISINFECT).report is Report.FAILED
+
+
 def test_a_script_changes_what_is_sensed_after_it(tmp_path: Path) -> None:
     told = rules("sensed: [{fact: (contaminated upper)}]", tmp_path)
     script = tmp_path / "story.yaml"

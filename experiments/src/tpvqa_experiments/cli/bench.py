@@ -1,4 +1,4 @@
-"""`tpvqa bench paper`, `belief`, `abroad` and `scenes`, beside the core's `tpvqa bench run`."""
+"""`tpvqa bench paper`, `belief`, `abroad`, `scenes` and `viplan`, beside the core's `tpvqa bench run`."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,6 +10,7 @@ from tpvqa.cli.bench_running import EXIT, bench_bar, finish, listed
 from tpvqa_experiments.cli.bench_abroad import abroad
 from tpvqa_experiments.cli.bench_belief import belief
 from tpvqa_experiments.cli.bench_scenes import scenes
+from tpvqa_experiments.cli.bench_viplan import viplan
 
 bench_app = typer.Typer(
     help="Many episodes: completion rates, accuracy, figures.", no_args_is_help=True
@@ -22,6 +23,7 @@ def register(app: typer.Typer) -> None:
     bench_app.command(epilog=EXIT)(belief)
     bench_app.command(epilog=EXIT)(abroad)
     bench_app.command(epilog=EXIT)(scenes)
+    bench_app.command(epilog=EXIT)(viplan)
     app.add_typer(bench_app, name="bench")
 
 

@@ -17,12 +17,13 @@ _BROUGHT: Mapping[str, Mapping[str, str]] = {
     "task": dict.fromkeys(
         ("clean_dishes", "collect_toys", "eat_apple", "serve_breakfast"), HOUSEHOLD
     ),
-    "VLM": {"embedded": HOUSEHOLD, "paper-table": EXPERIMENTS},
+    "VLM": {"embedded": HOUSEHOLD, "paper-table": EXPERIMENTS, "recorded-scenes": EXPERIMENTS},
     "world": dict.fromkeys(("images", "kitchen"), HOUSEHOLD),
     "command": {
         "dataset": HOUSEHOLD,
         "bench paper": EXPERIMENTS,
         "bench belief": EXPERIMENTS,
+        "bench viplan": EXPERIMENTS,
     },
 }
 

@@ -13,6 +13,7 @@ class EpisodeRow(BaseModel):
         completed: All goals hold in truth and the trial ended believing so.
         because: Why it ended.
         believed_goal: It ended believing that the goal holds.
+        reached: The goal held in truth when it ended, whatever was believed.
         longest_repeat: Most repeats of one action in a row.
         failures: Actions that failed in truth, or undid something.
         wasted: Actions that could do nothing: their effects held already, or a precondition did
@@ -42,6 +43,7 @@ class EpisodeRow(BaseModel):
     completed: bool = False
     because: str = "error"
     believed_goal: bool = False
+    reached: bool = False
     actions: int = 0
     questions: int = 0
     looks: int = 0

@@ -183,6 +183,7 @@ class Stage:
             "completed": bool(ended.completed),
             "because": ended.because,
             "believed_goal": ended.believed_goal,
+            "reached": bool(ended.goal_holds),
             "actions": ended.actions,
             "questions": ended.questions,
             "looks": ended.looks,

@@ -50,14 +50,25 @@ class ReportRule:
         action: The action's name; None for every one.
         notices: Share of its failures that it reports.
         false_alarms: Share of its successes that it reports as failures.
+        refuses: Share of the tries that it reports to have refused, of those in which a
+            precondition did not hold; None for `notices`.
     """
 
     action: str | None = None
     notices: float = 0.0
     false_alarms: float = 0.0
+    refuses: float | None = None
 
-    def reports(self, *, failed: bool, draw: Random) -> bool:
-        """Whether the skill reports a failure."""
+    def reports(self, *, failed: bool, impossible: bool = False, draw: Random) -> bool:
+        """Whether the skill reports a failure.
+
+        Args:
+            failed: Whether it failed in truth.
+            impossible: Whether it did as a precondition did not hold.
+            draw: Random numbers for it.
+        """
+        if impossible and self.refuses is not None:
+            return draw.random() < self.refuses
         return draw.random() < (self.notices if failed else self.false_alarms)
 
 

@@ -108,6 +108,7 @@ class Simulation:
         report = next((r for r in self.rules.reports if r.action in (None, action.name)), None)
         reported = report is not None and report.reports(
             failed=not outcome.succeeded,
+            impossible=outcome.failure is Failure.PRECONDITION,
             draw=chance(self.seed, self.episode, "report", action.pddl(), attempt),
         )
         true = self.task.extend(self.state)

@@ -140,11 +140,12 @@ def _occasion(place: Place) -> Occasion:
 
 
 def _report_rule(entry: Place, task: Task) -> ReportRule:
-    parts = entry.sections("action", "notices", "false_alarms")
+    parts = entry.sections("action", "notices", "false_alarms", "refuses")
     return ReportRule(
         _action_name(parts["action"], task) if "action" in parts else None,
         parts["notices"].share() if "notices" in parts else 0.0,
         parts["false_alarms"].share() if "false_alarms" in parts else 0.0,
+        parts["refuses"].share() if "refuses" in parts else None,
     )
 
 

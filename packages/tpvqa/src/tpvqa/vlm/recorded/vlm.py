@@ -179,7 +179,7 @@ def drawn_from(told: Recordings, way: Way, predicate: str, *, truth: bool) -> tu
     if way not in _KIND:
         return ()
     if told.environment == "igibson":
-        predicate = COUNTERPART.get(predicate, "")
+        predicate = COUNTERPART.get(predicate, predicate)
     return told.of(_KIND[way], predicate, truth=truth)
 
 

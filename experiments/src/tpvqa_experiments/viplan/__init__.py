@@ -1,0 +1,1 @@
+"""The ViPlan benchmark's problems, and what its grounder and others reach on them."""

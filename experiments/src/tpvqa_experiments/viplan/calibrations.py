@@ -1,0 +1,76 @@
+"""What a monitor is told of the answers on ViPlan's problems: learnt from other problems."""
+
+from collections.abc import Iterator
+from functools import cache
+
+from tpvqa.belief import LabelledAnswer
+from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.fitting import fit
+from tpvqa.bench.labelled_recordings import label_recordings
+from tpvqa.pddl import Task
+from tpvqa.questions.question import Way
+from tpvqa.vlm.answer import Reply
+from tpvqa.vlm.recorded.vlm import told_by
+from tpvqa_experiments.viplan.noise import PREDICATES
+from tpvqa_experiments.viplan.scenes import Scene, scenes, true_facts
+
+SCENES, RECORDED = "recorded-scenes", "recorded"
+WAYS = (Way.PRECONDITION, Way.EFFECT)
+
+
+def calibration(vlm: str, task: Task) -> Calibration | None:
+    """What a monitor is told of a VLM's answers in a task; None where nothing was recorded of it.
+
+    Of `recorded-scenes:MODEL` it is learnt from the initial scenes of every other problem, those
+    with even numbers for odd ones and the other way round; of `recorded:MODEL` from the recorded
+    answers.
+    """
+    name, _, arguments = vlm.partition(":")
+    if name == SCENES:
+        blocks = len(task.objects_by_type.get("block", ()))
+        return _of_scenes(arguments, blocks, 1 - _number(task.name) % 2)
+    if name == RECORDED:
+        return _of_answers(vlm, task)
+    return None
+
+
+@cache
+def _of_scenes(model: str, blocks: int, parity: int) -> Calibration:
+    told = [
+        scene
+        for scene in scenes(model)
+        if scene.initial and sum(scene.heights) == blocks and _number(scene.problem) % 2 == parity
+    ]
+    rows = [row for scene in told for row in _labelled(scene)]
+    return fit(rows, f"{SCENES}:{model}", chosen_looks=False)
+
+
+def _labelled(scene: Scene) -> Iterator[LabelledAnswer]:
+    """Every answer of a scene, at two looks, as it is the same at every look."""
+    true = true_facts(scene.columns)
+    for way in WAYS:
+        for look in range(2):
+            for fact, yes in scene.answers.items():
+                yield LabelledAnswer(
+                    way=way,
+                    predicate=fact[0],
+                    text=" ".join(fact),
+                    truth=fact in true,
+                    reply=Reply.YES if yes else Reply.NO,
+                    p_yes=None,
+                    trial=f"{scene.problem} {way}",
+                    look=look,
+                    weight=0.5,
+                )
+
+
+def _of_answers(vlm: str, task: Task) -> Calibration:
+    told = told_by(vlm.removeprefix(f"{RECORDED}:"), task)
+    predicates = PREDICATES if "block" in task.objects_by_type else task.fluents
+    groups = {(way, predicate) for way in WAYS for predicate in predicates}
+    return fit(label_recordings(told, groups), vlm, chosen_looks=False)
+
+
+def _number(problem: str) -> int:
+    digits = problem.rpartition("_")[2]
+    return int(digits) if digits.isdecimal() else 0
