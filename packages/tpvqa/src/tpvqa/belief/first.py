@@ -7,13 +7,17 @@ from math import exp, fsum, log, prod
 from random import Random
 from typing import Any, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tpvqa.belief.belief import MOST, SMALLEST
 from tpvqa.belief.constraints import Constraints, Group
 from tpvqa.belief.disturbances import disturbances
-from tpvqa.belief.likeliest import Found, Likeliest, Variable
+from tpvqa.belief.likeliest import Factor, Found, Likeliest, Variable
 from tpvqa.belief.mutexes import h2_mutexes
 from tpvqa.belief.origins import Origins
 from tpvqa.belief.priors import Priors
+from tpvqa.belief.reached import Reached, reached
 from tpvqa.errors import BeliefError, PlannerError
 from tpvqa.pddl import Atom, State, Task
 
@@ -25,6 +29,8 @@ be found out before the rest may be forgotten."""
 TRIES = 2_000
 """Draws of an initial state before one of the most probable ones is taken."""
 
+Floats = NDArray[np.float64]
+
 
 class Prior:
     """How probable each initial state is: its facts' own probabilities, given all constraints.
@@ -35,7 +41,8 @@ class Prior:
     looked at before somebody asks for the most probable ones.
 
     Where nothing is known, those states are possible that can have come about from the problem's
-    own initial state, as far as `Origins` can tell.
+    own initial state: exactly those where they can be listed (see `reached`), else as far as
+    `Origins` can tell.
 
     Args:
         task: The task.
@@ -53,6 +60,7 @@ class Prior:
         self._scores = {a: each.score(a) for a, each in self._choice_of.items()}
         self._factors: dict[tuple[Atom, ...], float] = {}
         self._found: Found | None = None
+        self._chances: Floats | None = None
 
     @property
     def atoms(self) -> tuple[Atom, ...]:
@@ -61,7 +69,9 @@ class Prior:
 
     @property
     def combinations(self) -> float:
-        """How many states there were if all choices were free."""
+        """How many states there are, or were if all choices were free."""
+        if isinstance(self._search, Reached):
+            return len(self._search.truths)
         return prod(len(e.variable.atoms) + (not e.variable.needed) for e in self._choices)
 
     def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
@@ -77,7 +87,7 @@ class Prior:
             self._scores[known[0]] += ratio
         elif known:
             self._factors[tuple(known)] = self._factors.get(tuple(known), 0.0) + ratio
-        self._found = None
+        self._found = self._chances = None
         return probable * if_true + (1 - probable) * if_false
 
     def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
@@ -91,8 +101,11 @@ class Prior:
     def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
         """How probable a fact is, or any alike, as far as its own choice tells.
 
-        What follows from other choices is not in it: that takes the states.
+        What follows from other choices is not in it, unless the states are listed.
         """
+        if isinstance(self._search, Reached):
+            holding = self._search.holding((atom, *alike))
+            return min(1.0, float(self._listed(self._search)[holding].sum()))
         none = 1.0
         for each in (atom, *alike):
             if each in self._scores:
@@ -123,11 +136,18 @@ class Prior:
         """So many states would have the same weight each (Simpson's index, inverted)."""
         return 1 / fsum(weight * weight for _, weight in self.states())
 
+    def _listed(self, states: Reached) -> Floats:
+        if self._chances is None:
+            self._chances = states.chances(self._scores, self._weighed())
+        return self._chances
+
+    def _weighed(self) -> list[Factor]:
+        return [(self._search.bits(atoms), ratio) for atoms, ratio in self._factors.items()]
+
     def _best(self, most: int) -> Found:
         if self._found is None or not (self._found.complete or len(self._found.states) >= most):
-            factors = [(self._search.bits(atoms), r) for atoms, r in self._factors.items()]
             self._found = self._search.best(
-                self._scores, most, factors=factors, within=-log(SMALLEST)
+                self._scores, most, factors=self._weighed(), within=-log(SMALLEST)
             )
             if not self._found.states:  # too many nearly equal ones: none of them was reached
                 one = self._search.best({}, 1)
@@ -137,9 +157,11 @@ class Prior:
     def drawn(self, random: Random) -> State:
         """One of the possible states, each as often as it is probable.
 
-        Exact where there are at most `MOST`, or where one of `TRIES` draws of all choices is
-        possible; else one of the most probable ones.
+        Exact where they are listed, where there are at most `MOST`, or where one of `TRIES` draws
+        of all choices is possible; else one of the most probable ones.
         """
+        if isinstance(self._search, Reached):
+            return self._search.drawn(self._listed(self._search), random)
         if not self._best(MOST).complete:
             for _ in range(TRIES):
                 bits = self._search.bits(
@@ -155,8 +177,10 @@ class Prior:
 @lru_cache(maxsize=4)
 def _space(
     task: Task, priors: Priors, undo: tuple[Any, ...]
-) -> "tuple[tuple[_Choice, ...], Likeliest]":
+) -> "tuple[tuple[_Choice, ...], Likeliest | Reached]":
     """The choices there are and what keeps them together; shared by trials one after the other."""
+    if priors.nothing_known and not undo and (listed := reached(task)) is not None:
+        return _choices_among(listed, task, priors), listed
     fluents = task.fluents - task.derived
     constraints, further, never = _constraints(task, undo)
     can_hold = {a for a in task.atoms() | task.init if a.predicate in fluents} - never
@@ -188,6 +212,13 @@ def _space(
             "and what the priors say is certain; make one of them less sure"
         )
     return choices, search
+
+
+def _choices_among(listed: Reached, task: Task, priors: Priors) -> "tuple[_Choice, ...]":
+    constraints = Constraints.of(task, listed.mutexes().pairs)
+    stated = priors.stated(listed.atoms, task)
+    variables = _variables(listed.atoms, (), constraints, listed.certain)
+    return tuple(_Choice.of(variable, stated, frozenset()) for variable in variables)
 
 
 def _constraints(

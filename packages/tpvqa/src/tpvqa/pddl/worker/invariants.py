@@ -8,6 +8,7 @@ from fast_downward.translate import invariant_finder, pddl
 from fast_downward.translate.instantiate import get_objects_by_type
 
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
+from tpvqa.pddl.worker.inductive import First, inductive_groups
 
 _COUNTED = "?X"  # how the translator writes the argument that a group counts
 
@@ -16,21 +17,24 @@ Group = tuple[frozenset[AtomKey], bool]
 
 
 def described_groups(
-    task: Any, grounding: Grounding, state: frozenset[AtomKey]
+    task: Any, grounding: Grounding, state: frozenset[AtomKey], first: First
 ) -> list[tuple[list[AtomKey], bool]]:
     """The groups of a task from an initial state.
 
     First come the laws of the domain: invariants that no action can break, whatever is reachable.
-    They name all atoms of fitting types, also those that only a mishap brings about. Then groups
-    that hold because of what is reachable from this state. Groups that no action adds to are left
+    They name all atoms of fitting types, also those that only a mishap brings about. Then those
+    that induction over conditional effects proves, and groups that hold because of what is
+    reachable from this state. Groups that no action adds to are left
     out (an accident of this initial state), and so are those within another.
 
     Args:
         task: The translator's normalised task; its initial state is that of the grounding.
         grounding: The grounding from this state.
         state: Its fluent atoms.
+        first: What else may hold initially.
     """
     kept = _widest(_laws(task, grounding.atoms), [])
+    kept = _widest(inductive_groups(grounding.actions, grounding.atoms, first), kept)
     proved = [atoms for atoms, exactly_one in kept if exactly_one]
     others = [group for group in grounding.mutex_groups if not any(group <= p for p in proved)]
     return _listed(_widest(_reached(grounding, others, state), kept))

@@ -10,6 +10,7 @@ from fast_downward.translate import normalize, options, pddl
 
 from tpvqa.pddl.worker.describing import static_description
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
+from tpvqa.pddl.worker.inductive import First
 from tpvqa.pddl.worker.invariants import described_groups, lawful_groups
 from tpvqa.pddl.worker.kept import Facts, KeptGroundings, quiet
 from tpvqa.pddl.worker.likeness import out_of_reach
@@ -89,6 +90,9 @@ class KnownTask:
                 raise ReadingError(error.message, "problem", error.line) from None
         self._left_open = frozenset(unsure.atoms)
         self._initial = self._split(initial)
+        self._first = First(
+            self._initial[1] - self._left_open, self._left_open, [*map(frozenset, unsure.oneof)]
+        )
         self.description["fluents"] = sorted({*self.description["fluents"], *hidden})
         self.description |= unsure.described()
         self._rules: Rules = rules_of(task)
@@ -131,7 +135,8 @@ class KnownTask:
         with quiet():
             self._task.init = here.initial
             if there is self._whole:
-                groups = described_groups(self._task, here, fluent)
+                opened = First(fluent) if initial is not None else self._first
+                groups = described_groups(self._task, here, fluent, opened)
             else:
                 groups = lawful_groups(self._task, here.atoms)
         return {

@@ -1,0 +1,58 @@
+"""Mutex groups where effects are conditional."""
+
+from hypothesis import given, settings
+
+from tests.listing import every_state
+from tests.pddl.conditional_domains import tasks
+from tests.trolley import INIT, trolley
+from tpvqa.pddl import Atom, Task
+
+ROOMS = ("hall", "attic", "cellar")
+
+
+def facts(*words: str) -> frozenset[Atom]:
+    return frozenset(map(Atom.parse, words))
+
+
+def places(box: str) -> frozenset[Atom]:
+    return facts(*(f"(at {box} {room})" for room in ROOMS))
+
+
+def found(task: Task) -> dict[frozenset[Atom], bool]:
+    return {group.atoms: group.exactly_one for group in task.mutex_groups}
+
+
+def test_what_effects_move_together_stays_in_one_place() -> None:
+    groups = found(trolley())
+    for box in ("crate", "chest"):
+        assert groups[places(box)]
+        assert groups[facts(f"(aboard {box})", f"(beside {box})")]
+    assert groups[facts(*(f"(parked {room})" for room in ROOMS))]
+
+
+def test_a_deletion_on_further_terms_is_no_balance() -> None:
+    task = trolley(left="(beside ?b)")  # what is aboard is not beside, so it is left behind
+    assert places("crate") not in found(task)
+    assert any(len(state & places("crate")) > 1 for state in every_state(task))
+
+
+def test_groups_hold_from_all_that_a_problem_leaves_open() -> None:
+    sure = "(beside crate) (aboard chest) (parked hall) (at chest hall)"
+    one = "(oneof (at crate hall) (at crate attic))"
+    assert found(trolley(f"{sure} {one}"))[places("crate")]
+    task = trolley(f"{sure} (unknown (at crate hall)) (unknown (at crate attic))")
+    assert places("crate") not in found(task)
+    assert found(task)[places("chest")]
+
+
+def test_two_at_first_are_no_group() -> None:
+    assert places("crate") not in found(trolley(f"{INIT} (at crate attic)"))
+
+
+@settings(max_examples=60, deadline=None)
+@given(tasks())
+def test_every_state_keeps_every_group(task: Task) -> None:
+    for state in every_state(task):
+        for group in task.mutex_groups:
+            assert len(state & group.atoms) <= 1
+            assert not group.exactly_one or state & group.atoms
