@@ -87,7 +87,10 @@ class Prior:
             self._scores[known[0]] += ratio
         elif known:
             self._factors[tuple(known)] = self._factors.get(tuple(known), 0.0) + ratio
-        self._found = self._chances = None
+        self._found = None
+        if isinstance(self._search, Reached) and self._chances is not None:
+            odds = np.where(self._search.holding(atoms), max(if_true, 1e-12), max(if_false, 1e-12))
+            self._chances = _shares(self._chances * odds)
         return probable * if_true + (1 - probable) * if_false
 
     def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
@@ -172,6 +175,12 @@ class Prior:
         states = self.states()
         (state,) = random.choices([s for s, _ in states], [weight for _, weight in states])
         return state
+
+
+def _shares(weights: Floats) -> Floats | None:
+    """Weights as shares of their sum; None where it is too small to tell."""
+    total = float(weights.sum())
+    return weights / total if total > 1e-200 else None
 
 
 @lru_cache(maxsize=4)

@@ -19,8 +19,8 @@ from tpvqa.pddl import Action, Atom, Condition, Conjunction, Literal, State, Tas
 
 MOST = 200_000
 """States beyond which they are not listed."""
-WORK = 100_000_000
-"""States times effects of actions beyond which they are not listed; some seconds."""
+WORK = 60_000_000
+"""States times effects of actions beyond which they are not listed; about a second."""
 
 Truths = NDArray[np.bool_]
 """A row a state, a column a fact."""
@@ -93,6 +93,8 @@ class Reached:
         if atoms & self.certain:
             return np.ones(len(self.truths), dtype=np.bool_)
         columns = [self._place[atom] for atom in atoms if atom in self._place]
+        if len(columns) == 1:
+            return np.asarray(self.truths[:, columns[0]])
         return np.asarray(self.truths[:, columns].any(axis=1))
 
     def mutexes(self) -> Mutexes:
@@ -169,7 +171,7 @@ def reached(task: Task, *, most: int = MOST, work: int = WORK) -> Reached | None
     always, never = truths.all(axis=0), ~truths.any(axis=0)
     open_ = np.flatnonzero(~always & ~never).tolist()
     certain = task.static | {atoms[number] for number in np.flatnonzero(always).tolist()}
-    return Reached(tuple(atoms[n] for n in open_), certain, np.ascontiguousarray(truths[:, open_]))
+    return Reached(tuple(atoms[n] for n in open_), certain, np.asfortranarray(truths[:, open_]))
 
 
 def _keys(states: Truths) -> NDArray[np.void]:

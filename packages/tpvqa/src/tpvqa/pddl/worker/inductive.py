@@ -13,8 +13,8 @@ from typing import Any
 
 from tpvqa.pddl.worker.grounding import AtomKey, key_of
 
-WORK = 40_000
-"""Cases of an action and a group that are looked into before nothing is said; some seconds."""
+WORK = 1_000_000
+"""Facts that are drawn from others before nothing is said; a second or two."""
 
 Fact = tuple[AtomKey, bool]
 """An atom, and whether it holds."""
@@ -59,7 +59,7 @@ def inductive_groups(
         atoms: The fluent atoms that can be reached.
         first: What may hold initially. The groups hold in every state that actions lead to from
             any state that it allows.
-        work: Cases beyond which none is found.
+        work: Facts drawn from others beyond which none is found.
 
     Returns:
         None at all where no effect is conditional: the translator's invariants say it all.
@@ -132,11 +132,12 @@ class _Induction:
     Args:
         steps: The actions.
         groups: The groups that hold at first, with whether exactly one of them does.
-        work: How many cases may be looked into.
+        work: How many facts may be drawn from others.
     """
 
     def __init__(self, steps: Sequence[_Step], groups: dict[frozenset[AtomKey], bool], work: int):
         self._groups, self._left = dict(groups), work
+        self._given: dict[int, Known | None] = {}
         self._groups_of: dict[AtomKey, list[frozenset[AtomKey]]] = {}
         for group in groups:
             for key in group:
@@ -151,7 +152,7 @@ class _Induction:
         """What is left.
 
         Raises:
-            _TooMuchError: It takes too many cases.
+            _TooMuchError: It takes too much work.
         """
         changed = True
         while changed:
@@ -161,10 +162,12 @@ class _Induction:
                     continue
                 if not all(self._keeps_one(step, group) for step in steps):
                     del self._groups[group]
-                    changed = True
                 elif self._groups[group] and any(self._may_empty(step, group) for step in steps):
                     self._groups[group] = False
-                    changed = True
+                else:
+                    continue
+                changed = True
+                self._given.clear()  # what followed by this group need not follow any more
         return self._groups
 
     def _keeps_one(self, step: _Step, group: frozenset[AtomKey]) -> bool:
@@ -172,6 +175,7 @@ class _Induction:
         adds = [(when, key) for when, key, added in step.effects if added and key in group]
         if not adds:
             return True
+        changed = {key for _, key, _ in step.effects}
         for member, known in self._cases(step, group):
             possible = [
                 (when, key, after)
@@ -179,7 +183,10 @@ class _Induction:
                 if (after := self._closed(known, when)) is not None
             ]
             for _, key, after in possible:
-                if member not in (None, key) and not _sure(step, member, False, after):
+                if member is None:
+                    if any(after.get(other, True) for other in group if other not in changed):
+                        return False
+                elif member != key and not _sure(step, member, False, after):
                     return False
             for (_, key, after), (when, other, _) in combinations(possible, 2):
                 if key != other and self._closed(after, when) is not None:
@@ -201,25 +208,31 @@ class _Induction:
     def _cases(
         self, step: _Step, group: frozenset[AtomKey]
     ) -> Iterator[tuple[AtomKey | None, Known]]:
-        """Each way in which an action can find a group: its member that holds, and what is known
-        then."""
-        given = self._closed({}, step.needs)
+        """Each way in which an action can find a group: its member that holds, of those that the
+        action changes, and what is known then. That any other holds is one case, as is none."""
+        if id(step) not in self._given:
+            self._given[id(step)] = self._closed({}, step.needs)
+        given = self._given[id(step)]
         if given is None:
             return
-        for member in (*sorted(group), None):
-            if member is not None or not self._groups[group]:
-                known = self._closed(given, [(key, key == member) for key in group])
-                if known is not None:
-                    yield member, known
+        touched = {key for _, key, _ in step.effects if key in group}
+        for member in sorted(touched):
+            known = self._closed(given, [(key, key == member) for key in group])
+            if known is not None:
+                yield member, known
+        if len(touched) < len(group) or not self._groups[group]:
+            known = self._closed(given, [(key, False) for key in touched])
+            if known is not None:
+                yield None, known
 
     def _closed(self, known: Known, further: Iterable[Fact]) -> Known | None:
         """What is known with further facts, and what follows by the groups; None where they
         contradict each other."""
-        self._left -= 1
-        if self._left < 0:
-            raise _TooMuchError
         found, fresh = dict(known), list(further)
         while fresh:
+            self._left -= 1
+            if self._left < 0:
+                raise _TooMuchError
             key, holds = fresh.pop()
             if key in found:
                 if found[key] != holds:
