@@ -64,9 +64,10 @@ def inductive_groups(
     Returns:
         None at all where no effect is conditional: the translator's invariants say it all.
     """
-    steps = [_Step.of(each) for each in actions]
-    if not any(when for step in steps for when, _, _ in step.effects):
+    actions = list(actions)
+    if not any(when for each in actions for when, _ in (*each.add_effects, *each.del_effects)):
         return []
+    steps = [_Step.of(each) for each in actions]
     added = {key for step in steps for _, key, adds in step.effects if adds}
     kept: dict[frozenset[AtomKey], bool] = {}
     for group in _guessed(set(atoms)):
