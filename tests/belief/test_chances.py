@@ -61,8 +61,7 @@ def test_a_rate_that_was_believed_for_certain_can_be_kept(rate: float) -> None:
 
 def test_how_far_a_vlm_is_trusted_is_not_taken_over_for_another() -> None:
     trust = Trust()
-    for _ in range(20):
-        trust.learn(0.95, -2.0)
+    trust.weights = tuple(range(len(trust.weights), 0, -1))
     calibration = Calibration.default("a")
     known = Experience.of(Chances(Rates()), trust, 3).with_vlm("a", calibration)
     again = Experience.of(Chances(Rates()), trust, 3).model_copy(

@@ -1,4 +1,4 @@
-"""`tpvqa bench paper`, `belief`, `abroad`, `scenes` and `viplan`, beside the core's `tpvqa bench run`."""
+"""`tpvqa bench paper`, `belief`, `abroad`, `scenes`, `viplan`, beside the core's `bench run`."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from tpvqa.belief.bounds import BOUND, EDGE
+from tpvqa.belief.lasting import FRESH, KINDS
 from tpvqa.belief.own_words import OwnWords, SensorWorth, SkillWorth, fit_sensors, fit_skills
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError, PlacedError
@@ -140,6 +141,7 @@ class Calibration(_Model):
         notices: What a user should know of it: P(yes) that points the wrong way.
         sensors: What the robot's own sensors are worth, by predicate.
         skills: What its skills' own reports are worth; of all and by action.
+        lasting: How probable each of `lasting.KINDS` is, of how errors last.
     """
 
     version: Literal[1] = 1
@@ -157,6 +159,14 @@ class Calibration(_Model):
     notices: tuple[str, ...] = ()
     sensors: tuple[SensorWorth, ...] = ()
     skills: tuple[SkillWorth, ...] = ()
+    lasting: Annotated[
+        tuple[Probability, ...], Field(min_length=len(KINDS), max_length=len(KINDS))
+    ] = FRESH
+
+    @property
+    def lasting_share(self) -> float:
+        """The expected lasting share of the answers."""
+        return sum(p * kind.share for p, kind in zip(self.lasting, KINDS, strict=True))
 
     @cached_property
     def _nearest(self) -> dict[Way, dict[str, Group]]:
@@ -183,6 +193,8 @@ class Calibration(_Model):
         """Tells it from other calibrations."""
         names = ("by_hand", "inferred", "sensors", "skills")
         unsaid = {name for name in names if not getattr(self, name)}
+        if self.lasting == FRESH:
+            unsaid.add("lasting")
         return sha256(self.model_dump_json(exclude=unsaid).encode()).hexdigest()[:12]
 
     @classmethod
@@ -193,7 +205,8 @@ class Calibration(_Model):
         the recordings of ViPlan (Merler et al. 2025) only half of them do, so `Trust.after` holds
         against it how the words of eight VLMs spread. Its P(yes) is trusted half (log odds
         halved), as VLMs are surer than they are right; a further look repeats the last answer with
-        probability 0.5 from the same view and 0.25 from another.
+        probability 0.5 from the same view and 0.25 from another. That errors last is learned, not
+        assumed.
         """
         return cls(
             vlm=vlm,

@@ -1,6 +1,6 @@
 """What can be done next, and what each is expected to cost."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -8,11 +8,13 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
+from tpvqa.belief.falls import fallen
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice, Table
+from tpvqa.belief.unseen import Unseen
 from tpvqa.pddl import Action, State, Task
 
 LIKELY = 0.02
@@ -31,6 +33,10 @@ FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
 ROUNDS = 3.0
 """How often it is no surprise to come back to the same action, were every step of it progress."""
+SETTLED = 0.97
+"""Where answers settle so much, what follows an action is taken to be seen."""
+SEVERAL = 40
+"""Joint states of which it is worked out what they cost unseen; the rest is lost."""
 DISTURBED = 0.02
 """In joint states of at least this probability it is worked out what disturbances would cost."""
 
@@ -65,6 +71,8 @@ class Chooser:
         self._sight = sight or Sight(model)
         self.ahead = Outlook(model, costs, self._sight, task)
         self._commitments = Commitments(model, self.ahead, self._sight)
+        self._unseen = Unseen(model, self.ahead, costs)
+        self.settles, self.finding = 1.0, 0.0
         self._going: dict[tuple[int, bool], float] = {}
         self._led: dict[Action, dict[tuple[int, bool], list[tuple[float, int, float]]]] = {}
         self._cost: dict[Action, dict[tuple[int, bool], float]] = {}
@@ -93,6 +101,7 @@ class Chooser:
         self._sight.renumbered(model)
         self.ahead.renumbered(model)
         self._commitments.renumbered(model)
+        self._unseen.renumbered(model)
         self._done = [(numbers.get(number, -1), action) for number, action in self._done]
 
     def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
@@ -158,6 +167,7 @@ class Chooser:
             current: The plan that is being followed; other actions cost a change of plan.
             barred: An action that the trial does not allow now: it was repeated too often.
         """
+        self.ahead.may_be_blind(self.settles < SETTLED)
         if (self.ahead.version, rates) != self._worked_out_for:
             self._worked_out_for = self.ahead.version, rates
             for known in (self._going, self._led, self._cost):
@@ -179,21 +189,36 @@ class Chooser:
                 limits[1] = 1.0
         if self._stuck(ranked):
             choices = [each for each in choices if each.action is None]
-        columns = [
-            self._end(ranked)
-            if each.action is None
-            else self._column(each.action, ranked, rates)
-            + (0.0 if self._in(each, current) else self._costs.replan)
-            + self._weary(each.action, ranked)
-            for each in choices
+        found: list[tuple[Choice, Floats, Floats]] = []
+        for each in choices:
+            if each.action is None:
+                end, unseen = self._end(ranked), self.settles < SETTLED
+                found += self._unseen.ends(each, end) if unseen else [(each, end, work[each])]
+                continue
+            more = 0.0 if self._in(each, current) else self._costs.replan
+            more += self._weary(each.action, ranked)
+            seen = self._column(each.action, ranked, rates) + more
+            if self.settles >= SETTLED:
+                found.append((each, seen, work[each]))
+                continue
+            for blind in self._blind(each.action, ranked, rates):
+                found_out = self.settles * seen + (1 - self.settles) * (blind + more)
+                for column in (found_out + self.finding, blind + more):
+                    found.append((each, column, work[each]))
+        told, numbers = tuple(each[0] for each in found), tuple(number for number, _ in ranked)
+        costs = np.stack([each[1] for each in found], axis=1)
+        return Table(told, numbers, weights, costs, np.stack([each[2] for each in found], axis=2))
+
+    def _blind(
+        self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates
+    ) -> list[Floats]:
+        """The expected costs of an action in the joint states, where nothing is seen after it, for
+        every way to go on."""
+        led = [
+            (weight, self._successors(action, number, weight, rates))
+            for number, weight in ranked[:SEVERAL]
         ]
-        return Table(
-            tuple(choices),
-            tuple(number for number, _ in ranked),
-            weights,
-            np.array(columns).reshape(len(choices), len(ranked)).T,
-            np.stack([work[each] for each in choices], axis=2),
-        )
+        return [self._step + column for column in self._unseen.columns(action, led, len(ranked))]
 
     def _end(self, ranked: Sequence[tuple[int, float]]) -> Floats:
         lost = self.ahead.failure
@@ -269,9 +294,9 @@ class Chooser:
         found: list[tuple[float, int, float]] = []
         if outcomes.intended is not None:
             after = outcomes.undone_after if near else ()
-            found += _fallen(1 - failure, outcomes.intended, after, rates.spontaneous)
+            found += fallen(1 - failure, outcomes.intended, after, rates.spontaneous)
         if near:
-            found += _fallen(failed, number, outcomes.undone, rates.disturbance, more)
+            found += fallen(failed, number, outcomes.undone, rates.disturbance, more)
         else:
             found.append((failed, number, more + rates.disturbance * self._step))
         return found
@@ -370,15 +395,3 @@ class Chooser:
                 changes = works * (undone and possible)
                 found[:, place] = changes - (1 - idle), undone * (possible - FLOOR)
         return found
-
-
-def _fallen(
-    share: float,
-    number: int,
-    undone: Iterable[tuple[float, int]],
-    rate: float,
-    more: float = 0.0,
-) -> list[tuple[float, int, float]]:
-    """What comes of a joint state where something achieved may be undone."""
-    falls = [(share * rate * each, other, 0.0) for each, other in undone] if rate else []
-    return [(share * (1 - rate) if falls else share, number, more), *falls]

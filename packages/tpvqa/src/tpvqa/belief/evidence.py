@@ -1,20 +1,21 @@
 """Answers as evidence: each weighs the belief by what it adds to those before."""
 
 from collections.abc import Collection, Hashable, Iterable
-from dataclasses import dataclass
-from math import exp, log
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.calibration import Apart, Calibration, Group
+from tpvqa.belief.belief import LOOKED_BACK, Belief
+from tpvqa.belief.calibration import Apart, Calibration
 from tpvqa.belief.chances import Beta
-from tpvqa.belief.counts import PSEUDO
 from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
 from tpvqa.belief.readings import Readings
+from tpvqa.belief.repeats import learn_repeats
+from tpvqa.belief.settling import Settling, in_doubt
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.trust import Trust
+from tpvqa.belief.worth import Heard, Said, Worth
 from tpvqa.pddl import Action, Atom, Task, literals
 from tpvqa.questions.question import FactQuestion
 from tpvqa.vlm import Answer, Reply
@@ -47,18 +48,18 @@ class _Last:
         pictures: Of which pictures it was asked since something was done last.
         view: From which view the last one was.
         true: Probability, after it, that yes was right.
-        yes: Yeses to the question since something was done last.
-        no: Noes since then.
         settled: Whether nothing was done since, so that what is true is unchanged.
+        heard: What was heard of it, by view.
+        actions: Done since.
     """
 
     reply: Reply
     pictures: set[Picture]
     view: str | None
     true: float
-    yes: int = 0
-    no: int = 0
     settled: bool = True
+    heard: dict[str | None, Heard] = field(default_factory=dict)
+    actions: int = 0
 
 
 class Weighed(Protocol):
@@ -111,6 +112,8 @@ class Evidence:
             for apart in Apart
         }
         self._last: dict[str, _Last] = {}
+        self.worth = Worth(trust, calibration.lasting)
+        self._changed: frozenset[Atom] = frozenset()
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
 
@@ -118,20 +121,25 @@ class Evidence:
         """Weigh something else from now on; what was answered before stays known."""
         self._weighed = belief
 
-    def acted(self, action: str = "", *, failed: bool | None = None) -> None:
+    def acted(
+        self, action: str = "", *, failed: bool | None = None, effects: Collection[Atom] = ()
+    ) -> None:
         """Note that an action was executed: facts may have changed, other things are in view.
 
         Args:
             action: Its name.
             failed: Whether the robot's own skill reports a failure; None where it reports nothing.
+            effects: What it was to change.
         """
+        self._changed = frozenset(effects)
         if failed is not None:
             self._take_report(action, failed=failed)
         self._readings.acted()
         for last in self._last.values():
+            last.heard = {last.view: last.heard[last.view]}
             last.settled = False
+            last.actions += 1
             last.pictures.clear()
-            last.yes = last.no = 0
         self._opened.clear()
         self._silent.clear()
 
@@ -218,30 +226,74 @@ class Evidence:
     def answers_to_be_sure(self) -> float:
         """How many answers of this VLM it takes to notice a mistake."""
         rates = self._calibration.whole.rates
-        right = (rates.yes_if_true + 1 - rates.yes_if_false) / 2
-        if self._trust is not None:
-            right = 0.5 + _share(self._trust, rates.yes_if_true, rates.yes_if_false) * (right - 0.5)
-        return answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
+        expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false), None, 0.5)
+        right = (expected.yes_if_true + 1 - expected.yes_if_false) / 2
+        sure = answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
+        return 1 + (sure - 1) * max(0.0, 5 * self.settling().share - 4)
+
+    def settling(self, questions: Iterable[FactQuestion] = ()) -> Settling:
+        """How far the answers in another scene would settle what is in doubt.
+
+        Args:
+            questions: About what may be in doubt; none for a fact that was never asked about.
+        """
+        whole = self._calibration.whole.rates
+        new = self.worth.expect((whole.yes_if_true, whole.yes_if_false), None, 0.5)
+        doubts: list[tuple[float, Reliability]] = []
+        for question in questions:
+            true = self._weighed.probability(question.atom, question.alike)
+            last, expected = self._last.get(question.text), new
+            if last is not None and in_doubt(true):
+                rates = self._calibration.group(question).rates
+                heard = self._heard(last, last.view, question.atoms).changed((1.0, 1.0), 0.0)
+                said = rates.yes_if_true, rates.yes_if_false
+                expected = self.worth.expect(said, heard, true)
+            doubts.append((true, expected))
+        return Settling.of(doubts, new)
 
     def expect(self, question: FactQuestion, view: str | None) -> Reliability:
-        """What the next answer to a question, at a new look from a view, is worth."""
-        group = self._calibration.group(question)
-        rates = group.rates
-        abstains = (rates.abstain_if_true + rates.abstain_if_false) / 2
-        true, false = rates.yes_if_true, rates.yes_if_false
-        if self._trust is not None:
-            # The same answer, worth what it can be trusted: drawn towards one half.
-            share = _share(self._trust, true, false)
-            true, false = 0.5 + share * (true - 0.5), 0.5 + share * (false - 0.5)
+        """What the next answers to a question, at new looks from a view, are worth."""
+        rates = self._calibration.group(question).rates
+        abstains = min((rates.abstain_if_true + rates.abstain_if_false) / 2, 0.95)
+        said = rates.yes_if_true, rates.yes_if_false
         last = self._last.get(question.text)
-        if last is not None:
-            true, false = _with_history(group, last, true, false)
-            rho = self._repeats[_apart(last, view)].mean
-            before = 1.0 if last.reply is Reply.YES else 0.0
-            if_true, if_false = _unchanged(last)
-            true = rho * if_true * before + (1 - rho * if_true) * true
-            false = rho * if_false * before + (1 - rho * if_false) * false
-        return Reliability(true, false, min(abstains, 0.95))
+        if last is None:
+            return replace(self.worth.expect(said, None, 0.5), abstains=abstains)
+        heard = self._heard(last, view, question.atoms)
+        true = self._weighed.probability(question.atom, question.alike)
+        found = self.worth.expect(said, heard, true)
+        rho = self._repeats[_apart(last, view)].mean
+        before = 1.0 if last.reply is Reply.YES else 0.0
+        if_true, if_false = (
+            tuple((share, again * before + (1 - again) * each) for share, each in mixture)
+            for again, mixture in zip(
+                (rho * same for same in _unchanged(last)), found.mixtures, strict=True
+            )
+        )
+        return Reliability.mixed(if_true, if_false, abstains)
+
+    def _heard(self, last: _Last, view: str | None, atoms: tuple[Atom, ...]) -> Heard:
+        """What was heard of a question, as it counts now."""
+        if last.actions:
+            same, still = _unchanged(last), self._still(last.actions, atoms)
+            last.heard = {last.view: last.heard[last.view].changed(same, still)}
+            last.actions = 0
+        known = last.heard.get(view)
+        if known is None:
+            known = last.heard[view] = last.heard[last.view].changed((1.0, 1.0), 0.0)
+        return known
+
+    def _still(self, actions: int, atoms: tuple[Atom, ...]) -> float:
+        """Probability that some actions changed nothing else, where they did not change a fact."""
+        came = self._belief.outcome_shares()
+        failed, disturbed = came.get("failure", 0.0), came.get("disturbed", 0.0)
+        if not self._changed.isdisjoint(atoms):  # it has changed nothing then
+            still = 1 - disturbed / failed if failed > 0 else 1.0
+        else:
+            still = failed + came.get("achieved", 0.0) - disturbed
+        for earlier in self._belief.earlier_shares()[: actions - 1]:
+            still *= earlier["failure"] + earlier["achieved"]
+        return min(max(still, 0.0), 1.0) if actions <= LOOKED_BACK else 0.0
 
     def take(
         self, question: FactQuestion, answer: Answer, picture: Picture, view: str | None
@@ -259,45 +311,36 @@ class Evidence:
         if last is not None and picture in last.pictures:
             return 1.0
         group = self._calibration.group(question)
-        raw = group.log_ratio(answer.reply, answer.p_yes)
         true = self._weighed.probability(question.atom, question.alike)
-        ratio = raw if self._trust is None else self._trust.ratio(raw)
-        if_true = _sigmoid(ratio)
-        if_false = 1 - if_true
-        again_true = again_false = same = 0.0
         yes = answer.reply is Reply.YES
+        said = Said(yes, group.log_ratio(answer.reply, answer.p_yes))
+        heard, rates = Heard(), (group.rates.yes_if_true, group.rates.yes_if_false)
         if last is not None:
-            if yes:
-                if_true, if_false = _with_history(group, last, if_true, if_false)
-            else:
-                yes_true, yes_false = _with_history(group, last, 1 - if_true, 1 - if_false)
-                if_true, if_false = 1 - yes_true, 1 - yes_false
-            repeats = self._repeats[_apart(last, view)]
-            same = 1.0 if last.reply is answer.reply else 0.0
-            unchanged = _unchanged(last)
-            again_true, again_false = (repeats.mean * share for share in unchanged)
+            heard = self._heard(last, view, atoms)
+            repeats, unchanged = self._repeats[_apart(last, view)], _unchanged(last)
+            same = last.reply is answer.reply
             if self._trust is not None:
                 # How often this word is said, not how much this P(yes) is worth.
-                said = (group.rates.yes_if_true, group.rates.yes_if_false)
-                _learn_repeats(repeats, true, said if yes else _others(said), unchanged, same)
-            if_true = again_true * same + (1 - again_true) * if_true
-            if_false = again_false * same + (1 - again_false) * if_false
+                expected = self.worth.expect(rates, heard, true)
+                words = (expected.yes_if_true, expected.yes_if_false)
+                told = words if yes else _others(words)
+                learn_repeats(repeats, true, told, unchanged, float(same))
+            again = repeats.mean * unchanged[0], repeats.mean * unchanged[1]
+            said = replace(said, again=again, same=same)
+        (if_true, if_false), heard = self.worth.take(said, heard, true, rates)
         probable = true * if_true + (1 - true) * if_false
         if probable < SURPRISING:
             self._open(atoms, held=true >= 0.5)
         elif self._doubts is not None:
             self._doubts.learn(atoms, if_true, if_false)
         self._weighed.see(atoms, if_true, if_false)
-        if self._trust is not None:
-            self._trust.learn(
-                true, raw, same=bool(same), again_true=again_true, again_false=again_false
-            )
         after = self._weighed.probability(question.atom, question.alike)
         if last is None:
             last = self._last[question.text] = _Last(answer.reply, set(), view, after)
+        heard.believed = after
         last.reply, last.view, last.true, last.settled = answer.reply, view, after, True
+        last.heard[view], last.actions = heard, 0
         last.pictures.add(picture)
-        last.yes, last.no = last.yes + yes, last.no + (not yes)
         return probable
 
     def take_from_person(self, question: FactQuestion, reply: Reply) -> None:
@@ -310,19 +353,6 @@ class Evidence:
             self._weighed.see(question.atoms, right, 1 - right)
 
 
-def _with_history(
-    group: Group, last: _Last, if_true: float, if_false: float
-) -> tuple[float, float]:
-    """Rates of yes, given the answers to the same question since the last action.
-
-    A rate is known from so many cases only. Answers that go on coming where one of the two says
-    they should not speak against that rate as well as against the fact (Beta-binomial).
-    """
-    cases = PSEUDO + group.rows / 2
-    total = cases + last.yes + last.no
-    return (cases * if_true + last.yes) / total, (cases * if_false + last.yes) / total
-
-
 def _unchanged(last: _Last) -> tuple[float, float]:
     """Probability that yes (no) was right at the last answer already, where it is right now."""
     return (1.0, 1.0) if last.settled else (last.true, 1 - last.true)
@@ -332,46 +362,12 @@ def _cases(mean: float, cases: float) -> Beta:
     return Beta(cases * mean, cases * (1 - mean))
 
 
-def _learn_repeats(repeats: Beta, true: float, said: Pair, unchanged: Pair, same: float) -> None:
-    """Learn from one more answer how often answers repeat.
-
-    Args:
-        repeats: What is known of ρ.
-        true: Probability, before the answer, that yes is right.
-        said: Probability of this reply, drawn afresh, where yes is right and where no is.
-        unchanged: Probability that the fact was the same at the last answer, likewise.
-        same: 1 where it is the last reply again, else 0.
-    """
-    still = (true * unchanged[0], (1 - true) * unchanged[1])
-    changed = (true * (1 - unchanged[0]), (1 - true) * (1 - unchanged[1]))
-    yes = repeats.mean * same * sum(still)
-    no = (1 - repeats.mean) * (still[0] * said[0] + still[1] * said[1])
-    total = yes + no + changed[0] * said[0] + changed[1] * said[1]
-    if total > 0:
-        repeats.learn(yes / total, no / total)
-
-
 def _others(said: Pair) -> Pair:
     return 1 - said[0], 1 - said[1]
 
 
 def _apart(last: _Last, view: str | None) -> Apart:
     return Apart.SAME_VIEW if last.view == view else Apart.OTHER_VIEW
-
-
-def _share(trust: Trust, true: float, false: float) -> float:
-    """By how much trust draws the rates of yes towards one half; never away from it."""
-    right = min(max((true + 1 - false) / 2, 0.501), 0.999)
-    trusted = _sigmoid(trust.ratio(_logit(right)))
-    return min((trusted - 0.5) / (right - 0.5), 1.0)
-
-
-def _sigmoid(x: float) -> float:
-    return 1 / (1 + exp(-x))
-
-
-def _logit(p: float) -> float:
-    return log(p / (1 - p))
 
 
 def words(replies: Collection[Reply]) -> str:

@@ -71,18 +71,19 @@ def fit(rows: Iterable[LabelledAnswer], vlm: str, *, chosen_looks: bool = True) 
         repeat_other_view=default.repeat_other_view,
         notices=() if curves is None else curves.notices,
     )
-    same, other = fit_repeats(
-        placed,
+    repeats = fit_repeats(
+        (each.row for each in placed),
         lambda row: found.group_of(row.way, row.predicate).rates,
         same_view=default.repeat_same_view,
         other_view=default.repeat_other_view,
     )
     return found.model_copy(
         update={
-            "repeat_same_view": same.rho,
-            "repeat_other_view": other.rho,
-            "pairs_same_view": same.pairs,
-            "pairs_other_view": other.pairs,
+            "repeat_same_view": repeats.rho[0],
+            "repeat_other_view": repeats.rho[1],
+            "pairs_same_view": repeats.pairs[0],
+            "pairs_other_view": repeats.pairs[1],
+            "lasting": repeats.lasting,
         }
     )
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Mixture = tuple[tuple[float, float], ...]
 TIMES = (1, 3, 8, 20, 60)
 """How often a question is thought to be asked in a row."""
 
@@ -29,11 +30,29 @@ class Reliability:
         yes_if_true: P(yes | yes is right), among answers that do not abstain.
         yes_if_false: P(yes | no is right), among them.
         abstains: P(no answer).
+        if_true: Several answers where yes is right, as a mixture: weights, and P(yes) of each
+            answer; empty where they are independent.
+        if_false: The same where no is right.
     """
 
     yes_if_true: float
     yes_if_false: float
     abstains: float = 0.0
+    if_true: Mixture = ()
+    if_false: Mixture = ()
+
+    @staticmethod
+    def mixed(if_true: Mixture, if_false: Mixture, abstains: float) -> "Reliability":
+        """Of answers that depend on each other."""
+        means = [sum(weight * each for weight, each in mix) for mix in (if_true, if_false)]
+        return Reliability(means[0], means[1], abstains, if_true, if_false)
+
+    @property
+    def mixtures(self) -> tuple[Mixture, Mixture]:
+        """What comes where yes is right, and where no is."""
+        return self.if_true or ((1.0, self.yes_if_true),), self.if_false or (
+            (1.0, self.yes_if_false),
+        )
 
 
 def answers_to_be_sure(right: float, repeat: float = 0.0) -> float:
@@ -63,6 +82,13 @@ def answers_to_know(likely: float, doubt: float, each: Reliability) -> float:
     return max(1.0, way / _drift(right) / (1 - each.abstains))
 
 
+def settled(each: Reliability) -> float:
+    """How far many answers tell a fact from its contrary, both as probable before: 1 less twice the
+    probability that the likelier one is not true in the end."""
+    true, false = (_mixed(mixture, TIMES[-1:]) for mixture in each.mixtures)
+    return 1 - float(np.minimum(true, false).sum())
+
+
 def _drift(right: float) -> float:
     right = min(max(right, 0.51), 0.99)
     return (2 * right - 1) * log(right / (1 - right))
@@ -83,6 +109,15 @@ def _counts(probability: float, times: int) -> Floats:
 def _all_counts(probability: float, times: tuple[int, ...]) -> Floats:
     """`_counts` of several numbers of answers behind one another."""
     return np.concatenate([_counts(probability, each) for each in times])
+
+
+def _mixed(mixture: Mixture, times: tuple[int, ...]) -> Floats:
+    """`_all_counts` of a mixture."""
+    found: Floats = sum(
+        (weight * _all_counts(round(each, 3), times) for weight, each in mixture[1:]),
+        mixture[0][0] * _all_counts(round(mixture[0][1], 3), times),
+    )
+    return found
 
 
 @lru_cache(maxsize=64)
@@ -123,8 +158,8 @@ def gains(
         The expected saving, shape (questions, times), never negative.
     """
     now = opened(if_true + if_false, work_if_true + work_if_false).min(axis=1)
-    true = np.array([_all_counts(round(each.yes_if_true, 3), times) for each in reliabilities])
-    false = np.array([_all_counts(round(each.yes_if_false, 3), times) for each in reliabilities])
+    true = np.array([_mixed(each.mixtures[0], times) for each in reliabilities])
+    false = np.array([_mixed(each.mixtures[1], times) for each in reliabilities])
     answers = np.array([1 - each.abstains for each in reliabilities])
     true, false = true[:, :, None], false[:, :, None]
     costs = opened(
@@ -162,8 +197,10 @@ def joint_gains(
     chances = np.ones((len(times), 1, weighted.shape[0]))
     for truth, each in zip(truths, reliabilities, strict=True):
         right = 1 - each.abstains
-        if_true = _majorities(round(each.yes_if_true, 3), times)
-        if_false = _majorities(round(each.yes_if_false, 3), times)
+        if_true, if_false = (
+            np.add.reduce([w * _majorities(round(p, 3), times) for w, p in mixture])
+            for mixture in each.mixtures
+        )
         yes = 0.5 + right * (if_true * truth + if_false * (1 - truth) - 0.5)
         chances = np.concatenate([chances * yes, chances * (1 - yes)], axis=1)
     now = opened(weighted.sum(axis=0), work.sum(axis=1)).min()

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from operator import mul
 from typing import NamedTuple
 
 from tpvqa.belief.costs import Costs
@@ -16,6 +17,7 @@ from tpvqa.belief.information import (
     joint_gains,
     known_gain,
     opened,
+    settled,
 )
 from tpvqa.belief.table import Table
 from tpvqa.questions.question import FactQuestion
@@ -204,9 +206,10 @@ class Inquirer:
         """
         doubt = min(self._costs.question / stake, 0.5)
         answers = sum(answers_to_know(each.likely, doubt, each.reliability) for each in doubted)
-        saving, first = known_gain(weighted, work, truths), doubted[0].question
+        settles = _settled(doubted)
+        saving, first = settles * known_gain(weighted, work, truths), doubted[0].question
         if person is not None and not self._evidence.silent(first.text, PERSONS_VIEW):
-            told = Inquiry(first, 1, saving - len(doubted) * person, person=True)
+            told = Inquiry(first, 1, saving / settles - len(doubted) * person, person=True)
             found = _better(found, told)
         if answers > min(budget.questions, len(doubted) * budget.looks):
             return found
@@ -246,6 +249,13 @@ class _Doubted(NamedTuple):
     question: FactQuestion
     reliability: Reliability
     likely: float
+
+
+def _settled(doubted: Sequence[_Doubted]) -> float:
+    """How far answers in this scene settle what is in doubt."""
+    weights = [each.likely * (1 - each.likely) for each in doubted]
+    told = [settled(each.reliability) for each in doubted]
+    return float(max(sum(map(mul, weights, told)) / sum(weights), EQUAL))
 
 
 _PERSONS = (Reliability(PERSON, 1 - PERSON),)

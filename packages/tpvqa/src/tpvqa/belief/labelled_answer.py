@@ -23,6 +23,7 @@ class LabelledAnswer:
         part: Tells apart stretches of a trial that are labelled by themselves: answers of two of
             them are never taken for answers about one unchanged fact.
         weight: How many answers it counts for.
+        scene: Tells apart the true states of a trial in which it was asked, where that is known.
     """
 
     way: Way
@@ -36,3 +37,4 @@ class LabelledAnswer:
     view: str | None = None
     part: str = ""
     weight: float = 1.0
+    scene: str = ""

@@ -12,6 +12,9 @@ from tpvqa.pddl import Action, State, Task
 
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
+UNSEEN = 10.0
+"""Actions for every step that a task is worth which may have to be done unseen: so often as blind
+repetition does them, three times."""
 PLANS = 16
 """Plans that are kept, the latest ones."""
 KNOWN = 64
@@ -49,6 +52,7 @@ class Outlook:
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
         self._rates = Rates()
         self._lost: float | None = None
+        self._blind = False
         self._most_repeated: float | None = None
         self._standing: list[tuple[AnnotatedPlan, _Places]] | None = None
         self._places: dict[AnnotatedPlan, _Places] = {}
@@ -84,6 +88,12 @@ class Outlook:
             self.left = actions
             self._to_go.clear()
             self.version += 1
+
+    def may_be_blind(self, blind: bool) -> None:
+        """Note whether the task may have to be done unseen: it is worth its while then, too."""
+        if blind is not self._blind:
+            self._blind = blind
+            self._forget()
 
     def give_up_on(self, state: State) -> None:
         """Note that no plan exists from a state."""
@@ -277,10 +287,16 @@ class Outlook:
             steps, works = self._longest(), 1 - self._rates.failure
             twice = 2 * steps * self._costs.action / self.progress
             unchecked = steps * self._costs.action / max(works, 0.05) ** steps
+            blind = UNSEEN * steps * self._costs.action if self._blind else 0.0
             self._lost = max(
-                self._costs.failure, twice, 1.5 * min(steps * self._usual_step(), unchecked)
+                self._costs.failure, blind, twice, 1.5 * min(steps * self._usual_step(), unchecked)
             )
         return self._lost
+
+    @property
+    def disturbance(self) -> float:
+        """Probability that a failure undoes something."""
+        return self._rates.disturbance
 
     def _usual_step(self) -> float:
         checks = CHECKS * (self._costs.question + self._costs.look)

@@ -47,30 +47,6 @@ class Trust:
             trusted = self._trusted[size] = log(right / (1 - right))
         return trusted if ratio > 0 else -trusted
 
-    def learn(
-        self,
-        true: float,
-        ratio: float,
-        *,
-        same: bool = False,
-        again_true: float = 0.0,
-        again_false: float = 0.0,
-    ) -> None:
-        """Learn from an answer.
-
-        Args:
-            true: Probability, before the answer, that yes is right.
-            ratio: Log likelihood ratio of the answer by the calibration.
-            same: Whether it is the last answer to the question again.
-            again_true: Where yes is right, the probability that it only repeats the last one.
-            again_false: The same where no is right.
-        """
-        for place, right in enumerate(_rights(ratio)):
-            if_true = again_true * same + (1 - again_true) * right
-            if_false = again_false * same + (1 - again_false) * (1 - right)
-            self._weights[place] *= true * if_true + (1 - true) * if_false
-        self._normalise()
-
     @staticmethod
     def after(rows: int) -> "Trust":
         """How far to trust a calibration that was learned from so many answers.

@@ -20,7 +20,7 @@ from tpvqa.events.events import (
     SensedRecord,
 )
 from tpvqa.labelling.recorded import subject_of, view_of
-from tpvqa.pddl import Action, Atom
+from tpvqa.pddl import Action, Atom, State
 from tpvqa.worlds import Report
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import Simulation
@@ -49,6 +49,7 @@ class Labeller:
         self.rows: list[LabelledAnswer] = []
         self.own = OwnWords()
         self._read: set[str] = set()
+        self._scenes: dict[State, int] = {}
 
     def __call__(self, event: Event) -> None:
         """Take note of an event."""
@@ -82,8 +83,13 @@ class Labeller:
                         trial=self._trial,
                         look=look,
                         view=self._views.get(look),
+                        scene=self._scene(),
                     )
                     self.rows.append(row)
+
+    def _scene(self) -> str:
+        """The number of the true state among those of the trial."""
+        return str(self._scenes.setdefault(self._simulation.state, len(self._scenes)))
 
     def _sense(self, facts: Sequence[SensedRecord]) -> None:
         state = self._simulation.task.extend(self._simulation.state) if facts else frozenset()

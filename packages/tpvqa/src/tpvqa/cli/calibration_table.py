@@ -50,6 +50,7 @@ def plain(
         "curves": str(image),
         "repeat_same_view": calibration.repeat_same_view,
         "repeat_other_view": calibration.repeat_other_view,
+        "lasting_share": round(calibration.lasting_share, 3),
         "notices": calibration.notices,
         "sensors": [each.model_dump() for each in calibration.sensors],
         "skills": [each.model_dump() for each in calibration.skills],
@@ -82,7 +83,8 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
     (console if console.is_terminal else Console(width=120)).print(printed)
     typer.echo(
         f"\nA further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
-        f"the same view, {calibration.repeat_other_view:.2f} from another."
+        f"the same view, {calibration.repeat_other_view:.2f} from another; of the rest "
+        f"{calibration.lasting_share:.2f} are one draw for all looks at a scene (lasting share)."
     )
     for each in calibration.sensors:
         tell(

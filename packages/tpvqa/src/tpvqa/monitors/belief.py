@@ -36,6 +36,8 @@ from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
 
+SETTLED = 0.8
+"""Where answers settle less, how an action came out is not looked at closely."""
 MOST_FACTS = 250_000
 """In all joint states that were met; those that are not possible any more are forgotten then."""
 
@@ -252,7 +254,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self.belief.act(step.action, self.chances.rates_of(step.action))
         self._asking.begin(step.action)
         before = {atom: self.belief.probability(atom) for atom in self._now.effects}
-        self.evidence.acted(step.action.name, failed=step.reported)
+        self.evidence.acted(step.action.name, failed=step.reported, effects=self._now.effects)
         for atom, was in before.items():
             self._now.notice(atom, was, self.belief.probability(atom), REPORTED)
         self._asking.sense(step.sensed)
@@ -269,6 +271,7 @@ class BeliefMonitor(Learning, PlainArguments):
         while True:
             yield from self._ways.seek(self.belief)
             yield from self._asking.feel(self._ways.atoms)
+            self._settle(step)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
             if self._chooser.foresees():
                 continue
@@ -281,6 +284,12 @@ class BeliefMonitor(Learning, PlainArguments):
                 self._errand, self._past = None, self._errand  # there; now it is looked
             elif best.action is not None or not (yield from self._sets_out(step)):
                 return best
+
+    def _settle(self, step: Step) -> None:
+        """Work out how far it can be found out what is true, and what that costs."""
+        found = self.evidence.settling(self._about_needs(step.book))
+        self._chooser.settles = found.share
+        self._chooser.finding = found.answers * self.costs.question + self.costs.look
 
     def _sets_out(self, step: Step) -> Generator[Request, Any, bool]:
         """Whether a goal that is out of sight is worth going to, before the trial ends."""
@@ -309,7 +318,7 @@ class BeliefMonitor(Learning, PlainArguments):
             views=self._asking.open_views,
             person=self._asking.person,
         )
-        if found is None and self._ways.closely(self._now):
+        if found is None and self._chooser.settles >= SETTLED and self._ways.closely(self._now):
             found = unknown(self._now, self.belief, step.book, budget, self._asking.open_views)
         return found
 
