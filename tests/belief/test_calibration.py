@@ -1,5 +1,6 @@
 """What an answer is worth: bounds, symmetry, groups, further looks, the file."""
 
+import json
 from itertools import pairwise
 from math import isclose, log
 from pathlib import Path
@@ -167,3 +168,19 @@ def test_a_missing_file_and_one_that_cannot_be_written(tmp_path: Path) -> None:
     with pytest.raises(WriteError, match="--out"):
         Calibration.default("v").save(tmp_path / "folder")
     assert [each.name for each in tmp_path.iterdir()] == ["folder"]
+
+
+@pytest.mark.parametrize("lasting", [[0.0] * 9, [0.5, 0.5], [2.0, *[0.0] * 8], "often"])
+def test_how_errors_last_is_checked(tmp_path: Path, lasting: object) -> None:
+    path = tmp_path / "c.json"
+    told = Calibration.default("a").model_dump(mode="json")
+    path.write_text(json.dumps({**told, "lasting": lasting}))
+    with pytest.raises(CalibrationError, match="lasting"):
+        Calibration.load(path)
+
+
+def test_a_file_that_does_not_say_how_errors_last_can_be_read(tmp_path: Path) -> None:
+    path = tmp_path / "c.json"
+    told = Calibration.default("a").model_dump(mode="json", exclude={"lasting"})
+    path.write_text(json.dumps(told))
+    assert Calibration.load(path).lasting_share == 0

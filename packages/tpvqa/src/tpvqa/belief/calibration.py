@@ -9,7 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from tpvqa.belief.bounds import BOUND, EDGE
 from tpvqa.belief.lasting import FRESH, KINDS
@@ -167,6 +167,13 @@ class Calibration(_Model):
     def lasting_share(self) -> float:
         """The expected lasting share of the answers."""
         return sum(p * kind.share for p, kind in zip(self.lasting, KINDS, strict=True))
+
+    @field_validator("lasting")
+    @classmethod
+    def _some(cls, weights: tuple[float, ...]) -> tuple[float, ...]:
+        if sum(weights) <= 0:
+            raise ValueError("the probabilities add up to nothing")
+        return weights
 
     @cached_property
     def _nearest(self) -> dict[Way, dict[str, Group]]:

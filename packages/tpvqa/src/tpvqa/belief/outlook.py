@@ -13,8 +13,8 @@ from tpvqa.pddl import Action, State, Task
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
 UNSEEN = 10.0
-"""Actions for every step that a task is worth which may have to be done unseen: so often as blind
-repetition does them, three times."""
+"""Actions for every step that a task is worth which may have to be done unseen: twice what blind
+repetition, five times a step, takes."""
 PLANS = 16
 """Plans that are kept, the latest ones."""
 KNOWN = 64

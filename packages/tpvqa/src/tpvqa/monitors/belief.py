@@ -36,7 +36,7 @@ from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
 
-SETTLED = 0.8
+TELLING = 0.8
 """Where answers settle less, how an action came out is not looked at closely."""
 MOST_FACTS = 250_000
 """In all joint states that were met; those that are not possible any more are forgotten then."""
@@ -318,7 +318,7 @@ class BeliefMonitor(Learning, PlainArguments):
             views=self._asking.open_views,
             person=self._asking.person,
         )
-        if found is None and self._chooser.settles >= SETTLED and self._ways.closely(self._now):
+        if found is None and self._chooser.settles >= TELLING and self._ways.closely(self._now):
             found = unknown(self._now, self.belief, step.book, budget, self._asking.open_views)
         return found
 
