@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any, Self
 
 from tpvqa import __version__
 from tpvqa.assembly.simulating import simulate
+from tpvqa.assembly.told import read_told, stated_bound
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.priors import Priors, load_priors
+from tpvqa.belief.risk import RiskBound
 from tpvqa.belief.shipped import shipped_calibration
 from tpvqa.belief.starts import opened
 from tpvqa.config import SimulationConfig, TrialConfig
@@ -64,7 +66,8 @@ class Trial:
         calibration: What the VLM's answers are worth; goes before the file that `config` names,
             and that before the one that is shipped for this VLM.
         experience: What was learned in earlier trials; goes before the file that `config` names.
-        reading: Whether to read the files of these two that `config` names.
+        risk: Where "done" may be reported; goes before the file that `config` names.
+        reading: Whether to read the files of these that `config` names.
         person: Answers where the monitor asks a person.
         begun_as: The first event, where the trial was begun before.
         every_option: Whether each of the config's options has to be one that a plug-in takes.
@@ -89,6 +92,7 @@ class Trial:
         model: FaultModel | None = None,
         calibration: Calibration | None = None,
         experience: Experience | None = None,
+        risk: RiskBound | None = None,
         reading: bool = True,
         person: VLM | None = None,
         begun_as: Started | None = None,
@@ -108,8 +112,8 @@ class Trial:
             known, self.task = self.task, opened(self.task, self.priors)
             model = model if self.task is known else None  # that of what was reachable before
             if reading:
-                calibration, experience = self._read(calibration, experience)
-            self._make(planner, vlm, model, calibration, experience, person)
+                calibration, experience = read_told(config.monitor, calibration, experience)
+            self._make(planner, vlm, model, calibration, experience, risk, person)
         except BaseException:
             self.close()
             raise
@@ -132,6 +136,7 @@ class Trial:
         model: FaultModel | None,
         calibration: Calibration | None,
         experience: Experience | None,
+        risk: RiskBound | None,
         person: VLM | None,
     ) -> None:
         config = self.config
@@ -166,7 +171,9 @@ class Trial:
         self.vlm_spec = in_full(named) if vlm is None else named
         self.known = experience
         self.calibration = calibration or shipped_calibration(self.vlm_spec)
+        self.risk = stated_bound(self, risk, reading=self._begun_as is None)
         context |= {
+            "risk": self.risk,
             "calibration": self.calibration,
             "experience": None
             if self.known is None
@@ -196,16 +203,6 @@ class Trial:
             return None
         return simulate(self.task, self.rules, self.config, planner, self._begun_as, self.priors)
 
-    def _read(
-        self, calibration: Calibration | None, experience: Experience | None
-    ) -> tuple[Calibration | None, Experience | None]:
-        files = self.config.monitor
-        if calibration is None and files.calibration is not None:
-            calibration = Calibration.load(Path(files.calibration))
-        if experience is None and files.experience is not None:
-            experience = Experience.load(Path(files.experience))
-        return calibration, experience
-
     @property
     def world(self) -> World:
         """Where the robot acts."""
@@ -222,7 +219,7 @@ class Trial:
             return self._begun_as.model_copy(update={"number": -1, "time": 0.0})
         faults = self.simulation and (self.config.simulation or SimulationConfig())
         goal = (self.book.fact(literal).text for literal in literals(self.task.goal))
-        told, known = self.calibration, self.known
+        told, known, risk = self.calibration, self.known, self.risk
         return Started(
             version=__version__,
             config=self.config.model_copy(update={"simulation": faults}),
@@ -246,6 +243,7 @@ class Trial:
             goal=", ".join(goal),
             calibration=None if told is None else told.model_dump(mode="json"),
             experience=None if known is None else known.model_dump(mode="json"),
+            risk=None if risk is None else risk.model_dump(mode="json"),
         )
 
     @property

@@ -6,6 +6,7 @@ from importlib.util import find_spec
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.stage import stage
+from tpvqa.bench.stated_risk import unstated
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, MissingExtraError, UnknownNameError
 from tpvqa.plugins import Kind, load_spec, takes
@@ -38,7 +39,7 @@ def check(cells: Sequence[Cell], common: TrialConfig, own: Mapping[str, OwnTask]
             continue
         cell.carried  # noqa: B018 — says what is wrong with it
         here = stage(cell.task, own.get(cell.task))
-        with here.trial(cell.config(common, 0)) as trial:
+        with here.trial(unstated(cell).config(common, 0)) as trial:
             if seen not in tried:
                 trial.check()
         tried |= {*parts, seen}

@@ -13,6 +13,7 @@ from tpvqa.bench.ledger import REMEDY, Ledger
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.settings import common_settings
+from tpvqa.bench.stated_risk import TRIALS, bounds, check_risk
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.files import write_whole
@@ -38,6 +39,7 @@ class Bench:
         calibrations: Gives what monitors are told of the VLM's answers, for cells that have
             episodes to run; of others the calibration that is shipped for their VLM, if any.
         more_settings: What else decides the figures.
+        risk_trials: Of every cell that states a risk, from which that is learnt.
     """
 
     wanted: Mapping[Cell, int]
@@ -45,11 +47,13 @@ class Bench:
     own: Mapping[str, OwnTask] = field(default_factory=dict)
     calibrations: Callable[[Sequence[Cell]], Mapping[Cell, Calibration]] = _nothing
     more_settings: Mapping[str, Any] = field(default_factory=dict)
+    risk_trials: int = TRIALS
 
     @property
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""
-        return {**common_settings(self.common), **self.more_settings}
+        more = {} if self.risk_trials == TRIALS else {"trials of a risk": self.risk_trials}
+        return {**common_settings(self.common), **self.more_settings, **more}
 
     def check(self) -> None:
         """See that every part of every cell is there and can be made, before anything is run.
@@ -57,6 +61,8 @@ class Bench:
         Raises:
             TpvqaError: What is not.
         """
+        for cell in self.wanted:
+            check_risk(cell, self.risk_trials)
         check(list(self.wanted), self.common, self.own)
 
 
@@ -90,9 +96,26 @@ def run_bench(
     try:
         _keep_tasks(folder, bench, {cell.task for cell, _ in ledger.rows})
         missing = {cell: len(ledger.missing(cell, n)) for cell, n in bench.wanted.items()}
-        told = bench.calibrations([cell for cell, count in missing.items() if count])
+        unfinished = [cell for cell, count in missing.items() if count]
+        told = bench.calibrations(unfinished)
         total = sum(bench.wanted.values())
         done = total - sum(missing.values())
+
+        def before(risk_done: int, risk_total: int) -> None:
+            progress(risk_done, risk_total + total)
+
+        risks = bounds(
+            unfinished,
+            folder,
+            bench.common,
+            bench.risk_trials,
+            calibrations=told,
+            own=bench.own,
+            more_settings=bench.more_settings,
+            workers=workers,
+            scheduler=scheduler,
+            progress=before,
+        )
         progress(done, total)
 
         def count(more: int) -> None:
@@ -109,6 +132,7 @@ def run_bench(
             done=count,
             calibrations=told,
             own=bench.own,
+            risks=risks,
         )
     finally:
         ledger.close()

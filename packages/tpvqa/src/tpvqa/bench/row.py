@@ -26,6 +26,7 @@ class EpisodeRow(BaseModel):
         seconds: Wall time.
         trust: The factor by which the VLM's answers are worth more or less than its calibration
             says, as the monitor has learned by the end; None where it learns no such thing.
+        goal: How probable the monitor took the goal to be at the end; None where it does not say.
         error: What went wrong in the program; empty where nothing did.
         answers: How many answers were of which kind: "way|subject|truth|reply|P(yes)".
         decisions: How many decisions were of which kind: "before|truth|went on".
@@ -58,6 +59,7 @@ class EpisodeRow(BaseModel):
     first_plan: int = 0
     seconds: float = 0.0
     trust: float | None = None
+    goal: float | None = None
     error: str = ""
     answers: dict[str, int] = {}
     decisions: dict[str, int] = {}

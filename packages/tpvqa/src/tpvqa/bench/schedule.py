@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from types import MappingProxyType
 
 from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.risk import RiskBound
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.dask_workers import as_they_finish, dask_client
 from tpvqa.bench.ledger import Ledger
@@ -62,6 +63,7 @@ def run_all(
     done: Callable[[int], None] = lambda count: None,
     calibrations: Mapping[Cell, Calibration] = MappingProxyType({}),
     own: Mapping[str, OwnTask] = MappingProxyType({}),
+    risks: Mapping[Cell, RiskBound] = MappingProxyType({}),
 ) -> None:
     """Run every missing episode; each batch is on disk as soon as it is back.
 
@@ -77,6 +79,7 @@ def run_all(
         done: Told how many episodes have come back, after each batch.
         calibrations: What the VLM's answers are worth, of cells whose monitor is told.
         own: Tasks of the user's own, by the names that cells have for them.
+        risks: Where "done" may be reported, of cells that state a risk.
 
     Raises:
         MissingExtraError: Dask is needed and not installed.
@@ -88,7 +91,8 @@ def run_all(
 
     def given(batch: Batch) -> Given:
         cell = batch.cell
-        return cell, common, batch.episodes, calibrations.get(cell), own.get(cell.task)
+        told = calibrations.get(cell), own.get(cell.task), risks.get(cell)
+        return cell, common, batch.episodes, *told
 
     results = _on_dask(todo, given, workers, scheduler) if distributed else _here(todo, given)
     for batch, rows in results:
@@ -96,7 +100,9 @@ def run_all(
         done(len(batch.episodes))
 
 
-Given = tuple[Cell, TrialConfig, tuple[int, ...], Calibration | None, OwnTask | None]
+Given = tuple[
+    Cell, TrialConfig, tuple[int, ...], Calibration | None, OwnTask | None, RiskBound | None
+]
 """What `run_batch` is called with."""
 
 

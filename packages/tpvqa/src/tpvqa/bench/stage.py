@@ -14,6 +14,7 @@ from tpvqa.assembly import Trial
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.risk import RiskBound
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
 from tpvqa.bench.own_task import OwnTask
@@ -25,6 +26,7 @@ from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import BenchError, TpvqaError
 from tpvqa.events import Ended, Event
 from tpvqa.events.events import ListenerDropped
+from tpvqa.monitors.capabilities import goal_probability_of
 from tpvqa.pddl import Task, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.making import make_planner
@@ -95,6 +97,7 @@ class Stage:
         *,
         calibration: Calibration | None = None,
         experience: Experience | None = None,
+        risk: RiskBound | None = None,
     ) -> tuple[EpisodeRow, Experience | None]:
         """The same with what the monitor is told, and what it has learned.
 
@@ -104,6 +107,7 @@ class Stage:
             episode: Its number.
             calibration: What the monitor is told of the VLM's answers.
             experience: What it has learned before.
+            risk: Where it may report "done", if it states a risk.
 
         Returns:
             The row, and what the monitor has learned, where it learns.
@@ -115,7 +119,8 @@ class Stage:
             "episode": episode,
         }
         try:
-            figures, learned = self._figures(cell.config(common, episode), calibration, experience)
+            config = cell.config(common, episode)
+            figures, learned = self._figures(config, calibration, experience, risk)
         except TpvqaError as error:
             figures, learned = {"error": str(error)}, experience
         except Exception:  # noqa: BLE001 — one broken plug-in must not end a bench of thousands
@@ -129,6 +134,7 @@ class Stage:
         *,
         calibration: Calibration | None = None,
         experience: Experience | None = None,
+        risk: RiskBound | None = None,
     ) -> Trial:
         """A trial of the task, ready to run; made of what all its trials share."""
         assert config.vlm.spec is not None
@@ -143,6 +149,7 @@ class Stage:
             model=self.model,
             calibration=calibration,
             experience=experience,
+            risk=risk,
             every_option=False,
         )
 
@@ -173,12 +180,14 @@ class Stage:
         config: TrialConfig,
         calibration: Calibration | None,
         experience: Experience | None,
+        risk: RiskBound | None,
     ) -> tuple[dict[str, Any], Experience | None]:
-        with self.trial(config, calibration=calibration, experience=experience) as trial:
+        with self.trial(config, calibration=calibration, experience=experience, risk=risk) as trial:
             judge = Judge(true_simulation(trial), self.actions)
             ended = self.play(trial, judge)
             learned = trial.experience
             trust = None if learned is None else learned.trusting()
+            goal = goal_probability_of(trial.monitor)
         figures = {
             "completed": bool(ended.completed),
             "because": ended.because,
@@ -199,6 +208,7 @@ class Stage:
             "answers": dict(judge.answers),
             "decisions": dict(judge.decisions),
             "trust": None if trust is None else round(trust.mean, 4),
+            "goal": goal,
         }
         return figures, learned
 
@@ -247,6 +257,7 @@ def run_batch(
     episodes: tuple[int, ...],
     calibration: Calibration | None = None,
     own: OwnTask | None = None,
+    risk: RiskBound | None = None,
 ) -> list[dict[str, object]]:
     """Run some episodes of a cell: what a worker is sent. Their rows as plain values."""
     here = stage(cell.task, own)
@@ -255,7 +266,7 @@ def run_batch(
     for episode in episodes:
         known = learned if carried and episode % carried else None
         row, learned = here.run_learning(
-            cell, common, episode, calibration=calibration, experience=known
+            cell, common, episode, calibration=calibration, experience=known, risk=risk
         )
         rows.append(row.model_dump())
     return rows

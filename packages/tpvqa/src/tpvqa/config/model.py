@@ -152,12 +152,31 @@ class MonitorConfig(_Part):
         file=True,
     )
 
+    risk: float | None = setting(
+        "--risk",
+        "belief: at most this share of all trials like those of --risk-file ends in a wrong done; "
+        "where the goal is not sure enough for that, the trial stops in doubt.",
+        gt=0,
+        lt=1,
+    )
+    risk_file: str | None = setting(
+        "--risk-file", "belief: what came of trials without --risk, see `tpvqa risk`.", file=True
+    )
+
     @property
     def named(self) -> str:
         """The specification: where none is given, the paper's monitor with settings of its own,
         else belief."""
         of_paper = self.majority is not None or self.no_alternatives
-        return self.spec or ("tpvqa" if of_paper else "belief")
+        named = self.spec or ("tpvqa" if of_paper else "belief")
+        return named if self.risk is None else f"{named}:risk={self.risk!r}"
+
+    @model_validator(mode="after")
+    def _believing(self) -> Self:
+        named = self.named.partition(":")[0]
+        if self.risk is not None and named != "belief":
+            raise ValueError(f"the monitor {named} states no risk; take --monitor belief")
+        return self
 
 
 class PlannerConfig(_Part):

@@ -51,6 +51,7 @@ class Started(_Event):
         goal: The goal in words.
         calibration: What the monitor was told of the VLM's answers, where it weighs them.
         experience: What it was told of earlier trials.
+        risk: Where it may report "done", if it states a risk.
     """
 
     kind: Literal["started"] = "started"
@@ -79,6 +80,7 @@ class Started(_Event):
     goal: str
     calibration: dict[str, Any] | None = None
     experience: dict[str, Any] | None = None
+    risk: dict[str, Any] | None = None
 
     @field_serializer("config")
     def _whole(self, config: TrialConfig) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Generator, Sequence
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 from tpvqa.belief.ablations import belief_without
@@ -15,6 +16,7 @@ from tpvqa.belief.faults import FaultModel, FaultRules
 from tpvqa.belief.first import Prior
 from tpvqa.belief.inquiry import DOUBT, Inquirer, Inquiry
 from tpvqa.belief.priors import Priors
+from tpvqa.belief.risk import RiskBound, confidence
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice, Table
 from tpvqa.belief.trust import Trust
@@ -30,6 +32,7 @@ from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.scrutiny import unknown
+from tpvqa.monitors.stated_risk import as_stated, bound_for
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.monitors.ways import Ways
 from tpvqa.pddl import Action, Task
@@ -60,6 +63,7 @@ class BeliefMonitor(Learning, PlainArguments):
         noise_model: Whether answers do not depend on the picture, but on the look.
         priors: How probable facts are at first, besides what the problem says.
         model: The action model, where trials one after the other share it.
+        risk: Where "done" may be reported, if `settings` state a risk.
         name: What the log calls it.
     """
 
@@ -76,6 +80,7 @@ class BeliefMonitor(Learning, PlainArguments):
         noise_model: bool = False,
         priors: Priors | None = None,
         model: FaultModel | None = None,
+        risk: RiskBound | None = None,
         name: str = "belief",
     ):
         settings = settings or BeliefSettings()
@@ -85,6 +90,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self.chances = Chances(rates) if experience is None else experience.chances(rates)
         if calibration is None or settings.without == "calibration":
             calibration = Calibration.default()
+        self._risk = bound_for(settings.risk, risk)
         self._learns = settings.without != "learning"
         self._asks_all = settings.without == "relevance"
         self.trust: Trust | None = None
@@ -134,11 +140,13 @@ class BeliefMonitor(Learning, PlainArguments):
         noise_model: bool = False,
         priors: Priors | None = None,
         model: FaultModel | None = None,
+        risk: RiskBound | None = None,
     ) -> "BeliefMonitor":
         """Make it from `belief`, or `belief:question=0.05:failure=200`; see `BeliefSettings`.
 
         Raises:
-            PluginError: Something is unknown, or no fitting number.
+            PluginError: Something is unknown, or no fitting number; a risk is stated of which
+                nothing is known.
         """
         return cls(
             task,
@@ -151,6 +159,7 @@ class BeliefMonitor(Learning, PlainArguments):
             noise_model=noise_model,
             priors=priors,
             model=model,
+            risk=risk,
             name=f"belief:{arguments}" if arguments else "belief",
         )
 
@@ -164,6 +173,16 @@ class BeliefMonitor(Learning, PlainArguments):
             shares, action = self.belief.outcome_shares(), self._now.action
             chances.learn(shares, action, self.belief.earlier_shares())
         return Experience.of(chances, self.trust, self._trials + 1)
+
+    @property
+    def goal_probability(self) -> float:
+        """How probable it is now that the goal holds."""
+        return confidence(self.belief.where(self.task.goal_holds))
+
+    @property
+    def _may_say_so(self) -> bool:
+        """Whether the goal is so probable that the risk which is stated allows to say "done"."""
+        return self._risk is None or self._risk.allows(self.goal_probability)
 
     @property
     def unsure(self) -> bool:
@@ -205,7 +224,12 @@ class BeliefMonitor(Learning, PlainArguments):
         self._asking.looks, self._asking.questions = now.looks, now.questions
         self.evidence.weigh(self.belief)
         self.belief.begin(prior.states())
-        return (yield from first_verdict(self.belief, prior, FactWords(book), now))
+        verdict = yield from first_verdict(self.belief, prior, FactWords(book), now)
+        done = verdict.plan is not None and not verdict.plan.actions
+        if self._risk is None or not done or self._may_say_so:
+            return verdict
+        stop = f"stop in doubt: {as_stated(self.goal_probability, self._risk)}"
+        return replace(verdict, decision=Decision.GIVE_UP, reason=f"{verdict.reason}; {stop}")
 
     def before(self, step: Step) -> Check:
         """Act where this is the step to take; otherwise go to what is."""
@@ -334,7 +358,7 @@ class BeliefMonitor(Learning, PlainArguments):
         same = self.belief.model.same_skill
         if action is None:
             likely = self.belief.where(self.task.goal_holds) >= 0.5
-            decision = Decision.DONE if likely else Decision.GIVE_UP
+            decision = Decision.DONE if likely and self._may_say_so else Decision.GIVE_UP
         elif acted and same(action, step.action, state):
             decision = Decision.REPEAT
         else:
@@ -354,6 +378,7 @@ class BeliefMonitor(Learning, PlainArguments):
             questions_left=self._asking.budget().questions > 0,
             actions_left=step.actions_left,
             failing=self._ways.failing(step),
+            risk=self._risk,
         )
         why = reason(grounds, decision, action, state, place)
         if self._errand is not None:

@@ -10,6 +10,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.own_words import SkillWorth
 from tpvqa.errors import PluginError, suggestion
+from tpvqa.monitors.stated_risk import risk_from
 
 _RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate")
 _REPORTS = ("notices", "false_alarms")
@@ -26,12 +27,14 @@ class BeliefSettings:
         rates: What is believed about faults beforehand.
         skill: What the report of any skill is worth; None for what the calibration says.
         without: One of `belief.ablations.PARTS`, to be left out.
+        risk: The share of all trials that may end in "done" with the goal false; None for any.
     """
 
     costs: Costs = field(default_factory=Costs)
     rates: Rates = field(default_factory=Rates)
     skill: SkillWorth | None = None
     without: str | None = None
+    risk: float | None = None
 
     @classmethod
     def parse(cls, arguments: str) -> Self:
@@ -39,7 +42,7 @@ class BeliefSettings:
 
         Also understood: `failure_rate`, `disturbance_rate` and `spontaneous_rate`, believed
         beforehand; `notices` and `false_alarms`, the shares of its failures and of its successes
-        that a skill reports as failures; `without=PART`.
+        that a skill reports as failures; `without=PART`; `risk=0.02`.
 
         Raises:
             PluginError: Something is unknown, or no fitting number.
@@ -51,6 +54,8 @@ class BeliefSettings:
                 raise PluginError(f"'belief:{arguments}': {key.strip()} is given twice")
             given[key.strip()] = value.strip()
         without = given.pop("without", None)
+        stated = given.pop("risk", None)
+        risk = None if stated is None else risk_from(stated, f"belief:{arguments}")
         if without is not None and without not in PARTS:
             raise PluginError(
                 f"'belief:{arguments}': what can be left out is {', '.join(PARTS)}, not {without!r}"
@@ -66,7 +71,7 @@ class BeliefSettings:
         except ValidationError as error:
             first = error.errors()[0]
             where = ".".join(map(str, first["loc"]))
-            known = (*Costs.model_fields, *_RATES, *_REPORTS, "without")
+            known = (*Costs.model_fields, *_RATES, *_REPORTS, "without", "risk")
             what = (
                 f"there is no cost {where!r}{suggestion(where, known).rstrip('.')}"
                 if where not in Costs.model_fields
@@ -80,7 +85,7 @@ class BeliefSettings:
             ) from None
         except ValueError as error:
             raise PluginError(f"'belief:{arguments}' is not understood: {error}") from None
-        return cls(costs, Rates(**believed), _skill(reports, arguments), without)
+        return cls(costs, Rates(**believed), _skill(reports, arguments), without, risk)
 
 
 def _skill(reports: dict[str, float], arguments: str) -> SkillWorth | None:

@@ -39,6 +39,15 @@ class LooksFirst(Protocol):
         """A check whose verdict says what is believed, and may bring the first plan."""
 
 
+@runtime_checkable
+class Believing(Protocol):
+    """A monitor that knows how probable it is that the goal holds."""
+
+    @property
+    def goal_probability(self) -> float:
+        """That, now."""
+
+
 def never_asks(monitor: object) -> bool:
     """Whether a monitor, or a class of monitors, asks nothing."""
     return issubclass(class_of(monitor), NeverAsks)
@@ -52,3 +61,8 @@ def asks_actions(monitor: object) -> bool:
 def experience_of(monitor: object) -> "Experience | None":
     """What a monitor has learned; None for one that learns nothing."""
     return monitor.experience if isinstance(monitor, Learning) else None
+
+
+def goal_probability_of(monitor: object) -> float | None:
+    """How probable a monitor takes it to be that the goal holds; None for one that does not say."""
+    return monitor.goal_probability if isinstance(monitor, Believing) else None

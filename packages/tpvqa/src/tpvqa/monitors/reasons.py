@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import words
+from tpvqa.belief.risk import RiskBound
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Noticed, Replies
 from tpvqa.monitors.protocol import Step
+from tpvqa.monitors.stated_risk import as_stated
 from tpvqa.pddl import Action, Atom, Literal, State
 from tpvqa.questions import FactWords
 
@@ -34,6 +36,7 @@ class Grounds:
         questions_left: Whether anything more may be asked.
         actions_left: Actions that the trial still allows; None for any number.
         failing: That the step's skill seems never to work, in words; empty where it does.
+        risk: Where "done" may be reported; None for where the goal is likely.
     """
 
     step: Step
@@ -47,6 +50,7 @@ class Grounds:
     questions_left: bool
     actions_left: int | None
     failing: str = ""
+    risk: RiskBound | None = None
 
     @property
     def next(self) -> int:
@@ -92,7 +96,7 @@ def _reason(
     grounds: Grounds, decision: Decision, action: Action | None, state: State, place: int | None
 ) -> str:
     if action is None:
-        return "; ".join((*_of_goal(grounds), _end(grounds, decision)))
+        return "; ".join((*_of_goal(grounds, decision), _end(grounds, decision)))
     missing = [each for each in _needs(grounds) if not each.holds(state)]
     said = grounds.step.book.say(action)
     number = "" if place is None else f" (step {place + 1})"
@@ -151,17 +155,37 @@ def _most_telling(grounds: Grounds) -> list[str]:
     return [_fact(grounds, Literal(atoms[0]), needing=False)]
 
 
-def _of_goal(grounds: Grounds) -> list[str]:
+def _of_goal(grounds: Grounds, decision: Decision) -> list[str]:
     """What of the goal was asked about or sensed, or is in doubt."""
-    if grounds.plan is None:
-        return []
-    goal = sorted(grounds.plan.needs[-1], key=lambda n: (grounds.probability(n), n.atom))
-    doubted = [n for n in goal if grounds.known(n.atom) or grounds.probability(n) < SURE]
+    sure = 1.0 if _stopped(grounds, decision) else SURE
+    goal = _goal(grounds)
+    doubted = [n for n in goal if grounds.known(n.atom) or grounds.probability(n) < sure]
     return [_fact(grounds, each, needing=False) for each in doubted[:SAID]]
 
 
+def _goal(grounds: Grounds) -> list[Literal]:
+    """What the goal is made of, the least probable first."""
+    if grounds.plan is None:
+        return []
+    return sorted(grounds.plan.needs[-1], key=lambda n: (grounds.probability(n), n.atom))
+
+
+def _stopped(grounds: Grounds, decision: Decision) -> bool:
+    """Whether it ends without "done" for the sake of the risk that is stated alone."""
+    likely = grounds.belief.where(grounds.step.task.goal_holds) >= 0.5
+    return grounds.risk is not None and decision is Decision.GIVE_UP and likely
+
+
+def _settling(grounds: Grounds) -> str:
+    """What would settle what is in doubt of the goal."""
+    asked = [n for n in _goal(grounds) if grounds.step.book.asked(Literal(n.atom))]
+    who = "a person" if grounds.questions_left else "more questions, or a person,"
+    return f"; {who} who sees whether {grounds.say(asked[0])} would settle it" if asked else ""
+
+
 def _end(grounds: Grounds, decision: Decision) -> str:
-    goal = _figure(grounds.belief.where(grounds.step.task.goal_holds))
+    probability = grounds.belief.where(grounds.step.task.goal_holds)
+    goal = _figure(probability)
     why = ""
     if grounds.actions_left is not None and grounds.actions_left <= 0:
         why = "no action is left, and "
@@ -169,6 +193,10 @@ def _end(grounds: Grounds, decision: Decision) -> str:
         why = f"the {grounds.actions_left} actions left are too few, and "
     elif not grounds.questions_left:
         why = "no question is left, and "
+    if _stopped(grounds, decision) and grounds.risk is not None:
+        return f"stop in doubt: {why}{as_stated(probability, grounds.risk)}{_settling(grounds)}"
+    if decision is Decision.DONE and grounds.risk is not None:
+        return f"{why}{as_stated(probability, grounds.risk)}"
     if decision is Decision.DONE:
         return f"{why}the goal holds with {goal}"
     if not why:

@@ -12,6 +12,7 @@ from tpvqa.assembly import Trial
 from tpvqa.belief import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.priors import load_priors
+from tpvqa.belief.risk import RiskBound
 from tpvqa.drivers import Listener
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import episode_folder
@@ -61,6 +62,7 @@ def trial_of(
         config,
         calibration=_read(Calibration, started.calibration, place),
         experience=_read(Experience, started.experience, place),
+        risk=_read(RiskBound, started.risk, place),
         reading=False,
         person=person,
         begun_as=started,

@@ -56,7 +56,10 @@ class _Loop:
 
     def run(self) -> Steps:
         """Plan, and follow plans until the goal is believed, or the trial cannot go on."""
-        failed = yield from self._replan((yield from self._first()))
+        first = yield from self._first()
+        if first is not None and first.decision is Decision.GIVE_UP:
+            return Conclusion("gave up", first.reason)
+        failed = yield from self._replan(None if first is None else first.plan)
         while failed is None and self.plan is not None and self._index < len(self.plan.actions):
             step = self._step()
             verdict = yield from self._check(self.monitor.before, step, "before")
@@ -89,8 +92,8 @@ class _Loop:
                 failed = yield from self._replan(verdict.plan)
         return failed or Conclusion("goal", believes_goal=True)
 
-    def _first(self) -> Generator[Any, Any, Plan | None]:
-        """What a monitor looks at before the first plan; the plan, where it has had one made."""
+    def _first(self) -> Generator[Any, Any, Verdict | None]:
+        """What a monitor looks at before the first plan; its verdict may bring that plan."""
         if not isinstance(self.monitor, LooksFirst) or not self.monitor.unsure:
             return None
         look = self.monitor.first
@@ -106,7 +109,7 @@ class _Loop:
             )
         )
         yield from self._believe(verdict.state)
-        return verdict.plan
+        return verdict
 
     def _finished(self, verdict: Verdict) -> bool:
         """Whether a verdict leads beyond the plan's last step: what is over then is the plan."""
