@@ -1,6 +1,7 @@
 """Trials that begin unsure: what is possible is weighed, or looked for, before anything is done."""
 
 from collections.abc import Iterator
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -9,16 +10,18 @@ import pytest
 from tests import ward
 from tpvqa import Trial, TrialConfig
 from tpvqa.belief.priors import Priors
-from tpvqa.config import StartConfig, TaskConfig
+from tpvqa.belief.risk import RiskBound
+from tpvqa.config import SimulationConfig, StartConfig, TaskConfig
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.events import Event
 from tpvqa.events.events import Acting, Asked, Decided, PlanMade, Started
-from tpvqa.pddl import Atom
-from tpvqa.planning import Planner
+from tpvqa.pddl import Atom, load_task
+from tpvqa.planning import Plan, Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
 from tpvqa.resuming import resume
+from tpvqa.tasks import find_task
 
 
 @pytest.fixture(scope="module")
@@ -131,3 +134,30 @@ def test_a_thing_that_is_elsewhere_is_found_where_it_may_be(planner: Planner) ->
         trial.simulation.start = trial.simulation.state = trial.task.apply(trial.task.init, moved)
         trial.run(MemoryWriter())
         assert Atom.parse("(on red yellow)") in trial.simulation.state
+
+
+@pytest.mark.parametrize("above", [0.5, 1.0])
+def test_a_goal_that_is_found_done_has_to_be_sure_enough_for_the_risk(
+    planner: Planner, tmp_path: Path, above: float
+) -> None:
+    task = load_task(*(getattr(find_task("build_tower"), name) for name in ("domain", "problem")))
+    found = planner.plan(task)
+    assert isinstance(found, Plan)
+    state = reduce(task.apply, found.actions, task.init)
+    (tmp_path / "done").write_text("\n".join(atom.pddl() for atom in sorted(state)))
+    simulation = SimulationConfig(true_start=str(tmp_path / "done"))
+    config = TrialConfig(
+        task="build_tower",
+        start="unknown",
+        vlm="oracle:0.9",
+        world="symbolic",
+        monitor="belief:risk=.05",
+        simulation=simulation,
+    )
+    writer, bound = MemoryWriter(), RiskBound(risk=0.05, above=above, trials=19)
+    with Trial(config, planner=planner, risk=bound) as trial:
+        ended = trial.run(writer)
+    first = next(event for event in writer.events if isinstance(event, Decided))
+    assert ended.actions == 0
+    assert ended.believed_goal == (above < 1)
+    assert first.reason.startswith("stop in doubt: ") == (above == 1)

@@ -1,11 +1,13 @@
 """Anybody's bench: a grid of cells, run and compared with its first monitor."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from tpvqa.belief.calibration import Calibration
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.grid import Grid, known_calibrations
 from tpvqa.bench.report import Results, write_bench_report
+from tpvqa.bench.stated_risk import TRIALS
 from tpvqa.bench.tables import write_tables
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
@@ -18,6 +20,7 @@ def run_compared(
     episodes: int,
     common: TrialConfig,
     calibration: Calibration | None = None,
+    risk_trials: int = TRIALS,
     workers: int = 1,
     scheduler: str | None = None,
     progress: Progress = lambda done, total: None,
@@ -30,6 +33,7 @@ def run_compared(
         episodes: Of every cell.
         common: What all cells share: seed, rates of faults, limits, options.
         calibration: What monitors that weigh answers are told; None for what is shipped.
+        risk_trials: Of every cell that states a risk, from which that is learnt.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
         progress: Told how many episodes are done and how many there are.
@@ -37,7 +41,8 @@ def run_compared(
     Raises:
         TpvqaError: Something is not there, or the folder cannot be used.
     """
-    bench, cells = declared(grid, episodes, common, calibration), grid.cells()
+    bench = replace(declared(grid, episodes, common, calibration), risk_trials=risk_trials)
+    cells = grid.cells()
     ledger = run_bench(bench, folder, workers=workers, scheduler=scheduler, progress=progress)
     results = Results(
         settings={

@@ -24,7 +24,10 @@ _TASK: tuple[Key, ...] = tuple(
     ("task", name) for name in ("name", "domain", "problem", "questions", "world_file")
 )
 _CROSSED: tuple[Key, ...] = (("world", "spec"), ("vlm", "spec"), ("monitor", "spec"))
-_OF_ONE: tuple[Key, ...] = (("monitor", "majority"), ("monitor", "experience"), ("episode",))
+_OF_ONE: tuple[Key, ...] = (
+    *(("monitor", name) for name in ("majority", "experience", "risk", "risk_file")),
+    ("episode",),
+)
 
 bench_app = typer.Typer(
     help="Many episodes: completion rates, accuracy, figures.",
@@ -92,6 +95,14 @@ def run(
         ),
     ] = None,
     episodes: Annotated[int, typer.Option(help="Of every cell.", min=1)] = 100,
+    risk_trials: Annotated[
+        int | None,
+        typer.Option(
+            help="Of other seeds, for every cell that states a risk (belief:risk=.02). "
+            "Default: 199.",
+            min=1,
+        ),
+    ] = None,
     workers: Annotated[
         int | None, typer.Option(help="Local processes. Default: one a core.", min=1)
     ] = None,
@@ -109,6 +120,7 @@ def run(
     from tpvqa.bench.compared import run_compared
     from tpvqa.bench.condition import normalised
     from tpvqa.bench.grid import Grid
+    from tpvqa.bench.stated_risk import TRIALS
     from tpvqa.config.layers import combined
 
     config = combined(layers)
@@ -128,7 +140,8 @@ def run(
         ),
     )
     calibration = _calibration(config)
-    common = config.but(task={name: None for _, name in _TASK}, monitor={"calibration": None})
+    of_one = dict.fromkeys(("calibration", "risk", "risk_file"))
+    common = config.but(task={name: None for _, name in _TASK}, monitor=of_one)
     beside = about_own_files(
         (each.origin for each in own.values()),
         questions=questions or config.task.questions,
@@ -143,6 +156,7 @@ def run(
             episodes=episodes,
             common=common,
             calibration=calibration,
+            risk_trials=risk_trials or TRIALS,
             workers=workers or os.cpu_count() or 1,
             scheduler=scheduler,
             progress=progress,

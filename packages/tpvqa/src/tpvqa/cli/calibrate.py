@@ -31,7 +31,7 @@ _SOURCES = (
 _ELSEWHERE: tuple[Key, ...] = (
     *(("task", name) for name in ("name", "domain", "problem", "questions", "world_file")),
     *(("world", name) for name in ("spec", "pictures")),
-    *(("monitor", name) for name in ("spec", "calibration", "experience")),
+    *(("monitor", name) for name in ("spec", "calibration", "experience", "risk", "risk_file")),
     ("vlm", "spec"),
     ("episode",),
 )

@@ -65,6 +65,7 @@ def run(
 ) -> None:
     """Run one trial: plan, look, ask, act, and repeat or replan where the pictures say so."""
     from tpvqa.assembly import Trial
+    from tpvqa.assembly.told import about_risk
     from tpvqa.drivers import Interrupted
     from tpvqa.episodes import EpisodeWriter
     from tpvqa.errors import TpvqaError
@@ -84,6 +85,7 @@ def run(
             *about_words(trial.book),
             *about_vlm(trial.config, trial.vlm_spec),
             *_about_calibration(trial),
+            *about_risk(trial),
             *without_effect(trial, {key for layer in layers for key in layer.values}),
             *about_start(trial.task, trial.priors, trial.monitor),
         )

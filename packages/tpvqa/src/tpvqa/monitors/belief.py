@@ -32,7 +32,7 @@ from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.scrutiny import unknown
-from tpvqa.monitors.stated_risk import as_stated, bound_for
+from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated, bound_for
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.monitors.ways import Ways
 from tpvqa.pddl import Action, Task
@@ -228,8 +228,8 @@ class BeliefMonitor(Learning, PlainArguments):
         done = verdict.plan is not None and not verdict.plan.actions
         if self._risk is None or not done or self._may_say_so:
             return verdict
-        stop = f"stop in doubt: {as_stated(self.goal_probability, self._risk)}"
-        return replace(verdict, decision=Decision.GIVE_UP, reason=f"{verdict.reason}; {stop}")
+        why = f"{IN_DOUBT}: {as_stated(self.goal_probability, self._risk)}; {verdict.reason}"
+        return replace(verdict, decision=Decision.GIVE_UP, reason=why)
 
     def before(self, step: Step) -> Check:
         """Act where this is the step to take; otherwise go to what is."""

@@ -10,7 +10,7 @@ from tpvqa.belief.risk import RiskBound
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Noticed, Replies
 from tpvqa.monitors.protocol import Step
-from tpvqa.monitors.stated_risk import as_stated
+from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated
 from tpvqa.pddl import Action, Atom, Literal, State
 from tpvqa.questions import FactWords
 
@@ -96,7 +96,8 @@ def _reason(
     grounds: Grounds, decision: Decision, action: Action | None, state: State, place: int | None
 ) -> str:
     if action is None:
-        return "; ".join((*_of_goal(grounds, decision), _end(grounds, decision)))
+        doubt = f"{IN_DOUBT}: " if _stopped(grounds, decision) else ""
+        return doubt + "; ".join((*_of_goal(grounds, decision), _end(grounds, decision)))
     missing = [each for each in _needs(grounds) if not each.holds(state)]
     said = grounds.step.book.say(action)
     number = "" if place is None else f" (step {place + 1})"
@@ -178,9 +179,13 @@ def _stopped(grounds: Grounds, decision: Decision) -> bool:
 
 def _settling(grounds: Grounds) -> str:
     """What would settle what is in doubt of the goal."""
-    asked = [n for n in _goal(grounds) if grounds.step.book.asked(Literal(n.atom))]
-    who = "a person" if grounds.questions_left else "more questions, or a person,"
-    return f"; {who} who sees whether {grounds.say(asked[0])} would settle it" if asked else ""
+    doubted = next(iter(_goal(grounds)), None)
+    if doubted is None:
+        return ""
+    if not grounds.step.book.asked(Literal(doubted.atom)):
+        return f"; no question tells whether {grounds.say(doubted)}"
+    who = "" if grounds.questions_left else "more questions, or "
+    return f"; {who}a person's word on {grounds.say(doubted)} would settle it"
 
 
 def _end(grounds: Grounds, decision: Decision) -> str:
@@ -194,7 +199,7 @@ def _end(grounds: Grounds, decision: Decision) -> str:
     elif not grounds.questions_left:
         why = "no question is left, and "
     if _stopped(grounds, decision) and grounds.risk is not None:
-        return f"stop in doubt: {why}{as_stated(probability, grounds.risk)}{_settling(grounds)}"
+        return f"{why}{as_stated(probability, grounds.risk)}{_settling(grounds)}"
     if decision is Decision.DONE and grounds.risk is not None:
         return f"{why}{as_stated(probability, grounds.risk)}"
     if decision is Decision.DONE:

@@ -4,6 +4,8 @@ from tpvqa.belief.risk import RiskBound, confidence
 from tpvqa.errors import PluginError
 
 BELIEF = "belief"
+IN_DOUBT = "stop in doubt"
+"""How a monitor says first of all that it ends so for the sake of the risk."""
 _KEY = "risk"
 _MOST_PLACES = 12
 
