@@ -11,7 +11,7 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.published import version_of
 from tpvqa.config import TrialConfig
-from tpvqa.errors import BenchError
+from tpvqa.errors import BenchError, UnknownNameError
 from tpvqa.tasks import find_task
 from tpvqa_experiments.belief import calibrations as learnt
 from tpvqa_experiments.belief.check import Check
@@ -34,6 +34,8 @@ class BeliefBench:
         extent: How much of them.
         calibration_episodes: Trials that each calibration is learnt from.
         embedded_world: Where the embedded network is calibrated: images, or kitchen.
+        monitors: Run only cells of these; tables have whatever lies in the folder.
+        vlms: Run only cells of these VLMs.
         common: Seed, rates of faults, limits.
     """
 
@@ -41,32 +43,49 @@ class BeliefBench:
     extent: Extent = field(default_factory=Extent)
     calibration_episodes: int = 80
     embedded_world: str = "images"
+    monitors: Sequence[str] = ()
+    vlms: Sequence[str] = ()
     common: TrialConfig = PAPER
 
     def wanted(self, parts: Iterable[Part] | None = None) -> dict[Cell, int]:
         """How many episodes of each cell; a cell of several parts is run once.
 
         Args:
-            parts: Which parts; by default those that are to be run.
+            parts: Which parts; by default what is to be run of those that are.
         """
         found: dict[Cell, int] = {}
         for part in self.parts if parts is None else parts:
             for cell, episodes in self.extent.cells(part):
-                found[cell] = max(episodes, found.get(cell, 0))
+                if parts is not None or self._chosen(cell):
+                    found[cell] = max(episodes, found.get(cell, 0))
         return found
+
+    def _chosen(self, cell: Cell) -> bool:
+        return (not self.monitors or cell.monitor in self.monitors) and (
+            not self.vlms or cell.vlm in self.vlms
+        )
 
     def source_of(self, cell: Cell) -> learnt.Source:
         """Where the calibration of a cell comes from."""
         return learnt.source_of(cell, self.embedded_world)
 
     def check(self) -> None:
-        """See that the tasks can be found by name: one of which no part has a cell, too.
+        """See that tasks, monitors and VLMs can be found by name: those without a cell, too.
 
         Raises:
-            TpvqaError: A task is not there.
+            TpvqaError: A task is not there, or no part that is to be run has cells of a monitor or
+                VLM.
         """
         for task in self.extent.tasks:
             find_task(task)
+        cells = [cell for part in self.parts for cell, _ in self.extent.cells(part)]
+        for kind, names, known in (
+            ("monitor of these parts", self.monitors, [cell.monitor for cell in cells]),
+            ("VLM of these parts", self.vlms, [cell.vlm for cell in cells]),
+        ):
+            for name in names:
+                if name not in known:
+                    raise UnknownNameError(kind, name, dict.fromkeys(known))
 
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""

@@ -21,9 +21,9 @@ def belief(
         str,
         typer.Option(
             help="Parts, with commas: grid, rivals, paper, embedded, recorded, wrong-model, "
-            "wrong-vlm, ablations."
+            "wrong-vlm, ablations, lasting, risk."
         ),
-    ] = "grid,rivals,paper,embedded,recorded,wrong-model,wrong-vlm,ablations",
+    ] = "grid,rivals,paper,embedded,recorded,wrong-model,wrong-vlm,ablations,lasting",
     tasks: Annotated[
         str, typer.Option(help="Shipped tasks, with commas.")
     ] = "clean_dishes,serve_breakfast,eat_apple,build_tower",
@@ -38,6 +38,12 @@ def belief(
         str, typer.Option(help="Costs of a question along the grid's curves, with commas.")
     ] = "10,3,2,1,0.3,0.1,0.03,0.003",
     models: Annotated[str, typer.Option(help="Recorded VLMs, with commas. Default: all.")] = "",
+    monitors: Annotated[
+        str, typer.Option(help="Run only cells of these monitors, with commas. Default: all.")
+    ] = "",
+    vlms: Annotated[
+        str, typer.Option(help="Run only cells of these VLMs, with commas. Default: all.")
+    ] = "",
     episodes: Annotated[
         int, typer.Option(help="Of every cell of the belief monitor.", min=1)
     ] = 1000,
@@ -51,6 +57,12 @@ def belief(
             help="Robots that learn, over 30 episodes each, how good their VLM is.", min=1
         ),
     ] = 30,
+    lasting_episodes: Annotated[
+        int, typer.Option(help="Of every cell of the part lasting, ours or a rival's.", min=1)
+    ] = 300,
+    risk_episodes: Annotated[
+        int, typer.Option(help="Of every cell of the part risk.", min=1)
+    ] = 1000,
     calibration_episodes: Annotated[
         int, typer.Option(help="Trials that each calibration is learnt from.", min=1)
     ] = 120,
@@ -96,9 +108,13 @@ def belief(
             rivals=rivals,
             curve=curve_episodes,
             chains=chains,
+            lasting=lasting_episodes,
+            risk=risk_episodes,
         ),
         calibration_episodes=calibration_episodes,
         embedded_world=embedded_calibration,
+        monitors=listed(monitors),
+        vlms=listed(vlms),
         common=PAPER.but(seed=seed),
     )
     with bench_bar(out, "calibrations") as bar:
