@@ -28,8 +28,8 @@ def best_rival(rivals: Mapping[str, Sequence[EpisodeRow]]) -> BestRival | None:
     """Choose by every other trial who is judged on the rest, and the other way round.
 
     The best of many on the same trials has been lucky in them, too. Rivals that ran different
-    numbers of trials compete by the lower end of the interval of their completion, so that nobody is
-    chosen for few lucky ones; where that is the same, by fewer questions.
+    numbers of trials compete by the lower end of the interval of their completion, so that nobody
+    is chosen for few lucky ones; where that is the same, by fewer questions.
 
     Args:
         rivals: The trials of every rival.

@@ -12,8 +12,8 @@ from tpvqa.bench.cell import Cell
 from tpvqa_experiments.belief.parts import BELIEF, BLIND, DOMAIN_TASKS, FIELD, SYMBOLIC
 
 LIMITS = "limits=none,replans=300"
-"""Fifty times the plan's length for actions. Changes of plan have a limit, as a lead that misreads a
-fact for ever plans anew for ever, without an action between; no completed trial came near it."""
+"""Fifty times the plan's length for actions. Changes of plan have a limit, as a lead that misreads
+a fact for ever plans anew for ever, without an action between."""
 REDOING: Mapping[str, str] = {"free": LIMITS, "risky": f"{LIMITS},redo=risky"}
 """What comes of doing again what is done, and the condition that says so."""
 CALIBRATED = "oracle:0.8"

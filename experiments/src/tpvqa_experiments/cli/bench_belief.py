@@ -92,8 +92,9 @@ def belief(
     import os
 
     from tpvqa_experiments.belief import BeliefBench, run_belief_bench
+    from tpvqa_experiments.belief.lasting_tables import lasting_rows
     from tpvqa_experiments.belief.parts import Extent
-    from tpvqa_experiments.belief.tables import summary_rows
+    from tpvqa_experiments.belief.tables import LASTING, summary_rows
     from tpvqa_experiments.paper import PAPER
 
     bench = BeliefBench(
@@ -135,11 +136,17 @@ def belief(
             published=rows,
         )
     if as_json:
-        told = {"targets": [check.flat() for check in checks], "cells": summary_rows(results)}
+        told = {
+            "targets": [check.flat() for check in checks],
+            "cells": summary_rows(results),
+            "lasting": lasting_rows(results, bench.extent),
+        }
         print(json.dumps(told, indent=1))
     else:
         _print(checks)
         print(f"tables and figures: {out}/belief.md, {out}/targets.md, {out}/figures")
+        if (out / LASTING).exists():
+            print(f"errors that last: {out}/{LASTING}")
     if results.errors:
         raise typer.Exit(1)
 

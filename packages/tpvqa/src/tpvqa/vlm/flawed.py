@@ -103,7 +103,7 @@ class Misread(Flawed):
     def told(cls, trial: Trial, spec: str, words: list[str]) -> "Misread":
         """From SHARE[:ACCURACY[:same[:N]]]; every N has other questions misread in every trial."""
         draw = None
-        if words[2:3] == [SAME] and (len(words) == 3 or len(words) == 4 and words[3].isdecimal()):
+        if words[2:3] == [SAME] and (len(words) == 3 or (len(words) == 4 and words[3].isdecimal())):
             draw, words = " ".join(("every trial", *words[3:])), words[:2]
         share, accuracy = _numbers(spec, words, (None, 0.95))
         return cls(trial, spec, share=share, accuracy=accuracy, draw=draw)
