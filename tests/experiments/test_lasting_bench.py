@@ -1,7 +1,10 @@
 """The belief bench where errors last: its cells, who is compared with whom, what it concludes."""
 
 import json
+import subprocess
+import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,7 +14,7 @@ from hypothesis import strategies as st
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import ROWS
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.errors import UnknownNameError
+from tpvqa.errors import BenchError, UnknownNameError
 from tpvqa_experiments.belief import BeliefBench, BeliefResults, Part, run_belief_bench
 from tpvqa_experiments.belief.best_rival import best_rival
 from tpvqa_experiments.belief.calibrations import Source, calibrations, source_of
@@ -247,6 +250,25 @@ def test_the_tables_say_who_lost_to_whom() -> None:
     assert (ours["completion_rate"], ours["wrong_done"], ours["questions"]) == (0.4, 0.1, 200.0)
 
 
+def test_the_documentation_gets_its_table_from_the_bench(tmp_path: Path) -> None:
+    script = Path(__file__).parents[2] / "experiments/tools/lasting_docs.py"
+    results = found(share(MISREAD.cell(TASK, BELIEF, "free"), 40))
+    told = lasting_markdown(results, EXTENT, list(lasting_targets(results, EXTENT)))
+    (tmp_path / "belief.md").write_text("# Belief\n<!-- lasting -->\n\n<!-- end -->\nMore.\n")
+    command = [sys.executable, str(script), str(tmp_path), "--docs", str(tmp_path)]
+    missing = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert missing.returncode == 1
+    assert "tpvqa bench belief --parts lasting" in missing.stderr
+    (tmp_path / "lasting.md").write_text(told)
+    for _ in range(2):  # again, and it is the same
+        subprocess.run(command, check=True)
+        page = (tmp_path / "belief.md").read_text()
+        assert page.count("**0.40 (0.31–0.50)**") == 1
+        assert page.startswith("# Belief\n<!-- lasting -->\n\n| condition |")
+        assert page.endswith("<!-- end -->\nMore.\n")
+    assert (tmp_path / "lasting-results.md").read_text() == told
+
+
 class TestRunning:
     def bench(self, *monitors: str, vlms: Sequence[str] = ()) -> BeliefBench:
         extent = Extent(tasks=(TASK,), models=("gemma-3-12b",), lasting=2)
@@ -274,9 +296,40 @@ class TestRunning:
         assert {row["monitor"] for row in told} == {"blind:1", "tpvqa", "belief"}
         assert "| fresh, .8 | free |" in (tmp_path / "lasting.md").read_text()
 
+    def test_rivals_of_an_earlier_version_are_taken_over_and_nobody_else(
+        self, tmp_path: Path
+    ) -> None:
+        earlier, later = tmp_path / "earlier", tmp_path / "later"
+        fresh = self.bench("blind:1", "belief", vlms=["oracle:0.8"])
+        run_belief_bench(fresh, earlier)
+        settings = json.loads((earlier / "bench.json").read_text())
+        (earlier / "bench.json").write_text(json.dumps({**settings, "version": "0.0.1"}))
+        with pytest.raises(BenchError, match=r"version '0\.0\.1' there"):
+            run_belief_bench(fresh, earlier)
+        results, _ = run_belief_bench(
+            self.bench("blind:1"), later, only_tables=True, rivals_from=earlier
+        )
+        assert {cell.monitor for cell in results.rows} == {"blind:1"}
+        run_belief_bench(fresh, later, rivals_from=earlier)
+        rows = [json.loads(line) for line in (later / ROWS).read_text().splitlines()]
+        assert sorted(row["monitor"] for row in rows) == ["belief"] * 4 + ["blind:1"] * 4
+        assert "rivals of version 0.0.1" in (later / "lasting.md").read_text()
+
+    def test_rivals_of_another_bench_are_not(self, tmp_path: Path) -> None:
+        (tmp_path / "a").mkdir()
+        with pytest.raises(BenchError, match="holds no bench"):
+            run_belief_bench(self.bench("blind:1"), tmp_path / "b", rivals_from=tmp_path / "a")
+        run_belief_bench(self.bench("blind:1"), tmp_path / "a")
+        other = replace(self.bench("blind:1"), common=PAPER.but(seed=1))
+        with pytest.raises(BenchError, match="seed 0 there, 1 here"):
+            run_belief_bench(other, tmp_path / "b", rivals_from=tmp_path / "a")
+        assert not (tmp_path / "b").exists()
+
     def test_a_monitor_that_no_part_has(self, tmp_path: Path) -> None:
         with pytest.raises(UnknownNameError, match="Did you mean 'lead:2'"):
             run_belief_bench(self.bench("laed:2"), tmp_path / "x")
         with pytest.raises(UnknownNameError, match="VLM of these parts"):
             run_belief_bench(self.bench(vlms=["oracle:0.7"]), tmp_path / "x")
+        with pytest.raises(BenchError, match="one of these monitors and one of these VLMs"):
+            run_belief_bench(self.bench("blind:1", vlms=["oracle:0.8:0:1"]), tmp_path / "x")
         assert not (tmp_path / "x").exists()

@@ -18,6 +18,7 @@ from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.parts import Extent, Part, believes
 from tpvqa_experiments.belief.results import BeliefResults
 from tpvqa_experiments.belief.tables import write_results
+from tpvqa_experiments.belief.taken_over import take_over, taken_over
 from tpvqa_experiments.paper import PAPER
 
 SPEED_FILE = "speed.json"
@@ -73,8 +74,8 @@ class BeliefBench:
         """See that tasks, monitors and VLMs can be found by name: those without a cell, too.
 
         Raises:
-            TpvqaError: A task is not there, or no part that is to be run has cells of a monitor or
-                VLM.
+            TpvqaError: A task is not there, or no part that is to be run has cells of a monitor, a
+                VLM, or both.
         """
         for task in self.extent.tasks:
             find_task(task)
@@ -86,6 +87,8 @@ class BeliefBench:
             for name in names:
                 if name not in known:
                     raise UnknownNameError(kind, name, dict.fromkeys(known))
+        if not any(map(self._chosen, cells)):
+            raise BenchError("No part has a cell of one of these monitors and one of these VLMs")
 
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""
@@ -141,6 +144,7 @@ def run_belief_bench(
     progress: Progress = lambda done, total: None,
     only_tables: bool = False,
     published: Path | None = None,
+    rivals_from: Path | None = None,
 ) -> tuple[BeliefResults, list[Check]]:
     """Run what is missing, and write tables and figures of all parts that lie in the folder.
 
@@ -153,6 +157,8 @@ def run_belief_bench(
         progress: Told how many episodes are done and how many there are.
         only_tables: Run nothing; published rows may be of an earlier version.
         published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
+        rivals_from: The folder of a belief bench, of an earlier version, too, whose trials of
+            other monitors count as finished.
 
     Returns:
         What was found, and what of it must be reached.
@@ -163,6 +169,8 @@ def run_belief_bench(
     bench.check()
     version = version_of(published) if only_tables and published is not None else None
     declared = bench.declared({} if only_tables else bench.wanted(), folder, calibrating, version)
+    if rivals_from is not None:
+        take_over(rivals_from, folder, declared.settings)
     ledger = run_bench(
         declared,
         folder,
@@ -173,7 +181,8 @@ def run_belief_bench(
     )
     found = ((cell, ledger.of(cell, n)) for cell, n in bench.wanted(Part).items())
     rows = {cell: own for cell, own in found if own}
-    results = BeliefResults(declared.settings, rows, _speed(folder / SPEED_FILE))
+    told = {**declared.settings, **taken_over(folder)}
+    results = BeliefResults(told, rows, _speed(folder / SPEED_FILE))
     return results, write_results(folder, results, bench.extent)
 
 

@@ -86,6 +86,13 @@ def belief(
         Path | None,
         typer.Option(help="Published rows that count as finished, e.g. experiments/rows/belief."),
     ] = None,
+    rivals_from: Annotated[
+        Path | None,
+        typer.Option(
+            help="A folder of this bench, of an earlier version, too: its trials of other "
+            "monitors count as finished."
+        ),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
     """Measure the belief monitor against votes over several looks and the paper's baselines."""
@@ -134,6 +141,7 @@ def belief(
             progress=progress,
             only_tables=only_tables,
             published=rows,
+            rivals_from=rivals_from,
         )
     if as_json:
         told = {
@@ -171,7 +179,7 @@ def _print(checks: "Sequence[Check]") -> None:
             check.target,
             f"{found.value:.3g}",
             f"{found.low:.3g} to {found.high:.3g}" if found.low < found.high else "",
-            "yes" if check.reached else "no",
+            {True: "yes", False: "no", None: ""}[check.reached],
         )
         last = check.condition
     console = Console()
