@@ -6,7 +6,7 @@ from typing import Any
 
 from tpvqa.bench.row import EpisodeRow
 from tpvqa_experiments.belief.check import Check
-from tpvqa_experiments.belief.lasting import AFTER, JUDGED, REDOING
+from tpvqa_experiments.belief.lasting import AFTER, JUDGED, LIMITS, REDOING
 from tpvqa_experiments.belief.lasting_targets import late_rows, verdict
 from tpvqa_experiments.belief.markdown import REACHED, rate, table
 from tpvqa_experiments.belief.parts import BELIEF, BLIND, FIELD, Extent
@@ -72,7 +72,7 @@ def lasting_markdown(results: BeliefResults, extent: Extent, checks: Sequence[Ch
     return "\n".join(
         [
             "# Errors that last, measured\n",
-            f"Settings: {told}.\n",
+            f"Settings: {told}; but limits as `{LIMITS}` has them.\n",
             *(f"## {title}\n\n{text}" for title, text in sections if text),
         ]
     )
