@@ -30,6 +30,7 @@ from tpvqa_experiments.belief.lasting import (
 from tpvqa_experiments.belief.lasting_tables import lasting_markdown, lasting_rows
 from tpvqa_experiments.belief.lasting_targets import lasting_targets
 from tpvqa_experiments.belief.parts import BELIEF, BLIND, FIELD, Extent
+from tpvqa_experiments.belief.under_noise import over_robots
 from tpvqa_experiments.paper import PAPER
 
 TASK = "clean_dishes"
@@ -225,6 +226,13 @@ class TestTargets:
         assert check.measured is not None
         assert check.measured.value == 0.0
         assert check.reached is False
+
+    def test_a_robot_counts_once_however_many_trials_it_has(self) -> None:
+        cell = experienced(TASK, "free", 0)
+        few, many = (over_robots([share(cell, n, of=n), rows(cell, [False] * n)]) for n in (2, 50))
+        assert few == many
+        assert few.value == 0.5
+        assert over_robots([rows(cell, [True])] * 4).low < 0.7
 
     def test_a_risk_is_the_share_of_all_trials(self) -> None:
         cell = risked(MISREAD.cell(TASK, BELIEF, "free"), 0.02)

@@ -15,6 +15,7 @@ from tpvqa_experiments.belief.results import BeliefResults
 from tpvqa_experiments.belief.under_noise import (
     UnderNoise,
     completion,
+    over_robots,
     questions,
     under_noises,
     wrong,
@@ -162,13 +163,15 @@ def _experience(results: BeliefResults, extent: Extent) -> str:
     lines = []
     for redo in REDOING:
         for task in extent.tasks:
-            rows = late_rows(results, extent, task, redo)
-            if rows:
-                lines.append((redo, task, *_figures(rows)))
-    names = ("redoing", "task", "completed (95%)", "wrong *done*", "questions", "actions")
+            robots = late_rows(results, extent, task, redo)
+            if robots:
+                rows = [row for own in robots for row in own]
+                done = _estimate(over_robots(robots))
+                lines.append((redo, task, str(len(robots)), done, *_figures(rows)[1:]))
+    names = ("redoing", "task", "robots", "completed (95%)", "wrong *done*", "questions", "actions")
     text = (
         f"The same 10% of the questions are always misread; trials {AFTER + 1} to "
-        f"{AFTER + JUDGED} of every robot.\n\n"
+        f"{AFTER + JUDGED} of every robot, of which each counts once.\n\n"
     )
     return text + table(names, lines) if lines else ""
 

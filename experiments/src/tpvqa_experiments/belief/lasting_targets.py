@@ -7,7 +7,6 @@ reached, and names the others.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from tpvqa.bench.row import EpisodeRow
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.lasting import (
     AFTER,
@@ -31,6 +30,7 @@ from tpvqa_experiments.belief.under_noise import (
     UnderNoise,
     ahead_of,
     completion,
+    over_robots,
     questions,
     under_noises,
     wrong,
@@ -106,15 +106,18 @@ def verdict(ahead: Estimate) -> str:
 def _experienced(results: BeliefResults, extent: Extent, redo: str) -> Iterator[Check]:
     where = under(f"10% always misread, the same for {AFTER} trials before", redo)
     for task in extent.tasks:
-        rows = late_rows(results, extent, task, redo)
-        if rows:
-            yield at_least(where, f"completion, {task}", EXPERIENCED, rows, completion)
+        robots = late_rows(results, extent, task, redo)
+        if robots:
+            done = over_robots(robots)
+            reached = done.high >= EXPERIENCED
+            yield Check(where, f"completion, {task}", f"≥ {EXPERIENCED:g}", done, reached)
 
 
-def late_rows(results: BeliefResults, extent: Extent, task: str, redo: str) -> Sequence[EpisodeRow]:
-    """The trials of all robots that have `AFTER` trials behind them."""
+def late_rows(results: BeliefResults, extent: Extent, task: str, redo: str) -> list[Rows]:
+    """The trials of every robot that has `AFTER` trials behind it."""
     cells = (experienced(task, redo, draw) for draw in draws(extent.lasting))
-    return [row for cell in cells for row in results.of(cell) if row.episode >= AFTER]
+    robots = ([row for row in results.of(cell) if row.episode >= AFTER] for cell in cells)
+    return [rows for rows in robots if rows]
 
 
 def _recorded(redo: str, found: Sequence[UnderNoise]) -> Iterator[Check]:
