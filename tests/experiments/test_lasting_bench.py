@@ -27,7 +27,11 @@ from tpvqa_experiments.belief.lasting import (
     recorded_noise,
     risked,
 )
-from tpvqa_experiments.belief.lasting_tables import lasting_markdown, lasting_rows
+from tpvqa_experiments.belief.lasting_tables import (
+    lasting_markdown,
+    lasting_rows,
+    lasting_targets_markdown,
+)
 from tpvqa_experiments.belief.lasting_targets import lasting_targets
 from tpvqa_experiments.belief.parts import BELIEF, BLIND, FIELD, Extent
 from tpvqa_experiments.belief.under_noise import over_robots
@@ -254,6 +258,8 @@ def test_the_tables_say_who_lost_to_whom() -> None:
     assert "| ≥ 0.9 | **0.40 (0.31–0.50)** | **no** |" in told
     assert "| lead:2 | 0.75 (0.66–0.82) of 100 | .000 | 10 | 5.0 | **-0.350 (" in told
     assert "| worse |" in told
+    two = lasting_targets_markdown(list(lasting_targets(results, EXTENT)), (TASK, "eat_apple"))
+    assert "| clean_dishes **0.40 (0.31–0.50)** |" in two
     ours = next(row for row in lasting_rows(results, EXTENT) if row["monitor"] == BELIEF)
     assert (ours["completion_rate"], ours["wrong_done"], ours["questions"]) == (0.4, 0.1, 200.0)
 

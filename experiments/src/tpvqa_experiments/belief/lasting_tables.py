@@ -80,7 +80,7 @@ def lasting_markdown(results: BeliefResults, extent: Extent, checks: Sequence[Ch
 
 
 def lasting_targets_markdown(checks: Sequence[Check], tasks: Sequence[str]) -> str:
-    """The figures beside their targets: those of the tasks, in their order, on one line."""
+    """The figures beside their targets: those of all tasks, in their order, on one line."""
     lines: dict[tuple[str, str, str], list[Check]] = {}
     for check in checks:
         if check.measured is not None:
@@ -94,7 +94,7 @@ def lasting_targets_markdown(checks: Sequence[Check], tasks: Sequence[str]) -> s
                 condition if condition != last else "",
                 figure,
                 target,
-                "; ".join(_told(check) for check in own),
+                "; ".join(_task(check, tasks, len(own)) + _told(check) for check in own),
                 _verdict(own),
             )
         )
@@ -106,6 +106,12 @@ def lasting_targets_markdown(checks: Sequence[Check], tasks: Sequence[str]) -> s
 def _figure(check: Check, tasks: Sequence[str]) -> str:
     what, _, task = check.what.rpartition(", ")
     return what if task in tasks else check.what
+
+
+def _task(check: Check, tasks: Sequence[str], told: int) -> str:
+    """Which task a figure is of, where its line does not have all."""
+    task = check.what.rpartition(", ")[2]
+    return f"{task} " if task in tasks and told < len(tasks) else ""
 
 
 def _told(check: Check) -> str:
