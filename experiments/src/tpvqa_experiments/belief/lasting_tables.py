@@ -135,8 +135,6 @@ def _verdict(own: Sequence[Check]) -> str:
 def _beside(found: Sequence[UnderNoise]) -> str:
     lines = []
     for each in found:
-        if not each.own:
-            continue
         best, ahead = each.best, each.ahead
         lost = ahead is not None and ahead.high < 0
         lines.append(
@@ -146,7 +144,7 @@ def _beside(found: Sequence[UnderNoise]) -> str:
                 each.task,
                 *_figures(each.own),
                 "" if best is None else str(best),
-                *(("", "", "", "") if best is None else _figures(best.rows)),
+                *_figures(() if best is None else best.rows),
                 "" if ahead is None else f"{'**' * lost}{_signed(ahead)}{'**' * lost}",
                 "" if ahead is None else verdict(ahead).removesuffix(" than"),
             )
@@ -157,6 +155,8 @@ def _beside(found: Sequence[UnderNoise]) -> str:
 
 
 def _figures(rows: Sequence[EpisodeRow]) -> tuple[str, str, str, str]:
+    if not rows:
+        return ("", "", "", "")
     return (
         f"{_estimate(completion(rows))} of {len(rows)}",
         rate(wrong(rows).value),
