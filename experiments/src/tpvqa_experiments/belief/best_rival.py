@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.statistics import wilson
+
+ENOUGH = 0.2
+"""Of the trials of the rival that ran most, what another needs to be chosen."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,9 +29,9 @@ class BestRival:
 def best_rival(rivals: Mapping[str, Sequence[EpisodeRow]]) -> BestRival | None:
     """Choose by every other trial who is judged on the rest, and the other way round.
 
-    The best of many on the same trials has been lucky in them, too. Rivals that ran different
-    numbers of trials compete by the lower end of the interval of their completion, so that nobody
-    is chosen for few lucky ones; where that is the same, by fewer questions.
+    The best of many on the same trials has been lucky in them, too. Who completes most is chosen,
+    where that is the same with fewer questions; not who ran less than `ENOUGH` of the trials of
+    who ran most, as that would be luck.
 
     Args:
         rivals: The trials of every rival.
@@ -44,9 +46,10 @@ def best_rival(rivals: Mapping[str, Sequence[EpisodeRow]]) -> BestRival | None:
             for name, own in rivals.items()
             if (judged := [row for row in own if row.episode % 2 == rest])
         }
-        able = {name: half for name, half in halves.items() if half[0]}
-        if not able:
+        most = max((len(half[0]) for half in halves.values()), default=0)
+        if not most:
             return None
+        able = {name: half for name, half in halves.items() if len(half[0]) >= ENOUGH * most}
         chosen = max(able, key=lambda name: _merit(able[name][0]))
         names.append(chosen)
         rows += able[chosen][1]
@@ -55,5 +58,4 @@ def best_rival(rivals: Mapping[str, Sequence[EpisodeRow]]) -> BestRival | None:
 
 
 def _merit(rows: Sequence[EpisodeRow]) -> tuple[float, float]:
-    low = wilson(sum(row.completed for row in rows), len(rows)).low
-    return low, -fmean(row.questions for row in rows)
+    return fmean(row.completed for row in rows), -fmean(row.questions for row in rows)
