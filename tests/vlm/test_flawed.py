@@ -65,6 +65,16 @@ def test_which_are_misread_is_of_the_trial_or_of_the_seed(
     assert wrong(1, 0) != wrong(2, 0)
 
 
+def test_the_same_questions_can_be_drawn_again_and_again(task: Task) -> None:
+    def wrong(number: str, episode: int = 0) -> set[str]:
+        spec = f"flawed:misread:0.1:1:same{number}"
+        vlm = made(spec, truth=SceneTruth(), task=task, seed=1, episode=episode)
+        return always_wrong(vlm)
+
+    assert wrong(":3") == wrong(":3", episode=9)
+    assert len({frozenset(wrong(number)) for number in ("", ":0", ":1", ":2")}) == 4
+
+
 @pytest.mark.parametrize("true", [True, False])
 def test_one_predicate_is_biased_and_the_others_are_not(true: bool, task: Task) -> None:
     biased, other = fact("on", "plate", "table"), fact("clean", "plate")
@@ -122,6 +132,7 @@ def test_without_a_memory_of_before_there_is_none_that_is_late(task: Task) -> No
         "flawed:misread:1.5",
         "flawed:misread:0.1:0.9:often",
         "flawed:misread:0.1:same",
+        "flawed:misread:0.1:0.9:same:x",
         "flawed:biased",
         "flawed:biased:on:0.9",
         "flawed:late:0.8:1",

@@ -11,13 +11,14 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.published import version_of
 from tpvqa.config import TrialConfig
-from tpvqa.errors import BenchError
+from tpvqa.errors import BenchError, UnknownNameError
 from tpvqa.tasks import find_task
 from tpvqa_experiments.belief import calibrations as learnt
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.parts import Extent, Part, believes
 from tpvqa_experiments.belief.results import BeliefResults
 from tpvqa_experiments.belief.tables import write_results
+from tpvqa_experiments.belief.taken_over import take_over, taken_over
 from tpvqa_experiments.paper import PAPER
 
 SPEED_FILE = "speed.json"
@@ -34,6 +35,8 @@ class BeliefBench:
         extent: How much of them.
         calibration_episodes: Trials that each calibration is learnt from.
         embedded_world: Where the embedded network is calibrated: images, or kitchen.
+        monitors: Run only cells of these; tables have whatever lies in the folder.
+        vlms: Run only cells of these VLMs.
         common: Seed, rates of faults, limits.
     """
 
@@ -41,32 +44,51 @@ class BeliefBench:
     extent: Extent = field(default_factory=Extent)
     calibration_episodes: int = 80
     embedded_world: str = "images"
+    monitors: Sequence[str] = ()
+    vlms: Sequence[str] = ()
     common: TrialConfig = PAPER
 
     def wanted(self, parts: Iterable[Part] | None = None) -> dict[Cell, int]:
         """How many episodes of each cell; a cell of several parts is run once.
 
         Args:
-            parts: Which parts; by default those that are to be run.
+            parts: Which parts; by default what is to be run of those that are.
         """
         found: dict[Cell, int] = {}
         for part in self.parts if parts is None else parts:
             for cell, episodes in self.extent.cells(part):
-                found[cell] = max(episodes, found.get(cell, 0))
+                if parts is not None or self._chosen(cell):
+                    found[cell] = max(episodes, found.get(cell, 0))
         return found
+
+    def _chosen(self, cell: Cell) -> bool:
+        return (not self.monitors or cell.monitor in self.monitors) and (
+            not self.vlms or cell.vlm in self.vlms
+        )
 
     def source_of(self, cell: Cell) -> learnt.Source:
         """Where the calibration of a cell comes from."""
         return learnt.source_of(cell, self.embedded_world)
 
     def check(self) -> None:
-        """See that the tasks can be found by name: one of which no part has a cell, too.
+        """See that tasks, monitors and VLMs can be found by name: those without a cell, too.
 
         Raises:
-            TpvqaError: A task is not there.
+            TpvqaError: A task is not there, or no part that is to be run has cells of a monitor, a
+                VLM, or both.
         """
         for task in self.extent.tasks:
             find_task(task)
+        cells = [cell for part in self.parts for cell, _ in self.extent.cells(part)]
+        for kind, names, known in (
+            ("monitor of these parts", self.monitors, [cell.monitor for cell in cells]),
+            ("VLM of these parts", self.vlms, [cell.vlm for cell in cells]),
+        ):
+            for name in names:
+                if name not in known:
+                    raise UnknownNameError(kind, name, dict.fromkeys(known))
+        if not any(map(self._chosen, cells)):
+            raise BenchError("No part has a cell of one of these monitors and one of these VLMs")
 
     def settings(self) -> dict[str, Any]:
         """What decides the figures, besides the cells and the number of episodes."""
@@ -122,6 +144,7 @@ def run_belief_bench(
     progress: Progress = lambda done, total: None,
     only_tables: bool = False,
     published: Path | None = None,
+    rivals_from: Path | None = None,
 ) -> tuple[BeliefResults, list[Check]]:
     """Run what is missing, and write tables and figures of all parts that lie in the folder.
 
@@ -134,6 +157,8 @@ def run_belief_bench(
         progress: Told how many episodes are done and how many there are.
         only_tables: Run nothing; published rows may be of an earlier version.
         published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
+        rivals_from: The folder of a belief bench, of an earlier version, too, whose trials of
+            other monitors count as finished.
 
     Returns:
         What was found, and what of it must be reached.
@@ -144,6 +169,8 @@ def run_belief_bench(
     bench.check()
     version = version_of(published) if only_tables and published is not None else None
     declared = bench.declared({} if only_tables else bench.wanted(), folder, calibrating, version)
+    if rivals_from is not None:
+        take_over(rivals_from, folder, declared.settings)
     ledger = run_bench(
         declared,
         folder,
@@ -154,7 +181,8 @@ def run_belief_bench(
     )
     found = ((cell, ledger.of(cell, n)) for cell, n in bench.wanted(Part).items())
     rows = {cell: own for cell, own in found if own}
-    results = BeliefResults(declared.settings, rows, _speed(folder / SPEED_FILE))
+    told = {**declared.settings, **taken_over(folder)}
+    results = BeliefResults(told, rows, _speed(folder / SPEED_FILE))
     return results, write_results(folder, results, bench.extent)
 
 

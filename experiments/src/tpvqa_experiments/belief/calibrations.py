@@ -16,10 +16,12 @@ from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.defaults import looks
+from tpvqa.vlm.flawed import SAME
 from tpvqa.vlm.recorded.spec import RecordedSpec
 from tpvqa.vlm.recorded.vlm import told_by
 
 RECORDED = "recorded:"
+MISREAD = "flawed:misread:"
 
 SURVEY = "survey"
 """Who asks noise models: it asks regardless of the answers, so that all of them count."""
@@ -46,7 +48,8 @@ class Source:
 def source_of(cell: Cell, embedded_world: str = "images") -> Source:
     """Where the calibration of a cell comes from.
 
-    A recorded VLM that answers by one half of its problems is calibrated on the other half.
+    A recorded VLM that answers by one half of its problems is calibrated on the other half; one
+    that misreads the same questions in every trial on trials that each misread their own.
 
     Args:
         cell: Which.
@@ -55,6 +58,8 @@ def source_of(cell: Cell, embedded_world: str = "images") -> Source:
     vlm, world = cell.believed or cell.vlm, cell.world
     if vlm.startswith(RECORDED):
         vlm = RECORDED + str(RecordedSpec.parse(vlm.removeprefix(RECORDED)).other_half())
+    if vlm.startswith(MISREAD):
+        vlm = vlm.partition(f":{SAME}")[0]
     if vlm == "embedded":
         world = embedded_world
     return Source(cell.task, vlm, world)
@@ -109,7 +114,8 @@ def calibrations(
 def _of_recordings(
     source: Source, rows: Collection[LabelledAnswer], drawn: Calibration
 ) -> Calibration:
-    """What recorded answers teach, each once in a group. Trials only tell how looks repeat."""
+    """What recorded answers teach, each once in a group. Trials only tell how looks repeat
+    and errors last."""
     told = told_by(source.vlm.removeprefix(RECORDED), stage(source.task).task)
     recordings = label_recordings(told, {(row.way, row.predicate) for row in rows})
     kinds = {(way, truth) for way in ("precondition", "effect") for truth in (True, False)}
@@ -121,6 +127,7 @@ def _of_recordings(
             "repeat_other_view": drawn.repeat_other_view,
             "pairs_same_view": drawn.pairs_same_view,
             "pairs_other_view": drawn.pairs_other_view,
+            "lasting": drawn.lasting,
         }
     )
 

@@ -59,6 +59,8 @@ class Part(StrEnum):
     WRONG_MODEL = "wrong-model"
     WRONG_VLM = "wrong-vlm"
     ABLATIONS = "ablations"
+    LASTING = "lasting"
+    RISK = "risk"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,6 +78,8 @@ class Extent:
             part of that name.
         curve: Episodes of every further point of the curve.
         chains: Robots that learn how good their VLM is, for `CHAIN` episodes each.
+        lasting: Episodes of every cell under errors that last, ours or a rival's.
+        risk: Episodes of every cell of a bounded risk.
     """
 
     tasks: Sequence[str] = (*TASKS, "build_tower")
@@ -87,9 +91,13 @@ class Extent:
     rivals: int = 200
     curve: int = 100
     chains: int = 30
+    lasting: int = 300
+    risk: int = 1000
 
     def cells(self, part: Part) -> Iterator[tuple[Cell, int]]:
         """The cells of a part, each with its number of episodes."""
+        from tpvqa_experiments.belief.lasting import lasting_cells, risk_cells
+
         match part:
             case Part.GRID:
                 for vlm in self.vlms(self.accuracies):
@@ -126,6 +134,10 @@ class Extent:
                     for monitor in (BELIEF, *map(without, PARTS)):
                         for task in self.household:
                             yield Cell(task, monitor, vlm, SYMBOLIC), self.episodes
+            case Part.LASTING:
+                yield from lasting_cells(self.models, self.tasks, self.lasting)
+            case Part.RISK:
+                yield from risk_cells(self.models, self.tasks, self.risk)
 
     @property
     def household(self) -> list[str]:

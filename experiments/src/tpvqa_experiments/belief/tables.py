@@ -11,10 +11,15 @@ from tpvqa.bench.tables import write_table
 from tpvqa.errors import BenchError
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.figures import draw
+from tpvqa_experiments.belief.lasting_tables import lasting_markdown, lasting_rows
+from tpvqa_experiments.belief.lasting_targets import lasting_targets
 from tpvqa_experiments.belief.markdown import results_markdown, targets_markdown
 from tpvqa_experiments.belief.parts import Extent
 from tpvqa_experiments.belief.results import BeliefResults
 from tpvqa_experiments.belief.targets import targets
+
+LASTING = "lasting.md"
+"""The tables of errors that last, where any were run."""
 
 
 def write_results(folder: Path, results: BeliefResults, extent: Extent) -> list[Check]:
@@ -32,6 +37,11 @@ def write_results(folder: Path, results: BeliefResults, extent: Extent) -> list[
     checks = targets(results, extent)
     _write(folder / "targets.json", json.dumps([each.flat() for each in checks], indent=1) + "\n")
     _write(folder / "targets.md", targets_markdown(checks))
+    rows = lasting_rows(results, extent)
+    if rows:
+        lasting = list(lasting_targets(results, extent))
+        _write(folder / LASTING, lasting_markdown(results, extent, lasting))
+        _write(folder / "lasting.json", json.dumps(rows, indent=1) + "\n")
     _write(folder / "belief.md", results_markdown(results, extent))
     for name, figure in draw(results, extent).items():
         for kind in ("svg", "png"):

@@ -7,6 +7,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import wilson
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.comparison import Lies, together, votes_beside_curve
+from tpvqa_experiments.belief.lasting_targets import lasting_targets
 from tpvqa_experiments.belief.learning import (
     LOST,
     RIGHT_TRUST,
@@ -67,6 +68,7 @@ def targets(results: BeliefResults, extent: Extent) -> list[Check]:
         *_recorded(results, extent),
         *_wrong_model(results),
         *_wrong_vlm(results),
+        *lasting_targets(results, extent),
         *_speed(results),
     ]
 

@@ -21,9 +21,9 @@ def belief(
         str,
         typer.Option(
             help="Parts, with commas: grid, rivals, paper, embedded, recorded, wrong-model, "
-            "wrong-vlm, ablations."
+            "wrong-vlm, ablations, lasting, risk."
         ),
-    ] = "grid,rivals,paper,embedded,recorded,wrong-model,wrong-vlm,ablations",
+    ] = "grid,rivals,paper,embedded,recorded,wrong-model,wrong-vlm,ablations,lasting",
     tasks: Annotated[
         str, typer.Option(help="Shipped tasks, with commas.")
     ] = "clean_dishes,serve_breakfast,eat_apple,build_tower",
@@ -38,6 +38,12 @@ def belief(
         str, typer.Option(help="Costs of a question along the grid's curves, with commas.")
     ] = "10,3,2,1,0.3,0.1,0.03,0.003",
     models: Annotated[str, typer.Option(help="Recorded VLMs, with commas. Default: all.")] = "",
+    monitors: Annotated[
+        str, typer.Option(help="Run only cells of these monitors, with commas. Default: all.")
+    ] = "",
+    vlms: Annotated[
+        str, typer.Option(help="Run only cells of these VLMs, with commas. Default: all.")
+    ] = "",
     episodes: Annotated[
         int, typer.Option(help="Of every cell of the belief monitor.", min=1)
     ] = 1000,
@@ -51,6 +57,12 @@ def belief(
             help="Robots that learn, over 30 episodes each, how good their VLM is.", min=1
         ),
     ] = 30,
+    lasting_episodes: Annotated[
+        int, typer.Option(help="Of every cell of the part lasting, ours or a rival's.", min=1)
+    ] = 300,
+    risk_episodes: Annotated[
+        int, typer.Option(help="Of every cell of the part risk.", min=1)
+    ] = 1000,
     calibration_episodes: Annotated[
         int, typer.Option(help="Trials that each calibration is learnt from.", min=1)
     ] = 120,
@@ -74,14 +86,22 @@ def belief(
         Path | None,
         typer.Option(help="Published rows that count as finished, e.g. experiments/rows/belief."),
     ] = None,
+    rivals_from: Annotated[
+        Path | None,
+        typer.Option(
+            help="A folder of this bench, of an earlier version, too: its trials of other "
+            "monitors count as finished."
+        ),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
     """Measure the belief monitor against votes over several looks and the paper's baselines."""
     import os
 
     from tpvqa_experiments.belief import BeliefBench, run_belief_bench
+    from tpvqa_experiments.belief.lasting_tables import lasting_rows
     from tpvqa_experiments.belief.parts import Extent
-    from tpvqa_experiments.belief.tables import summary_rows
+    from tpvqa_experiments.belief.tables import LASTING, summary_rows
     from tpvqa_experiments.paper import PAPER
 
     bench = BeliefBench(
@@ -96,9 +116,13 @@ def belief(
             rivals=rivals,
             curve=curve_episodes,
             chains=chains,
+            lasting=lasting_episodes,
+            risk=risk_episodes,
         ),
         calibration_episodes=calibration_episodes,
         embedded_world=embedded_calibration,
+        monitors=listed(monitors),
+        vlms=listed(vlms),
         common=PAPER.but(seed=seed),
     )
     with bench_bar(out, "calibrations") as bar:
@@ -117,13 +141,20 @@ def belief(
             progress=progress,
             only_tables=only_tables,
             published=rows,
+            rivals_from=rivals_from,
         )
     if as_json:
-        told = {"targets": [check.flat() for check in checks], "cells": summary_rows(results)}
+        told = {
+            "targets": [check.flat() for check in checks],
+            "cells": summary_rows(results),
+            "lasting": lasting_rows(results, bench.extent),
+        }
         print(json.dumps(told, indent=1))
     else:
         _print(checks)
         print(f"tables and figures: {out}/belief.md, {out}/targets.md, {out}/figures")
+        if (out / LASTING).exists():
+            print(f"errors that last: {out}/{LASTING}")
     if results.errors:
         raise typer.Exit(1)
 
@@ -148,7 +179,7 @@ def _print(checks: "Sequence[Check]") -> None:
             check.target,
             f"{found.value:.3g}",
             f"{found.low:.3g} to {found.high:.3g}" if found.low < found.high else "",
-            "yes" if check.reached else "no",
+            {True: "yes", False: "no", None: ""}[check.reached],
         )
         last = check.condition
     console = Console()

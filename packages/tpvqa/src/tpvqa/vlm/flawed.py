@@ -18,8 +18,9 @@ from tpvqa.vlm.protocol import Remembering, TruthSource
 SAME = "same"
 """The word that has the same questions misread in every trial of a seed."""
 FORMS = (
-    "flawed:misread:SHARE[:ACCURACY[:same]], flawed:biased:PREDICATE:YES_IF_TRUE:YES_IF_FALSE"
-    "[:ACCURACY], flawed:late[:ACCURACY] or flawed:useless[:CLAIMED], with numbers between 0 and 1"
+    "flawed:misread:SHARE[:ACCURACY[:same[:N]]], flawed:biased:PREDICATE:YES_IF_TRUE:YES_IF_FALSE"
+    "[:ACCURACY], flawed:late[:ACCURACY] or flawed:useless[:CLAIMED], with numbers between 0 and "
+    "1, and N a whole one"
 )
 
 
@@ -88,26 +89,28 @@ class Misread(Flawed):
         spec: What it was made from.
         share: Of the questions.
         accuracy: Probability that a fresh answer to another is right.
-        same: Whether the same questions are misread in every trial of the seed, or each trial
-            draws its own.
+        draw: Which draw of such questions: trials with the same one misread the same. By default
+            each trial has its own.
     """
 
     def __init__(
-        self, trial: Trial, spec: str, *, share: float, accuracy: float, same: bool
+        self, trial: Trial, spec: str, *, share: float, accuracy: float, draw: str | None = None
     ) -> None:
         super().__init__(trial, spec, accuracy=accuracy)
-        self.share, self._trial = share, "every trial" if same else trial.episode
+        self.share, self._draw = share, trial.episode if draw is None else draw
 
     @classmethod
     def told(cls, trial: Trial, spec: str, words: list[str]) -> "Misread":
-        """From SHARE[:ACCURACY[:same]]."""
-        same = words[2:] == [SAME]
-        share, accuracy = _numbers(spec, words[:2] if same else words, (None, 0.95))
-        return cls(trial, spec, share=share, accuracy=accuracy, same=same)
+        """From SHARE[:ACCURACY[:same[:N]]]; every N has other questions misread in every trial."""
+        draw = None
+        if words[2:3] == [SAME] and (len(words) == 3 or (len(words) == 4 and words[3].isdecimal())):
+            draw, words = " ".join(("every trial", *words[3:])), words[:2]
+        share, accuracy = _numbers(spec, words, (None, 0.95))
+        return cls(trial, spec, share=share, accuracy=accuracy, draw=draw)
 
     def misreads(self, question: Question) -> bool:
         """Whether a question is one of those that it always answers wrongly."""
-        key = ("misread", self._trial, question.text)
+        key = ("misread", self._draw, question.text)
         return chance(self._seed, 0, *key).random() < self.share
 
     def right_of(self, question: Question, *, truth: bool) -> float:
