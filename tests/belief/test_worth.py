@@ -1,5 +1,6 @@
 """How far answers can be trusted, and how their errors last, learned from the answers alone."""
 
+from dataclasses import replace
 from math import isclose, log
 from random import Random
 
@@ -8,37 +9,39 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tpvqa.belief.heard import Heard
 from tpvqa.belief.information import TIMES, settled
 from tpvqa.belief.lasting import FRESH, KINDS, RECORDED
 from tpvqa.belief.trust import Trust
-from tpvqa.belief.worth import Heard, Said, Worth
+from tpvqa.belief.worth import Cases, Said, Worth, by_truth
 
 RIGHT = 0.8
+NONE = np.zeros(0, bool)
 RATES = RIGHT, 1 - RIGHT
 RATIO = log(RIGHT / (1 - RIGHT))
 
 
-def listen(worth: Worth, answers: list[bool], believed: float = 0.5) -> tuple[float, Heard]:
+def listen(worth: Worth, answers: list[bool], believed: float = 0.5) -> tuple[float, Cases]:
     """What is believed of a fact after some answers in one scene."""
-    heard = Heard()
+    drawn = Heard().drawn((), NONE, len(worth.weights))
+    cases = by_truth(worth.weights, believed, drawn)
     for yes in answers:
-        (if_true, if_false), heard = worth.take(
-            Said(yes, RATIO if yes else -RATIO), heard, believed, RATES
-        )
-        true, false = believed * if_true, (1 - believed) * if_false
-        believed = heard.believed = true / (true + false)
-    return believed, heard
+        taken = worth.take(Said(yes, RATIO if yes else -RATIO), cases, RATES)
+        mass = cases.mass * taken.likely
+        cases = replace(cases, mass=mass / mass.sum(), drawn=taken.drawn)
+    worth.believe(cases.mass.sum(axis=0))
+    return float(cases.mass[0].sum()), cases
 
 
 @given(st.lists(st.booleans(), max_size=30), st.sampled_from([FRESH, RECORDED]))
 def test_what_is_learned_stays_a_distribution(answers: list[bool], lasting: tuple[float]) -> None:
     trust = Trust()
     worth = Worth(trust, lasting)
-    believed, heard = listen(worth, answers)
+    believed, cases = listen(worth, answers)
     assert isclose(sum(worth.lasting), 1)
     assert isclose(sum(trust.weights), 1, abs_tol=1e-6)
     assert 0 <= believed <= 1
-    expected = worth.expect(RATES, heard, believed)
+    expected = worth.expect(RATES, cases)
     for mixture in (expected.if_true, expected.if_false):
         assert isclose(sum(weight for weight, _ in mixture), 1)
         assert all(0 <= yes <= 1 + 1e-9 for _, yes in mixture)
@@ -53,9 +56,9 @@ def test_answers_that_are_drawn_anew_multiply() -> None:
 @given(st.integers(2, 40))
 def test_lasting_errors_bound_what_one_scene_can_say(answers: int) -> None:
     only = [1.0 if kind.share == 0.97 and not kind.stays else 0.0 for kind in KINDS]
-    believed, heard = listen(Worth(None, only), [True] * answers)
+    believed, cases = listen(Worth(None, only), [True] * answers)
     assert RIGHT - 1e-9 <= believed < RIGHT + 0.13  # one answer's worth, and what 3% fresh ones add
-    assert settled(Worth(None, only).expect(RATES, heard, believed)) < 0.6
+    assert settled(Worth(None, only).expect(RATES, cases)) < 0.6
 
 
 def test_coins_are_found_out_and_honest_answers_believed() -> None:
@@ -82,8 +85,8 @@ def test_how_errors_last_is_learned_from_how_answers_go_together() -> None:
 def test_further_answers_are_expected_as_they_come() -> None:
     """The mixture says how many of several answers are yes; so do draws of the same noise."""
     share, chance = 0.6, Random(1)
-    only = [1.0 if kind == (share, 0.0) else 0.0 for kind in KINDS]
-    expected = Worth(None, only).expect(RATES, None, 0.5).if_true
+    only = [1.0 if kind[:2] == (share, 0.0) else 0.0 for kind in KINDS]
+    expected = Worth(None, only).expect(RATES).if_true
     times = TIMES[2]
     mean = sum(weight * yes for weight, yes in expected)
     variance = sum(

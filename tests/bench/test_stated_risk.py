@@ -45,7 +45,7 @@ def ran(own: dict[str, OwnTask], tmp_path_factory: pytest.TempPathFactory) -> tu
 def test_the_risk_is_held_on_other_seeds(ran: tuple[Ledger, Bench]) -> None:
     ledger, bench = ran
     free, stated = (ledger.of(cell, EPISODES) for cell in bench.wanted)
-    assert sum(row.believed_goal and not row.reached for row in free) > 2 * RISK * EPISODES
+    assert sum(row.believed_goal and not row.reached for row in free) > RISK * EPISODES
     assert sum(row.believed_goal and not row.reached for row in stated) <= RISK * EPISODES
     assert any(row.completed for row in stated)
 

@@ -32,7 +32,7 @@ class FactwiseBelief(Belief):
                 weight *= chances[atom] if value else 1 - chances[atom]
             true = {atom for atom, value in zip(doubted, values, strict=True) if value}
             weights[self.model.number(JointState(frozenset(certain | true)))] = weight
-        self.outcome_weights = None
+        self.outcome_weights = self.led = None
         self._become(weights)
 
 
@@ -48,7 +48,7 @@ class ModelFreeBelief(Belief):
             )
             for other in (number, after):
                 weights[other] = weights.get(other, 0.0) + weight / 2
-        self.outcome_weights = None
+        self.outcome_weights = self.led = None
         self._become(weights)
 
 

@@ -6,37 +6,32 @@ cannot explain is taken in when answers call for it (`open`).
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tpvqa.belief.faults import FaultModel, JointState, Rates
+from tpvqa.belief.information import Floats
+from tpvqa.belief.led import Led
+from tpvqa.belief.outcome_weights import Came, OutcomeWeights, carried
 from tpvqa.pddl import Action, Atom, State
 
 SMALLEST = 1e-5
 """Joint states under this probability are dropped."""
 MOST = 300
 """Joint states that are kept; the most probable ones."""
+NEVER = 1e-12
+"""Nothing that is told apart of a VLM's noise is less probable, so that it can be learnt of."""
 LOOKED_BACK = 4
 """Actions before the last one of which it is still known how they came out."""
 
-Came = tuple[float, float, float]
-"""Shares of success, of failure, and of nothing left to do."""
-
-
-@dataclass(slots=True)
-class OutcomeWeights:
-    """How an action's outcome is shared between its ways, by joint state. Unnormalised."""
-
-    success: dict[int, float] = field(default_factory=dict)
-    failure: dict[int, float] = field(default_factory=dict)
-    disturbed: dict[int, float] = field(default_factory=dict)
-    achieved: dict[int, float] = field(default_factory=dict)
-    could_disturb: dict[int, float] = field(default_factory=dict)
-
 
 class Belief:
-    """A probability for every joint state that is possible.
+    """A probability for every joint state that is possible, jointly with how the VLM errs.
+
+    What is believed of its noise is not the same in every joint state: where the answers are
+    wrong, it is the worse one. So when answers turn out to be worth little, what they were taken
+    to say goes, too.
 
     Args:
         model: The action model with its faults.
@@ -58,6 +53,11 @@ class Belief:
         first = model.task.init if state is None else state
         model.begin(model.task.init)
         self.weights: dict[int, float] = {model.number(JointState(first)): 1.0}
+        self._noise: dict[int, Floats] = {}
+        self._summed: Floats | None = None
+        self._masses: tuple[tuple[int, ...], Floats] | None = None
+        self._unaware: Floats = np.ones(1)
+        self.led: Led | None = None
         self.outcome_weights: OutcomeWeights | None = None
         self._predicted: dict[int, float] = {}
         self._earlier: list[dict[int, Came]] = []
@@ -77,10 +77,13 @@ class Belief:
             for came in self._remembered()
         ]
         self.weights = {numbers[number]: weight for number, weight in self.weights.items()}
+        self._noise = {
+            numbers[number]: self._noise[number] for number in numbers if number in self._noise
+        }
         self.outcome_weights = None
         self._predicted = {}
         self._marginals.clear()
-        self._ranked = None
+        self._ranked = self._summed = self._masses = None
         return numbers
 
     def begin(self, states: Sequence[tuple[State, float]]) -> None:
@@ -92,6 +95,33 @@ class Belief:
         self.outcome_weights = None
         self._earlier = []
         self._become({self.model.number(JointState(state)): weight for state, weight in states})
+
+    def suppose(self, noise: Floats) -> None:
+        """Begin anew with what is believed of the VLM's noise, the same in every joint state.
+
+        Args:
+            noise: Probabilities of what is told apart.
+        """
+        self._unaware = noise
+        self._noise, self._summed, self._masses = {}, None, None
+
+    @property
+    def noise(self) -> Floats:
+        """What is believed of the VLM's noise: probabilities of what is told apart."""
+        if self._summed is None:
+            self._summed = self.masses()[1].sum(axis=0)
+        return self._summed
+
+    def masses(self) -> tuple[tuple[int, ...], Floats]:
+        """The numbers of the joint states; and their probabilities (rows), each with everything
+        that is told apart of the noise."""
+        if self._masses is None:
+            rows = np.stack([w * self._noise_in(number) for number, w in self.weights.items()])
+            self._masses = tuple(self.weights), rows
+        return self._masses
+
+    def _noise_in(self, number: int) -> Floats:
+        return self._noise.get(number, self._unaware)
 
     def states(self) -> list[tuple[State, float]]:
         """The joint states with their probabilities, the most probable first."""
@@ -173,9 +203,14 @@ class Belief:
                 add(other, mass, came.failure if possible else None)
                 came.disturbed[other] = came.disturbed.get(other, 0.0) + mass
         self.outcome_weights = came
-        self._earlier = [_carried(each, led, after) for each in remembered]
+        self._earlier = [carried(each, led, after) for each in remembered]
+        noise = {begun: self._noise_in(begun) for begun in self.weights}
+        scenes = {n: self.model.kind(n) for n in (*self.weights, *after)}
         self._predicted = dict(after)
         self._become(after)
+        self.led = Led.of(led, self.weights, noise, scenes)
+        self._noise = dict(zip(self.led.after, self.led.mixed, strict=True))
+        self._summed = self._masses = None
 
     def weigh(self, likelihood: Callable[[int], float]) -> float:
         """Weigh every joint state by how probable what was seen is in it (Bayes' rule).
@@ -208,6 +243,22 @@ class Belief:
         return self._weighed(
             {n: weight * (if_true if truth[n] else if_false) for n, weight in self.weights.items()}
         )
+
+    def hear(self, likely: Floats) -> None:
+        """Weigh by an answer.
+
+        Args:
+            likely: Its probability in every joint state (rows, as of `masses`), with everything
+                that is told apart of the VLM's noise.
+        """
+        numbers, masses = self.masses()
+        masses = masses * likely
+        weights = masses.sum(axis=1)
+        noise = np.maximum(masses / np.maximum(weights, 1e-300)[:, None], NEVER)
+        if self._weighed(dict(zip(numbers, weights.tolist(), strict=True))):
+            rows = dict(zip(numbers, noise, strict=True))
+            self._noise = {number: rows[number] for number in self.weights}
+            self._summed = self._masses = None
 
     def weigh_outcome(self, *, succeeded: float, failed: float, achieved: float) -> None:
         """Weigh by how probable something is where the last action succeeded, where it failed, and
@@ -247,12 +298,30 @@ class Belief:
             for other in others:
                 there = self.model.become(number, other)
                 new += there not in grown
-                grown[there] = grown.get(there, 0.0) + chance * weight / len(others)
+                share = chance * weight / len(others)
+                self._noise[there] = (
+                    grown.get(there, 0.0) * self._noise_in(there) + share * self._noise_in(number)
+                ) / (grown.get(there, 0.0) + share)
+                grown[there] = grown.get(there, 0.0) + share
         self._become(grown, self._smallest / most)
         return new
 
-    def outcome_shares(self) -> Mapping[str, float]:
+    def where_noise(self, part: NDArray[np.bool_]) -> dict[int, float]:
+        """The probabilities of the joint states where the VLM's noise is one of some.
+
+        Args:
+            part: Which, of all that is told apart of it.
+        """
+        numbers, masses = self.masses()
+        weights = masses[:, part].sum(axis=1)
+        weights = weights / max(float(weights.sum()), 1e-300)
+        return dict(zip(numbers, weights.tolist(), strict=True))
+
+    def outcome_shares(self, weights: Mapping[int, float] | None = None) -> Mapping[str, float]:
         """How the last action came out, after all that was seen since.
+
+        Args:
+            weights: Probabilities of the joint states; by default as they are believed.
 
         Returns:
             Expected numbers, each between 0 and 1: "success", "failure", and of those in which
@@ -261,27 +330,18 @@ class Belief:
         """
         if self.outcome_weights is None:
             return {}
-        shares = {}
-        for name, masses in (
-            ("success", self.outcome_weights.success),
-            ("failure", self.outcome_weights.failure),
-            ("achieved", self.outcome_weights.achieved),
-            ("disturbed", self.outcome_weights.disturbed),
-            ("undisturbed", self.outcome_weights.could_disturb),
-        ):
-            shares[name] = sum(
-                self.weights.get(number, 0.0) * mass / self._predicted[number]
-                for number, mass in masses.items()
-                if self._predicted.get(number, 0.0) > 0
-            )
-        return shares
+        now = self.weights if weights is None else weights
+        return self.outcome_weights.shares(now, self._predicted)
 
-    def earlier_shares(self) -> list[Mapping[str, float]]:
+    def earlier_shares(
+        self, weights: Mapping[int, float] | None = None
+    ) -> list[Mapping[str, float]]:
         """How the actions before the last one came out, after all that was seen since; the latest
         first, as `outcome_shares`."""
+        now = self.weights if weights is None else weights
         return [
             {
-                kind: sum(w * came[n][place] for n, w in self.weights.items() if n in came)
+                kind: sum(w * came[n][place] for n, w in now.items() if n in came)
                 for place, kind in enumerate(("success", "failure", "achieved"))
             }
             for came in self._earlier
@@ -309,24 +369,7 @@ class Belief:
             kept = dict(self.model.ranked(kept)[: self._most])
         share = sum(kept.values())
         self.weights = {n: w / share for n, w in kept.items()}
+        if len(self._noise) > len(kept):
+            self._noise = {n: self._noise[n] for n in kept if n in self._noise}
         self._marginals.clear()
-        self._ranked = None
-
-
-def _carried(
-    came: Mapping[int, Came], led: Sequence[tuple[int, int, float]], after: Mapping[int, float]
-) -> dict[int, Came]:
-    """How an earlier action came out, by the joint states that a later one has led to.
-
-    Args:
-        came: By the joint states before it.
-        led: What it led from where to where, with which weight.
-        after: All weight of each joint state.
-    """
-    found: dict[int, Came] = {}
-    for begun, number, weight in led:
-        if begun in came and after[number] > 0:
-            share, (a, b, c) = weight / after[number], came[begun]
-            x, y, z = found.get(number, (0.0, 0.0, 0.0))
-            found[number] = x + share * a, y + share * b, z + share * c
-    return found
+        self._ranked = self._summed = self._masses = None

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from tpvqa.belief.bounds import BOUND, EDGE
-from tpvqa.belief.lasting import FRESH, KINDS
+from tpvqa.belief.lasting import FRESH, KINDS, UNKNOWN
 from tpvqa.belief.own_words import OwnWords, SensorWorth, SkillWorth, fit_sensors, fit_skills
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError, PlacedError
@@ -212,14 +212,15 @@ class Calibration(_Model):
         the recordings of ViPlan (Merler et al. 2025) only half of them do, so `Trust.after` holds
         against it how the words of eight VLMs spread. Its P(yes) is trusted half (log odds
         halved), as VLMs are surer than they are right; a further look repeats the last answer with
-        probability 0.5 from the same view and 0.25 from another. That errors last is learned, not
-        assumed.
+        probability 0.5 from the same view and 0.25 from another. That errors last is
+        learned, and hardly assumed.
         """
         return cls(
             vlm=vlm,
             whole=Group(rates=AnswerRates(0.85, 0.15, 0.05, 0.05), curve=Curve(slope=0.5)),
             repeat_same_view=0.5,
             repeat_other_view=0.25,
+            lasting=UNKNOWN,
         )
 
     def hearing(self, own: OwnWords) -> "Calibration":

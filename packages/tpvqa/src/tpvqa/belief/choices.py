@@ -12,6 +12,7 @@ from tpvqa.belief.falls import fallen
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
+from tpvqa.belief.settling import SETTLED
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice, Table
 from tpvqa.belief.unseen import Unseen
@@ -33,8 +34,6 @@ FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
 ROUNDS = 3.0
 """How often it is no surprise to come back to the same action, were every step of it progress."""
-SETTLED = 0.97
-"""Where answers settle so much, what follows an action is taken to be seen."""
 SEVERAL = 40
 """Joint states of which it is worked out what they cost unseen; the rest is lost."""
 DISTURBED = 0.02

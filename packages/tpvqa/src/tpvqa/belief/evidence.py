@@ -1,21 +1,25 @@
 """Answers as evidence: each weighs the belief by what it adds to those before."""
 
-from collections.abc import Collection, Hashable, Iterable
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from typing import Protocol
 
-from tpvqa.belief.belief import LOOKED_BACK, Belief
+import numpy as np
+
+from tpvqa.belief.belief import NEVER, Belief
 from tpvqa.belief.calibration import Apart, Calibration
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.doubts import Doubts
+from tpvqa.belief.heard import Heard
 from tpvqa.belief.information import Reliability, answers_to_be_sure
+from tpvqa.belief.last_answer import LastAnswer, Picture
 from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
 from tpvqa.belief.readings import Readings
 from tpvqa.belief.repeats import learn_repeats
 from tpvqa.belief.settling import Settling, in_doubt
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.trust import Trust
-from tpvqa.belief.worth import Heard, Said, Worth
+from tpvqa.belief.worth import SURE, Cases, Said, Worth, by_truth, moved
 from tpvqa.pddl import Action, Atom, Task, literals
 from tpvqa.questions.question import FactQuestion
 from tpvqa.vlm import Answer, Reply
@@ -36,30 +40,7 @@ PAIRS = 4.0
 """Pairs of answers that ρ counts for without any data."""
 
 Pair = tuple[float, float]
-Picture = Hashable
-"""What tells one picture from another: what it shows, or else the number of the look."""
-
-
-@dataclass(slots=True)
-class _Last:
-    """The last answer to a question.
-
-    Attributes:
-        pictures: Of which pictures it was asked since something was done last.
-        view: From which view the last one was.
-        true: Probability, after it, that yes was right.
-        settled: Whether nothing was done since, so that what is true is unchanged.
-        heard: What was heard of it, by view.
-        actions: Done since.
-    """
-
-    reply: Reply
-    pictures: set[Picture]
-    view: str | None
-    true: float
-    settled: bool = True
-    heard: dict[str | None, Heard] = field(default_factory=dict)
-    actions: int = 0
+_NONE = np.zeros(0, bool)
 
 
 class Weighed(Protocol):
@@ -111,8 +92,10 @@ class Evidence:
             apart: _cases(calibration.repeat(apart), PAIRS + calibration.pairs(apart))
             for apart in Apart
         }
-        self._last: dict[str, _Last] = {}
+        self._last: dict[str, LastAnswer] = {}
         self.worth = Worth(trust, calibration.lasting)
+        self._size = len(self.worth.weights)
+        belief.suppose(self.worth.weights)
         self._changed: frozenset[Atom] = frozenset()
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
@@ -120,6 +103,24 @@ class Evidence:
     def weigh(self, belief: Weighed) -> None:
         """Weigh something else from now on; what was answered before stays known."""
         self._weighed = belief
+        self._belief.suppose(self.worth.weights)
+
+    def renumbered(self, numbers: Mapping[int, int]) -> None:
+        """Go on with other numbers of the joint states."""
+        for last in self._last.values():
+            last.heard[last.view].renumbered(numbers)
+
+    def _cases(self, question: FactQuestion, heard: Heard) -> Cases:
+        """What may be the case when a question is asked."""
+        if self._weighed is not self._belief:
+            now = self._weighed.probability(question.atom, question.alike)
+            true, drawn = moved(heard.true, heard.believed, now), heard.drawn((), _NONE, self._size)
+            return by_truth(self.worth.weights, true, drawn)
+        numbers, mass = self._belief.masses()
+        self.worth.believe(self._belief.noise)
+        truth = self._belief.model.truth(question.atoms)
+        right = np.array([truth[number] for number in numbers], bool)
+        return Cases(mass, right, heard.drawn(numbers, right, self._size))
 
     def acted(
         self, action: str = "", *, failed: bool | None = None, effects: Collection[Atom] = ()
@@ -135,10 +136,10 @@ class Evidence:
         if failed is not None:
             self._take_report(action, failed=failed)
         self._readings.acted()
+        led, truth = self._belief.led, self._belief.model.truth
         for last in self._last.values():
             last.heard = {last.view: last.heard[last.view]}
-            last.settled = False
-            last.actions += 1
+            last.heard[last.view].acted(led, truth(last.atoms))
             last.pictures.clear()
         self._opened.clear()
         self._silent.clear()
@@ -226,7 +227,7 @@ class Evidence:
     def answers_to_be_sure(self) -> float:
         """How many answers of this VLM it takes to notice a mistake."""
         rates = self._calibration.whole.rates
-        expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false), None, 0.5)
+        expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false))
         right = (expected.yes_if_true + 1 - expected.yes_if_false) / 2
         sure = answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
         return 1 + (sure - 1) * max(0.0, 5 * self.settling().share - 4)
@@ -238,16 +239,15 @@ class Evidence:
             questions: About what may be in doubt; none for a fact that was never asked about.
         """
         whole = self._calibration.whole.rates
-        new = self.worth.expect((whole.yes_if_true, whole.yes_if_false), None, 0.5)
+        new = self.worth.expect((whole.yes_if_true, whole.yes_if_false))
         doubts: list[tuple[float, Reliability]] = []
         for question in questions:
             true = self._weighed.probability(question.atom, question.alike)
             last, expected = self._last.get(question.text), new
             if last is not None and in_doubt(true):
                 rates = self._calibration.group(question).rates
-                heard = self._heard(last, last.view, question.atoms).changed((1.0, 1.0), 0.0)
-                said = rates.yes_if_true, rates.yes_if_false
-                expected = self.worth.expect(said, heard, true)
+                cases = self._cases(question, last.heard[last.view].elsewhere())
+                expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false), cases)
             doubts.append((true, expected))
         return Settling.of(doubts, new)
 
@@ -258,42 +258,18 @@ class Evidence:
         said = rates.yes_if_true, rates.yes_if_false
         last = self._last.get(question.text)
         if last is None:
-            return replace(self.worth.expect(said, None, 0.5), abstains=abstains)
-        heard = self._heard(last, view, question.atoms)
-        true = self._weighed.probability(question.atom, question.alike)
-        found = self.worth.expect(said, heard, true)
+            return replace(self.worth.expect(said), abstains=abstains)
+        cases = self._cases(question, last.heard_from(view))
+        found = self.worth.expect(said, cases)
         rho = self._repeats[_apart(last, view)].mean
         before = 1.0 if last.reply is Reply.YES else 0.0
         if_true, if_false = (
             tuple((share, again * before + (1 - again) * each) for share, each in mixture)
             for again, mixture in zip(
-                (rho * same for same in _unchanged(last)), found.mixtures, strict=True
+                (rho * same for same in _unchanged(cases)), found.mixtures, strict=True
             )
         )
         return Reliability.mixed(if_true, if_false, abstains)
-
-    def _heard(self, last: _Last, view: str | None, atoms: tuple[Atom, ...]) -> Heard:
-        """What was heard of a question, as it counts now."""
-        if last.actions:
-            same, still = _unchanged(last), self._still(last.actions, atoms)
-            last.heard = {last.view: last.heard[last.view].changed(same, still)}
-            last.actions = 0
-        known = last.heard.get(view)
-        if known is None:
-            known = last.heard[view] = last.heard[last.view].changed((1.0, 1.0), 0.0)
-        return known
-
-    def _still(self, actions: int, atoms: tuple[Atom, ...]) -> float:
-        """Probability that some actions changed nothing else, where they did not change a fact."""
-        came = self._belief.outcome_shares()
-        failed, disturbed = came.get("failure", 0.0), came.get("disturbed", 0.0)
-        if not self._changed.isdisjoint(atoms):  # it has changed nothing then
-            still = 1 - disturbed / failed if failed > 0 else 1.0
-        else:
-            still = failed + came.get("achieved", 0.0) - disturbed
-        for earlier in self._belief.earlier_shares()[: actions - 1]:
-            still *= earlier["failure"] + earlier["achieved"]
-        return min(max(still, 0.0), 1.0) if actions <= LOOKED_BACK else 0.0
 
     def take(
         self, question: FactQuestion, answer: Answer, picture: Picture, view: str | None
@@ -312,36 +288,51 @@ class Evidence:
             return 1.0
         group = self._calibration.group(question)
         true = self._weighed.probability(question.atom, question.alike)
-        yes = answer.reply is Reply.YES
+        yes, rates = answer.reply is Reply.YES, (group.rates.yes_if_true, group.rates.yes_if_false)
         said = Said(yes, group.log_ratio(answer.reply, answer.p_yes))
-        heard, rates = Heard(), (group.rates.yes_if_true, group.rates.yes_if_false)
+        heard = Heard() if last is None else last.heard_from(view)
+        cases = self._cases(question, heard)
         if last is not None:
-            heard = self._heard(last, view, atoms)
-            repeats, unchanged = self._repeats[_apart(last, view)], _unchanged(last)
-            same = last.reply is answer.reply
+            repeats, same = self._repeats[_apart(last, view)], last.reply is answer.reply
             if self._trust is not None:
                 # How often this word is said, not how much this P(yes) is worth.
-                expected = self.worth.expect(rates, heard, true)
+                expected = self.worth.expect(rates, cases)
                 words = (expected.yes_if_true, expected.yes_if_false)
                 told = words if yes else _others(words)
-                learn_repeats(repeats, true, told, unchanged, float(same))
-            again = repeats.mean * unchanged[0], repeats.mean * unchanged[1]
-            said = replace(said, again=again, same=same)
-        (if_true, if_false), heard = self.worth.take(said, heard, true, rates)
+                learn_repeats(repeats, true, told, _unchanged(cases), float(same))
+            said = replace(said, repeats=repeats.mean, same=same)
+        taken = self.worth.take(said, cases, rates)
+        (if_true, if_false) = taken.whole
         probable = true * if_true + (1 - true) * if_false
+        if last is None:
+            last = self._last[question.text] = LastAnswer(answer.reply, set(), view, atoms)
+        last.reply, last.view, last.heard[view] = answer.reply, view, heard
+        last.pictures.add(picture)
         if probable < SURPRISING:
             self._open(atoms, held=true >= 0.5)
         elif self._doubts is not None:
             self._doubts.learn(atoms, if_true, if_false)
-        self._weighed.see(atoms, if_true, if_false)
-        after = self._weighed.probability(question.atom, question.alike)
-        if last is None:
-            last = self._last[question.text] = _Last(answer.reply, set(), view, after)
-        heard.believed = after
-        last.reply, last.view, last.true, last.settled = answer.reply, view, after, True
-        last.heard[view], last.actions = heard, 0
-        last.pictures.add(picture)
+        self._weigh_answer(question, heard, said, rates)
         return probable
+
+    def _weigh_answer(self, question: FactQuestion, heard: Heard, said: Said, rates: Pair) -> None:
+        cases = self._cases(question, heard)
+        taken = self.worth.take(said, cases, rates)
+        self.worth.compare(said, rates)
+        masses = cases.mass * taken.likely
+        if self._weighed is self._belief:
+            numbers = tuple(self._belief.weights)
+            heard.told(numbers, taken.drawn)
+            alike = masses.sum(axis=1) / np.maximum(cases.mass.sum(axis=1), 1e-300)
+            learns = self._trust is not None
+            self._belief.hear(taken.likely if learns else alike[:, None])
+            return
+        self._weighed.see(question.atoms, *taken.whole)
+        heard.told((), taken.drawn)
+        heard.believed = self._weighed.probability(question.atom, question.alike)
+        both = np.maximum(masses.sum(axis=0), 1e-300)
+        heard.true = np.clip(masses[0] / both, SURE, 1 - SURE)
+        self.worth.believe(np.maximum(both / both.sum(), NEVER))
 
     def take_from_person(self, question: FactQuestion, reply: Reply) -> None:
         """Weigh the belief by a person's reply to a question."""
@@ -353,9 +344,10 @@ class Evidence:
             self._weighed.see(question.atoms, right, 1 - right)
 
 
-def _unchanged(last: _Last) -> tuple[float, float]:
+def _unchanged(cases: Cases) -> Pair:
     """Probability that yes (no) was right at the last answer already, where it is right now."""
-    return (1.0, 1.0) if last.settled else (last.true, 1 - last.true)
+    kept = cases.drawn.kept
+    return cases.where(kept, true=True), cases.where(kept, true=False)
 
 
 def _cases(mean: float, cases: float) -> Beta:
@@ -366,7 +358,7 @@ def _others(said: Pair) -> Pair:
     return 1 - said[0], 1 - said[1]
 
 
-def _apart(last: _Last, view: str | None) -> Apart:
+def _apart(last: LastAnswer, view: str | None) -> Apart:
     return Apart.SAME_VIEW if last.view == view else Apart.OTHER_VIEW
 
 

@@ -6,7 +6,7 @@ from operator import mul
 from typing import NamedTuple
 
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import PERSON, PERSONS_VIEW, Evidence, Picture
+from tpvqa.belief.evidence import PERSON, PERSONS_VIEW, Evidence
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import (
     TIMES,
@@ -19,6 +19,7 @@ from tpvqa.belief.information import (
     opened,
     settled,
 )
+from tpvqa.belief.last_answer import Picture
 from tpvqa.belief.table import Table
 from tpvqa.questions.question import FactQuestion
 
@@ -26,6 +27,8 @@ DOUBT = 1e-3
 """Facts that are surer than this are not asked about."""
 TOGETHER = 4
 """Questions that are thought to be asked together, at most."""
+SAYING = 0.02
+"""A question whose further answers settle less of a doubt is exhausted in this scene."""
 EQUAL = 1e-9
 """Savings that differ by less are equal: the last bits of a sum are the processor's."""
 
@@ -163,6 +166,7 @@ class Inquirer:
                         most_saved, asked = saving, (each.question, times)
             if asked is not None:
                 found = Inquiry(asked[0], max(1, asked[1] // 4), most_saved)
+        doubted = [each for each in doubted if _says(each.reliability)]
         if len(doubted) > 1 and now > asking:
             doubted.sort(key=lambda each: each.urgent)
             first = doubted[:TOGETHER]
@@ -256,6 +260,11 @@ def _settled(doubted: Sequence[_Doubted]) -> float:
     weights = [each.likely * (1 - each.likely) for each in doubted]
     told = [settled(each.reliability) for each in doubted]
     return float(max(sum(map(mul, weights, told)) / sum(weights), EQUAL))
+
+
+def _says(each: Reliability) -> bool:
+    """Whether further answers say anything: what was asked often enough in this scene does not."""
+    return abs(each.yes_if_true - each.yes_if_false) > SAYING or settled(each) > SAYING
 
 
 _PERSONS = (Reliability(PERSON, 1 - PERSON),)

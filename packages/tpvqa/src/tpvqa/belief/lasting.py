@@ -4,10 +4,10 @@ With a *lasting share* s each answer to a question is, with probability s, the s
 it, and otherwise drawn afresh; two answers then correlate by s². Evidence of one question in one
 scene saturates. Whether the scene's own draw is a misreading *stays* as it was, with some
 probability, where something else in the scene has changed. That errors of views are not
-independent: Velez et al. 2012 (JAIR 44).
+independent: Velez et al. 2012 (JAIR 44). Answers drawn afresh are as often wrong as the scene's
+own, or a coin's: then some questions are always misread, and the rest now and then.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -22,88 +22,68 @@ class Kind(NamedTuple):
         share: The lasting share s.
         stays: Probability that a misreading, or that there is none, goes on when the scene has
             changed.
+        coin: Whether an answer drawn afresh is a coin's.
     """
 
     share: float
     stays: float
+    coin: bool = False
 
 
 KINDS = (
     Kind(0.0, 0.0),
     *(Kind(share, stays) for share in (0.35, 0.6, 0.8, 0.97) for stays in (0.0, 0.9)),
+    Kind(0.9, 0.9, coin=True),
+    Kind(0.9, 0.99, coin=True),
 )
 """What is told apart."""
 FRESH = (1.0, *(0.0 for _ in KINDS[1:]))
 """How probable each is where errors are known not to last."""
-RECORDED = (0.34, 0.05, 0.05, 0.08, 0.07, 0.13, 0.12, 0.08, 0.08)
+RECORDED = (0.34, 0.05, 0.05, 0.07, 0.06, 0.12, 0.11, 0.07, 0.07, 0.03, 0.03)
 """How probable each is before any answer of a VLM was labelled: for two thirds as with those of
 ViPlan (a lasting share of about .8 and .98, of which .77 and .55 stay), shared out widely; the rest
 for one that answers anew at every look."""
+DISPERSED = 8.0
+"""Where errors last, a question in a scene has its own rate of yes, too, for answers drawn afresh,
+known beforehand as well as from so many answers: none is better than the worst known of it."""
+UNKNOWN = tuple(
+    0.9 if not kind.share else 0.1 * weight / (1 - RECORDED[0])
+    for kind, weight in zip(KINDS, RECORDED, strict=True)
+)
+"""How probable each is taken to be of a VLM of which nothing is known. Less than the recordings
+say: else a few answers about one thing could never speak against what is believed of it."""
+SUREST = 0.001
+"""The scene's own answers are wrong so often at least."""
 SHARES = np.array([kind.share for kind in KINDS])
 STAYS = np.array([kind.stays for kind in KINDS])
+_COINS = np.array([kind.coin for kind in KINDS])
 
 
-@dataclass(frozen=True, slots=True)
-class Drawn:
-    """What is known of the scene's own answer to a question, by `KINDS` along the last axis.
+_LASTS = np.array([kind.share > 0 for kind in KINDS])
 
-    Attributes:
-        yes: P(it is a yes and was drawn before), first where yes is right, then where no is.
-        new: P(it is not drawn yet), likewise.
+
+def own_rate(rate: Floats) -> Floats:
+    """P(yes) of the scene's own answer before it is drawn.
+
+    Args:
+        rate: P(yes) of an answer of which nothing is known, by `KINDS` along the last axis, once or
+            several times over.
     """
-
-    yes: tuple[Floats, Floats]
-    new: tuple[Floats, Floats]
-
-    def after(self, same: tuple[float, float], still: float) -> "Drawn":
-        """What is known of it at a later scene.
-
-        Args:
-            same: Probability that the fact was the same before, where yes is right now and where
-                no is.
-            still: Probability that then nothing else has changed either.
-        """
-        yes, new = [], []
-        for now in (0, 1):
-            here = same[now] * (still + (1 - still) * STAYS)
-            turned = (1 - same[now]) * STAYS
-            # A misreading goes on: where the fact has changed, so has the answer.
-            swapped = 1 - self.yes[1 - now] - self.new[1 - now]
-            yes.append(here * self.yes[now] + turned * swapped)
-            new.append(here * self.new[now] + turned * self.new[1 - now] + 1 - here - turned)
-        return Drawn((yes[0], yes[1]), (new[0], new[1]))
-
-    def own(self, now: int, rate: Floats) -> Floats:
-        """P(the scene's own answer is a yes).
-
-        Args:
-            now: 0 where yes is right, 1 where no is.
-            rate: P(yes) of one drawn afresh.
-        """
-        own: Floats = self.yes[now] + self.new[now] * rate
-        return own
-
-    def told(
-        self, yes: bool, rates: tuple[Floats, Floats], repeated: tuple[Floats, Floats]
-    ) -> "Drawn":
-        """What is known of it after an answer.
-
-        Args:
-            yes: Whether it is a yes.
-            rates: P(yes) of one drawn afresh, where yes is right and where no is.
-            repeated: Probability that it is the answer before once more, likewise.
-        """
-        found = []
-        for now in (0, 1):
-            rate, own = rates[now], self.own(now, rates[now])
-            this, fresh = (own, rate) if yes else (1 - own, 1 - rate)
-            drawn = SHARES * this + (1 - SHARES) * fresh
-            agrees = this * (SHARES + (1 - SHARES) * fresh) / np.maximum(drawn, 1e-12)
-            after = agrees if yes else 1 - agrees
-            found.append(repeated[now] * own + (1 - repeated[now]) * after)
-        none = np.zeros(len(KINDS))
-        return Drawn((found[0], found[1]), (none, none))
+    times = rate.shape[-1] // len(KINDS)
+    coins, shares = np.tile(_COINS, times), np.tile(SHARES, times)
+    own = np.clip((rate - (1 - shares) / 2) / np.maximum(shares, 0.5), SUREST, 1 - SUREST)
+    return np.where(coins, own, rate)
 
 
-NEVER = Drawn((np.zeros(len(KINDS)),) * 2, (np.ones(len(KINDS)),) * 2)
-"""Of a question that was not asked."""
+def fresh_rate(rate: Floats, answers: Floats, yeses: Floats) -> Floats:
+    """P(yes) of an answer drawn afresh, after some answers in the same scene.
+
+    Args:
+        rate: As that of `own_rate`.
+        answers: How many there were.
+        yeses: How many of them were yeses.
+    """
+    times = rate.shape[-1] // len(KINDS)
+    coins, lasts = np.tile(_COINS, times), np.tile(_LASTS, times)
+    known = (DISPERSED * rate + yeses) / (DISPERSED + answers)
+    return np.where(coins, 0.5, np.where(lasts, known, rate))

@@ -10,7 +10,7 @@ from tpvqa.belief.calibration import AnswerRates
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.information import Floats
 from tpvqa.belief.labelled_answer import LabelledAnswer
-from tpvqa.belief.lasting import KINDS, RECORDED, SHARES, STAYS
+from tpvqa.belief.lasting import KINDS, RECORDED, SHARES, STAYS, fresh_rate, own_rate
 from tpvqa.belief.runs import ANSWERS
 from tpvqa.vlm.answer import Reply
 
@@ -86,6 +86,7 @@ def _probable(
     found = np.zeros((len(KINDS), len(_RHO), len(_RHO)))
     yes, new = np.zeros((len(KINDS), 1, 1)), np.ones((len(KINDS), 1, 1))
     last: LabelledAnswer | None = None
+    number = yeses = 0
     for row in answers:
         if last is not None and row.look == last.look:
             continue
@@ -100,15 +101,20 @@ def _probable(
                 pairs[other] += row.weight
                 repeats = _BY_VIEW[other]
             if row.truth != last.truth or row.scene != last.scene or other:
+                number = yeses = 0
                 yes = yes if row.truth != last.truth else _STAYS * yes
                 new = _STAYS * new + 1 - _STAYS
-        own = yes + new * rate
-        own, fresh = (own, rate) if said else (1 - own, 1 - rate)
+        rated = np.full(len(KINDS), rate)
+        first = own_rate(rated)[:, None, None]
+        afresh = fresh_rate(rated, np.array(float(number)), np.array(float(yeses)))[:, None, None]
+        own = yes + new * first
+        own, fresh = (own, afresh) if said else (1 - own, 1 - afresh)
         drawn = _SHARE * own + (1 - _SHARE) * fresh
         again = repeats if last is not None and row.reply is last.reply else 0.0
         here = again + (1 - repeats) * drawn
         found = found + row.weight * np.log(here)
         own = own * (_SHARE + (1 - _SHARE) * fresh) / drawn
+        number, yeses = number + 1, yeses + said
         yes, new, last = own if said else 1 - own, np.zeros((1, 1, 1)), row
     return found
 

@@ -17,6 +17,10 @@ ALIKE = 0.4
 KNOWN = 10
 """Labelled answers after which a calibration is believed as much as those recordings."""
 
+ELSEWHERE = 0.02
+"""Chance that a calibration says nothing of the VLM in this scene, however well it was learned: the
+camera, the light or the model is another one."""
+
 
 class Trust:
     """A posterior over how much an answer is worth, compared with what the calibration says.
@@ -54,13 +58,18 @@ class Trust:
         Where nothing was learned, a VLM is one like those that were recorded: some know what they
         see, some hardly.
         """
-        trust, unknown = Trust(0.15 + 0.6 / (1 + rows / 200)), KNOWN / (KNOWN + rows)
+        trust, unknown = (
+            Trust(0.15 + 0.6 / (1 + rows / 200)),
+            (1 - ELSEWHERE) * KNOWN / (KNOWN + rows),
+        )
         recorded = [
             sum(exp(-0.5 * (log(factor / known) / ALIKE) ** 2) for known in RECORDED)
             for factor in GRID
         ]
         trust.weights = tuple(
-            (1 - unknown) * learned + unknown * each / sum(recorded)
+            (1 - unknown - ELSEWHERE) * learned
+            + unknown * each / sum(recorded)
+            + ELSEWHERE / len(GRID)
             for learned, each in zip(trust.weights, recorded, strict=True)
         )
         return trust

@@ -4,38 +4,39 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from tpvqa.belief.heard import Drawn, after_answer, own
 from tpvqa.belief.information import Floats, Mixture, Reliability
-from tpvqa.belief.lasting import KINDS, NEVER, RECORDED, SHARES, Drawn
+from tpvqa.belief.lasting import KINDS, RECORDED, SHARES, fresh_rate, own_rate
 from tpvqa.belief.trust import GRID, Trust
 
 SURE = 1e-9
 """Nothing is surer than this, so that what was impossible can be learnt of."""
 ANSWERS = 40.0
 """Answers' worth of belief that they say as much as the calibration's rates of yes and no."""
-_GRID = np.array(GRID)[:, None]
-_ONE = np.ones((1, 1))
 Pair = tuple[float, float]
+_NONE = np.zeros(1), np.zeros(1)
 
 
-@dataclass(slots=True)
-class Heard:
-    """What was heard of one question, from one view.
+@dataclass(frozen=True, slots=True)
+class Cases:
+    """What may be the case when a question is asked, jointly with how the VLM errs.
 
     Attributes:
+        mass: Probability of each case (row) with everything that is told apart of the noise.
+        truth: Whether yes is right, in each case.
         drawn: What is known of the scene's own answer.
-        true: P(yes is right) by all that is told apart, after the answers of this scene; None
-            where there was none yet.
-        believed: The same as the belief had it after the last one.
     """
 
-    drawn: Drawn = NEVER
-    true: Floats | None = None
-    believed: float = 0.5
+    mass: Floats
+    truth: NDArray[np.bool_]
+    drawn: Drawn
 
-    def changed(self, same: Pair, still: float) -> "Heard":
-        """The same at a later scene, see `Drawn.after`."""
-        return Heard(self.drawn.after(same, still))
+    def where(self, known: Floats, *, true: bool) -> float:
+        """The expectation of something, one number for each case, where yes is right or not."""
+        weights = self.mass.sum(axis=1) * (self.truth == true)
+        return float(weights @ known / max(weights.sum(), 1e-300))
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,14 +46,29 @@ class Said:
     Attributes:
         yes: Whether it is a yes.
         ratio: Its log likelihood ratio, by the calibration.
-        again: Probability that it only repeats the last one, where yes is right and where no is.
+        repeats: How often an answer only repeats the last one where the fact is what it was.
         same: Whether it is the last one again.
     """
 
     yes: bool
     ratio: float
-    again: Pair = (0.0, 0.0)
+    repeats: float = 0.0
     same: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """What an answer came to.
+
+    Attributes:
+        likely: Its probability in each case, for everything that is told apart of the noise.
+        whole: Its probability where yes is right and where no is.
+        drawn: What is known of the scene's own answer now.
+    """
+
+    likely: Floats
+    whole: Pair
+    drawn: Drawn
 
 
 class Worth:
@@ -68,54 +84,81 @@ class Worth:
 
     def __init__(self, trust: Trust | None = None, lasting: Sequence[float] = RECORDED):
         self.trust = trust
-        self._grid = _ONE if trust is None else _GRID
         first = np.ones(1) if trust is None else np.array(trust.weights)
         last = np.array(lasting) / sum(lasting)
-        self._weights: Floats = first[:, None] * last
+        self._grid = np.repeat((1.0,) if trust is None else GRID, len(KINDS))
+        self._shares = np.tile(SHARES, len(first))
+        told = [(kind.share, kind.coin) for kind in KINDS] * len(first)
+        self._places = [
+            (each[0], np.flatnonzero([other == each for other in told]))
+            for each in dict.fromkeys(told)
+        ]
+        self._weights: Floats = np.outer(first, last).ravel()
         self._new: dict[Pair, Reliability] = {}
         self._by_words = self._by_answers = ANSWERS
 
     @property
+    def weights(self) -> Floats:
+        """The probability of every factor of `trust.GRID` with each of `KINDS`, these varying
+        first; of the kinds alone where the calibration is taken at its word."""
+        return self._weights
+
+    def believe(self, weights: Floats) -> None:
+        """Take over what is believed of the noise."""
+        if self.trust is not None:
+            self._weights = weights
+            by_trust = weights.reshape(-1, len(KINDS)).sum(axis=1)
+            self.trust.weights = tuple(by_trust.tolist())
+            self._new.clear()
+
+    @property
     def lasting(self) -> tuple[float, ...]:
         """The probability of each of `KINDS`."""
-        return tuple(self._weights.sum(axis=0).tolist())
+        return tuple(self._weights.reshape(-1, len(KINDS)).sum(axis=0).tolist())
 
     @property
     def share(self) -> float:
         """The expected lasting share."""
-        return float(self._weights.sum(axis=0) @ SHARES)
+        return float(self._weights @ self._shares)
 
-    def expect(self, rates: Pair, heard: Heard | None, believed: float) -> Reliability:
+    def expect(self, rates: Pair, cases: Cases | None = None) -> Reliability:
         """What further answers will be.
 
         Args:
             rates: P(yes) where yes is right, and where no is, by the calibration.
-            heard: What was heard of the question; None where it was never asked.
-            believed: The probability that yes is right.
+            cases: What may be the case; None where the question was never asked.
         """
-        if heard is None:
-            known = self._new.get(rates)
-            if known is None:
-                known = self._new[rates] = self._expected(rates, Heard(), believed)
-            return known
-        return self._expected(rates, heard, believed)
+        if cases is not None:
+            return self._expected(rates, cases)
+        known = self._new.get(rates)
+        if known is None:
+            known = self._new[rates] = self._expected(rates, None)
+        return known
 
-    def _expected(self, rates: Pair, heard: Heard, believed: float) -> Reliability:
-        true = self._true(heard, believed)
+    def _expected(self, rates: Pair, cases: Cases | None) -> Reliability:
         mixtures: list[Mixture] = []
-        for now, rate in enumerate(self._rates(rates)):
-            weights = self._weights * (true if now == 0 else 1 - true)
+        for true, rate in zip((True, False), self._rates(rates), strict=True):
+            weights, yes, fresh = self._weights, own_rate(rate), fresh_rate(rate, *_NONE)
+            if cases is not None:
+                there = cases.truth == true
+                mass = cases.mass[there]
+                drawn = Drawn(*(each[there] for each in cases.drawn))
+                weights = mass.sum(axis=0) + SURE * self._weights
+                yes = (mass * own(drawn, yes)).sum(axis=0) + SURE * yes * self._weights
+                yes = yes / np.maximum(weights, 1e-300)
+                afresh = fresh_rate(rate, drawn.answers[:, None], drawn.yeses[:, None])
+                fresh = (mass * afresh).sum(axis=0) + SURE * fresh * self._weights
+                fresh = fresh / np.maximum(mass.sum(axis=0) + SURE * self._weights, 1e-300)
             weights = weights / weights.sum()
-            own, by_rate = heard.drawn.own(now, rate) * weights, rate * weights
             mixture: list[Pair] = []
-            for share, places in _BY_SHARE.items():
-                weight = float(weights[:, places].sum())
-                yes = float(own[:, places].sum())
-                low = (1 - share) * float(by_rate[:, places].sum()) / max(weight, 1e-12)
+            for share, places in self._places:
+                weight = float(weights[places].sum())
+                said = float(weights[places] @ yes[places])
+                low = (1 - share) * float(weights[places] @ fresh[places]) / max(weight, 1e-12)
                 if share == 0.0:
                     mixture.append((weight, low))
                 else:
-                    mixture += [(yes, share + low), (weight - yes, low)]
+                    mixture += [(said, share + low), (weight - said, low)]
             mixtures.append(tuple(mixture))
         return Reliability.mixed(mixtures[0], mixtures[1], 0.0)
 
@@ -124,62 +167,43 @@ class Worth:
         trusted."""
         true, false = rates
         right = min(max((true + 1 - false) / 2, 0.501), 0.999)
-        trusted = 1 / (1 + np.exp(-self._grid * np.log(right / (1 - right))))
-        share = np.minimum((trusted - 0.5) / (right - 0.5), 1.0) if self.trust else _ONE
+        share: Floats = np.ones_like(self._grid)
+        if self.trust is not None:
+            trusted = 1 / (1 + np.exp(-self._grid * np.log(right / (1 - right))))
+            share = np.minimum((trusted - 0.5) / (right - 0.5), 1.0)
         share = share * min(self._by_answers / self._by_words, 1 / max(2 * right - 1, 0.1))
         return 0.5 + share * (true - 0.5), 0.5 + share * (false - 0.5)
 
-    def _true(self, heard: Heard, believed: float) -> Floats:
-        """P(yes is right) by all that is told apart."""
-        if heard.true is None:
-            return np.full(self._weights.shape, min(max(believed, SURE), 1 - SURE))
-        # What else was heard since moves all of them alike.
-        moved = _odds(believed) / _odds(heard.believed)
-        odds = heard.true / (1 - heard.true) * moved
-        return np.clip(odds / (1 + odds), SURE, 1 - SURE)
-
-    def take(self, said: Said, heard: Heard, believed: float, rates: Pair) -> tuple[Pair, Heard]:
-        """Learn from an answer.
+    def take(self, said: Said, cases: Cases, rates: Pair) -> Taken:
+        """What an answer says.
 
         Args:
             said: It.
+            cases: What may be the case.
             rates: As those of `expect`.
-            heard: What was heard of the question before.
-            believed: The probability that yes was right.
-
-        Returns:
-            Probability of the answer where yes is right and where no is, and what is heard now;
-            its `believed` is to be set once the belief was weighed.
         """
-        self._compare(said, rates)
         right = 1 / (1 + np.exp(-self._grid * said.ratio))
-        of_this = right, 1 - right
-        of_yes = of_this if said.yes else (1 - right, right)
-        true = self._true(heard, believed)
-        likely: list[Floats] = []
-        repeated: list[Floats] = []
-        found: list[float] = []
-        for now in (0, 1):
-            own = heard.drawn.own(now, of_yes[now])
-            own = own if said.yes else 1 - own
-            drawn = SHARES * own + (1 - SHARES) * of_this[now]
-            again = said.again[now] * said.same
-            here = again + (1 - said.again[now]) * drawn
-            weights = self._weights * (true if now == 0 else 1 - true)
-            found.append(float((weights * here).sum() / max(weights.sum(), 1e-300)))
-            likely.append(here)
-            repeated.append(again / np.maximum(here, 1e-12))
-        both = true * likely[0] + (1 - true) * likely[1]
-        after = np.clip(true * likely[0] / both, SURE, 1 - SURE)
-        if self.trust is not None:
-            weights = np.maximum(self._weights * both, 1e-12)
-            self._weights = weights / weights.sum()
-            self.trust.weights = tuple(self._weights.sum(axis=1).tolist())
-            self._new.clear()
-        told = heard.drawn.told(said.yes, of_yes, (repeated[0], repeated[1]))
-        return (found[0], found[1]), Heard(told, after)
+        of_yes = np.where(
+            cases.truth[:, None], *((right, 1 - right) if said.yes else (1 - right, right))
+        )
+        own_yes, drawn = own(cases.drawn, own_rate(of_yes)), cases.drawn
+        of_yes = fresh_rate(of_yes, drawn.answers[:, None], drawn.yeses[:, None])
+        this, fresh = (own_yes, of_yes) if said.yes else (1 - own_yes, 1 - of_yes)
+        repeats = said.repeats * cases.drawn.kept[:, None]
+        again = repeats * said.same
+        likely = again + (1 - repeats) * (self._shares * this + (1 - self._shares) * fresh)
+        repeated = again / np.maximum(likely, 1e-12)
+        told = after_answer(said.yes, own_yes, of_yes, repeated)
+        probable = (cases.mass * likely).sum(axis=1)
+        whole = []
+        for true in (True, False):
+            there = cases.truth == true
+            whole.append(float(probable[there].sum() / max(cases.mass[there].sum(), 1e-300)))
+        answers, yeses = drawn.answers + 1, drawn.yeses + said.yes
+        drawn = Drawn(told, np.zeros_like(told), np.ones_like(drawn.kept), answers, yeses)
+        return Taken(likely, (whole[0], whole[1]), drawn)
 
-    def _compare(self, said: Said, rates: Pair) -> None:
+    def compare(self, said: Said, rates: Pair) -> None:
         """Note how much an answer says beside what the rates of yes and no make one expect: a VLM
         that gives its P(yes) may be less sure than it was."""
         yes, no = rates if said.yes else (1 - rates[0], 1 - rates[1])
@@ -188,10 +212,31 @@ class Worth:
         self._by_answers += min(abs(np.tanh(said.ratio / 2)), 1.0)
 
 
-_BY_SHARE = {
-    share: [place for place, kind in enumerate(KINDS) if kind.share == share]
-    for share in dict.fromkeys(kind.share for kind in KINDS)
-}
+def by_truth(weights: Floats, true: float | Floats, drawn: Drawn) -> Cases:
+    """The cases that yes is right and that no is.
+
+    Args:
+        weights: What is believed of the noise.
+        true: The probability that yes is right, for everything that is told apart of it.
+        drawn: What is known of the scene's own answer in the one, and the other.
+    """
+    true = np.clip(true, SURE, 1 - SURE)
+    return Cases(np.stack([weights * true, weights * (1 - true)]), np.array([True, False]), drawn)
+
+
+def moved(true: Floats | None, before: float, now: float) -> float | Floats:
+    """P(yes is right) by all that is told apart, as moved by what else was heard since.
+
+    Args:
+        true: After the last answer; None where it was never asked.
+        before: What was believed of the fact then.
+        now: What is believed of it now.
+    """
+    if true is None:
+        return now
+    odds = true / (1 - true) * _odds(now) / _odds(before)
+    found: Floats = np.clip(odds / (1 + odds), SURE, 1 - SURE)
+    return found
 
 
 def _odds(probability: float) -> float:

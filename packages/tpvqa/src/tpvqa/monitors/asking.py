@@ -5,8 +5,9 @@ from typing import Any
 
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import Evidence, Picture
+from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.inquiry import DOUBT, Budget, Inquiry
+from tpvqa.belief.last_answer import Picture
 from tpvqa.monitors.feeling import Feeling
 from tpvqa.monitors.inspection import SENSED, Inspection, Replies
 from tpvqa.monitors.requests import Ask, AskPerson, Look, Request

@@ -15,8 +15,10 @@ from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel, FaultRules
 from tpvqa.belief.first import Prior
 from tpvqa.belief.inquiry import DOUBT, Inquirer, Inquiry
+from tpvqa.belief.learned import Learned
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.risk import RiskBound, confidence
+from tpvqa.belief.settling import Settlings
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice, Table
 from tpvqa.belief.trust import Trust
@@ -87,7 +89,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self.task, self.costs, self.name = task, settings.costs, name
         self.belief = belief_without(settings.without, model or FaultModel(task, rules))
         rates = settings.rates
-        self.chances = Chances(rates) if experience is None else experience.chances(rates)
+        known = Chances(rates) if experience is None else experience.chances(rates)
         if calibration is None or settings.without == "calibration":
             calibration = Calibration.default()
         self._risk = bound_for(settings.risk, risk)
@@ -103,6 +105,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self.evidence = Evidence(
             self.belief, calibration, self.trust, skill=settings.skill, doubts=doubts
         )
+        self.chances = Learned(known, self.belief, trusts=self.trust is not None)
         self._sight = Sight(self.belief.model)
         chooser = Chooser(self.belief.model, self.costs, self._sight)
         self._task_ways = Ways(task, chooser, self.chances, self.costs)
@@ -123,6 +126,7 @@ class BeliefMonitor(Learning, PlainArguments):
         )
         self._words: FactWords | None = None
         self._settled: Action | None = None
+        self._settlings = Settlings()
         self._undo = () if rules is None else rules.undo
         self._stepped: Step | None = None
 
@@ -168,7 +172,7 @@ class BeliefMonitor(Learning, PlainArguments):
         """What is known now, for the next trial; None where nothing is learned."""
         if self.trust is None:
             return None
-        chances = deepcopy(self.chances)
+        chances = deepcopy(self.chances.likeliest)
         if not self._now.learned:
             shares, action = self.belief.outcome_shares(), self._now.action
             chances.learn(shares, action, self.belief.earlier_shares())
@@ -267,6 +271,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self._learn(self._now.action)
         if self.belief.model.facts > MOST_FACTS:
             numbers = self.belief.renew()
+            self.evidence.renumbered(numbers)
             for chooser in self._choosers:
                 chooser.renumbered(self.belief.model, numbers)
             self._inquirer.renumbered(self.belief.model)
@@ -277,6 +282,7 @@ class BeliefMonitor(Learning, PlainArguments):
             chooser.acted(self.belief, step.action)
         self.belief.act(step.action, self.chances.rates_of(step.action))
         self._asking.begin(step.action)
+        self._settlings.acted()
         before = {atom: self.belief.probability(atom) for atom in self._now.effects}
         self.evidence.acted(step.action.name, failed=step.reported, effects=self._now.effects)
         for atom, was in before.items():
@@ -287,7 +293,7 @@ class BeliefMonitor(Learning, PlainArguments):
         """Learn from how the last action came out, after all that was seen of it."""
         if action is not None and self._learns and not self._now.learned:
             self._now.learned = True
-            self.chances.learn(self.belief.outcome_shares(), action, self.belief.earlier_shares())
+            self.chances.learn(action)
         for chooser in self._choosers:
             chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
@@ -312,7 +318,7 @@ class BeliefMonitor(Learning, PlainArguments):
     def _settle(self, step: Step) -> None:
         """Work out how far it can be found out what is true, and what that costs."""
         found = self.evidence.settling(self._about_needs(step.book))
-        self._chooser.settles = found.share
+        self._chooser.settles = self._settlings.taken(found)
         self._chooser.finding = found.answers * self.costs.question + self.costs.look
 
     def _sets_out(self, step: Step) -> Generator[Request, Any, bool]:

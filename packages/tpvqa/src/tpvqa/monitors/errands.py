@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.faults import Showing
 from tpvqa.belief.inquiry import DOUBT
+from tpvqa.belief.learned import Learned
 from tpvqa.belief.sight import Sight
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import PlanFrom, Request
@@ -61,7 +61,7 @@ class Errands:
         evidence: Evidence,
         chooser: Chooser,
         sight: Sight,
-        chances: Chances,
+        chances: Learned,
     ) -> Generator[Request, Any, Errand | None]:
         """An errand that is worth its way; None where there is none.
 

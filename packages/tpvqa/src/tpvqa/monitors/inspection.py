@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from tpvqa.belief.evidence import Picture
+from tpvqa.belief.last_answer import Picture
 from tpvqa.pddl import Action, Atom, Literal
 from tpvqa.questions import FactQuestion, FactWay, QuestionBook, Way
 from tpvqa.vlm import Reply

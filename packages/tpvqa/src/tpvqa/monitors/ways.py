@@ -5,9 +5,9 @@ from typing import Any
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import LIKELY, Chooser
 from tpvqa.belief.costs import Costs
+from tpvqa.belief.learned import Learned
 from tpvqa.belief.skills import CLOSELY, NAMED, SUSPECT
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.inspection import Inspection
@@ -36,7 +36,7 @@ class Ways:
         self,
         task: Task,
         chooser: Chooser,
-        chances: Chances,
+        chances: Learned,
         costs: Costs,
         towards: frozenset[Atom] = frozenset(),
     ):
@@ -46,7 +46,7 @@ class Ways:
         self._plans: dict[State, Plan] = {}
         self._annotated: dict[State, AnnotatedPlan] = {}
         self._followed: Plan | None = None
-        self._dead: tuple[int, frozenset[Action]] = (0, frozenset())
+        self._dead: tuple[tuple[int, int], frozenset[Action]] = ((0, 0), frozenset())
         self._suspected: set[Action] = set()
         self._sought: set[tuple[State, frozenset[Action]]] = set()
 
@@ -140,7 +140,7 @@ class Ways:
 
     def dead(self) -> frozenset[Action]:
         """The actions that seem never to work, whatever they were tried with."""
-        learned = self._chances.skills.learned
+        learned = self._chances.learned
         if self._dead[0] != learned:
             self._dead = learned, self._found_dead()
         return self._dead[1]
@@ -159,7 +159,7 @@ class Ways:
         """The skill of a step where it seems to be dead, in words."""
         if self._chances.skill(step.action).shown < NAMED:
             return ""
-        tried, failed = self._chances.skills.times(step.action)
+        tried, failed = self._chances.times(step.action)
         return f"{step.book.say(step.action)} failed {round(failed)} times of {round(tried)}"
 
     def take(self, plan: Plan, state: State) -> None:

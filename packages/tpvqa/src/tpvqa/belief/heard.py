@@ -1,0 +1,156 @@
+"""What was heard of a question: what is known of the scene's own answer, in every joint state.
+
+In a joint state it is known what was true at every answer, and so which of them were wrong. Where
+ways come together in one, they are averaged.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tpvqa.belief.information import Floats
+from tpvqa.belief.lasting import SHARES, STAYS
+from tpvqa.belief.led import Led
+
+
+class Drawn(NamedTuple):
+    """What is known of the scene's own answer, one row for each of several cases.
+
+    Attributes:
+        yes: P(it is a yes and was drawn before), for everything that is told apart of the noise.
+        new: P(it is not drawn yet).
+        kept: P(the fact is what it was at the last answer).
+        answers: How many there were in this scene.
+        yeses: How many of them were yeses.
+    """
+
+    yes: Floats
+    new: Floats
+    kept: Floats
+    answers: Floats
+    yeses: Floats
+
+
+@dataclass(slots=True)
+class Heard:
+    """What was heard of one question, from one view.
+
+    Attributes:
+        by_truth: Where yes is right and where no is, before anything was done: two rows.
+        numbers: Of the joint states of which more is known.
+        rows: What is known in them.
+        true: P(yes is right) by all that is told apart, before anything was done; None where it is
+            as the belief has it.
+        believed: As the belief had it after the last answer.
+    """
+
+    by_truth: Drawn | None = None
+    numbers: tuple[int, ...] = ()
+    rows: Drawn | None = None
+    true: Floats | None = None
+    believed: float = 0.5
+
+    def drawn(self, numbers: tuple[int, ...], truth: NDArray[np.bool_], size: int) -> Drawn:
+        """What is known in joint states.
+
+        Args:
+            numbers: Theirs; none where nothing was done, for where yes is right and where no is.
+            truth: Whether yes is right in them.
+            size: How much is told apart of the noise.
+        """
+        first = self.by_truth or _never(size)
+        if not numbers:
+            return first
+        if self.rows is not None and numbers == self.numbers:
+            return self.rows
+        unknown = np.where(truth, 0, 1)
+        if self.rows is None:
+            return Drawn(*(each[unknown] for each in first))
+        places = {number: place + 2 for place, number in enumerate(self.numbers)}
+        taken = np.array([places.get(number, -1) for number in numbers])
+        taken = np.where(taken < 0, unknown, taken)
+        return Drawn(*(np.concatenate(each)[taken] for each in zip(first, self.rows, strict=True)))
+
+    def told(self, numbers: tuple[int, ...], drawn: Drawn) -> None:
+        """Take in what is known after an answer; arguments as those of `drawn`, and its result."""
+        if numbers:
+            self.numbers, self.rows = numbers, drawn
+        else:
+            self.by_truth = drawn
+
+    def elsewhere(self) -> "Heard":
+        """What that says of another view."""
+        first, rows = (each and _elsewhere(each) for each in (self.by_truth, self.rows))
+        return Heard(first, self.numbers, rows, self.true, self.believed)
+
+    def acted(self, led: Led | None, truth: Mapping[int, bool]) -> None:
+        """Go on after an action.
+
+        Where nothing was changed the scene's own answer is what it was; where something was, that
+        it is a misreading, or none, may stay, and where the fact has changed, so has the answer.
+
+        Args:
+            led: Where joint states have led; None where that is not known.
+            truth: In which joint states yes is right.
+        """
+        if led is None:
+            self.numbers, self.rows = (), None
+            return
+        was, now = (np.array([truth[n] for n in each]) for each in (led.before, led.after))
+        known = Drawn(*(k[led.begun] for k in self.drawn(led.before, was, led.mixed.shape[1])))
+        turns = (was[led.begun] != now[led.came])[:, None]
+        stays = np.where(led.same[:, None], 1.0, _stays(led.mixed.shape[1]))
+        yes = stays * np.where(turns, 1 - known.yes - known.new, known.yes)
+        new = 1 - stays * (1 - known.new)
+        kept = np.where(turns[:, 0], 1 - known.kept, known.kept)
+        once = np.stack([kept, led.same * known.answers, led.same * known.yeses])
+        drawn = Drawn(led.carried(yes), led.carried(new), *led.averaged(once))
+        self.told(led.after, drawn)
+
+    def renumbered(self, numbers: Mapping[int, int]) -> None:
+        """Go on with other numbers of the joint states."""
+        if self.rows is None:
+            return
+        kept = [place for place, number in enumerate(self.numbers) if number in numbers]
+        self.rows = Drawn(*(each[kept] for each in self.rows))
+        self.numbers = tuple(numbers[self.numbers[place]] for place in kept)
+
+
+def own(drawn: Drawn, rate: Floats) -> Floats:
+    """P(the scene's own answer is a yes), where one that is not drawn yet is with a rate."""
+    found: Floats = drawn.yes + drawn.new * rate
+    return found
+
+
+def after_answer(yes: bool, own_yes: Floats, rate: Floats, repeated: Floats) -> Floats:
+    """P(the scene's own answer is a yes) after an answer.
+
+    Args:
+        yes: Whether it is a yes.
+        own_yes: The same before.
+        rate: P(yes) of one drawn afresh.
+        repeated: Probability that it is the answer before once more.
+    """
+    shares = np.tile(SHARES, own_yes.shape[-1] // len(SHARES))
+    this, fresh = (own_yes, rate) if yes else (1 - own_yes, 1 - rate)
+    agrees = this * (shares + (1 - shares) * fresh)
+    agrees = agrees / np.maximum(shares * this + (1 - shares) * fresh, 1e-12)
+    found: Floats = repeated * own_yes + (1 - repeated) * (agrees if yes else 1 - agrees)
+    return found
+
+
+def _stays(size: int) -> Floats:
+    return np.tile(STAYS, size // len(STAYS))
+
+
+def _elsewhere(drawn: Drawn) -> Drawn:
+    stays, none = _stays(drawn.yes.shape[-1]), np.zeros_like(drawn.kept)
+    return Drawn(stays * drawn.yes, stays * drawn.new + 1 - stays, drawn.kept, none, none)
+
+
+def _never(size: int) -> Drawn:
+    nothing, none = np.zeros((2, size)), np.zeros(2)
+    return Drawn(nothing, nothing + 1, none + 1, none, none)

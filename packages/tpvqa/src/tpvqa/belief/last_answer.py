@@ -1,0 +1,36 @@
+"""The last answer to a question, and what was heard of it before."""
+
+from collections.abc import Hashable
+from dataclasses import dataclass, field
+
+from tpvqa.belief.heard import Heard
+from tpvqa.pddl import Atom
+from tpvqa.vlm import Reply
+
+Picture = Hashable
+"""What tells one picture from another: what it shows, or else the number of the look."""
+
+
+@dataclass(slots=True)
+class LastAnswer:
+    """The last answer to a question.
+
+    Attributes:
+        pictures: Of which pictures it was asked since something was done last.
+        view: From which view the last one was.
+        atoms: Yes is right where any of them holds.
+        heard: What was heard of it, by view.
+    """
+
+    reply: Reply
+    pictures: set[Picture]
+    view: str | None
+    atoms: tuple[Atom, ...]
+    heard: dict[str | None, Heard] = field(default_factory=dict)
+
+    def heard_from(self, view: str | None) -> Heard:
+        """What was heard of it, as it counts from a view."""
+        known = self.heard.get(view)
+        if known is None:
+            known = self.heard[view] = self.heard[self.view].elsewhere()
+        return known
