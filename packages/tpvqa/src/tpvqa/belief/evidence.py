@@ -1,5 +1,6 @@
 """Answers as evidence: each weighs the belief by what it adds to those before."""
 
+from collections import deque
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from typing import Protocol
@@ -13,6 +14,7 @@ from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.heard import Heard
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.last_answer import LastAnswer, Picture
+from tpvqa.belief.led import Led
 from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
 from tpvqa.belief.readings import Readings
 from tpvqa.belief.repeats import learn_repeats
@@ -30,6 +32,8 @@ SURPRISING = 0.25
 """An answer less probable than this makes that chance be taken in."""
 SUSPECTED = 0.02
 """That chance where an action that rests on the fact seems never to work."""
+REMEMBERED = 8
+"""Actions after which it is forgotten what was heard of a question."""
 PERSON = 0.99
 """How often a person's answer is right."""
 PERSONS_VIEW = "a person's"
@@ -97,6 +101,8 @@ class Evidence:
         self._size = len(self.worth.weights)
         belief.suppose(self.worth.weights)
         self._changed: frozenset[Atom] = frozenset()
+        self._led: deque[Led | None] = deque(maxlen=REMEMBERED)
+        self._acted = 0
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
 
@@ -108,7 +114,22 @@ class Evidence:
     def renumbered(self, numbers: Mapping[int, int]) -> None:
         """Go on with other numbers of the joint states."""
         for last in self._last.values():
-            last.heard[last.view].renumbered(numbers)
+            known = last.heard[last.view] if last.acted == self._acted else Heard()
+            known.renumbered(numbers)
+            last.heard, last.acted = {last.view: known}, self._acted
+        self._led.clear()
+
+    def _heard(self, last: LastAnswer, view: str | None) -> Heard:
+        """What was heard of a question, as it counts now from a view."""
+        since = self._acted - last.acted
+        if since:
+            heard, led = last.heard[last.view], list(self._led)
+            if since > len(led):
+                heard = Heard()
+            for each in led[len(led) - since :] if since <= len(led) else ():
+                heard.acted(each, self._belief.model.truth(last.atoms))
+            last.heard, last.acted = {last.view: heard}, self._acted
+        return last.heard_from(view)
 
     def _cases(self, question: FactQuestion, heard: Heard) -> Cases:
         """What may be the case when a question is asked."""
@@ -136,10 +157,9 @@ class Evidence:
         if failed is not None:
             self._take_report(action, failed=failed)
         self._readings.acted()
-        led, truth = self._belief.led, self._belief.model.truth
+        self._led.append(self._belief.led)
+        self._acted += 1
         for last in self._last.values():
-            last.heard = {last.view: last.heard[last.view]}
-            last.heard[last.view].acted(led, truth(last.atoms))
             last.pictures.clear()
         self._opened.clear()
         self._silent.clear()
@@ -246,7 +266,7 @@ class Evidence:
             last, expected = self._last.get(question.text), new
             if last is not None and in_doubt(true):
                 rates = self._calibration.group(question).rates
-                cases = self._cases(question, last.heard[last.view].elsewhere())
+                cases = self._cases(question, self._heard(last, last.view).elsewhere())
                 expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false), cases)
             doubts.append((true, expected))
         return Settling.of(doubts, new)
@@ -259,7 +279,7 @@ class Evidence:
         last = self._last.get(question.text)
         if last is None:
             return replace(self.worth.expect(said), abstains=abstains)
-        cases = self._cases(question, last.heard_from(view))
+        cases = self._cases(question, self._heard(last, view))
         found = self.worth.expect(said, cases)
         rho = self._repeats[_apart(last, view)].mean
         before = 1.0 if last.reply is Reply.YES else 0.0
@@ -290,7 +310,7 @@ class Evidence:
         true = self._weighed.probability(question.atom, question.alike)
         yes, rates = answer.reply is Reply.YES, (group.rates.yes_if_true, group.rates.yes_if_false)
         said = Said(yes, group.log_ratio(answer.reply, answer.p_yes))
-        heard = Heard() if last is None else last.heard_from(view)
+        heard = Heard() if last is None else self._heard(last, view)
         cases = self._cases(question, heard)
         if last is not None:
             repeats, same = self._repeats[_apart(last, view)], last.reply is answer.reply
@@ -305,7 +325,8 @@ class Evidence:
         (if_true, if_false) = taken.whole
         probable = true * if_true + (1 - true) * if_false
         if last is None:
-            last = self._last[question.text] = LastAnswer(answer.reply, set(), view, atoms)
+            last = LastAnswer(answer.reply, set(), view, atoms, self._acted)
+            self._last[question.text] = last
         last.reply, last.view, last.heard[view] = answer.reply, view, heard
         last.pictures.add(picture)
         if probable < SURPRISING:

@@ -19,6 +19,7 @@ class LastAnswer:
         pictures: Of which pictures it was asked since something was done last.
         view: From which view the last one was.
         atoms: Yes is right where any of them holds.
+        acted: How many actions were done when that was worked out.
         heard: What was heard of it, by view.
     """
 
@@ -26,6 +27,7 @@ class LastAnswer:
     pictures: set[Picture]
     view: str | None
     atoms: tuple[Atom, ...]
+    acted: int
     heard: dict[str | None, Heard] = field(default_factory=dict)
 
     def heard_from(self, view: str | None) -> Heard:

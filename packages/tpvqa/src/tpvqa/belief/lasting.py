@@ -8,6 +8,7 @@ independent: Velez et al. 2012 (JAIR 44). Answers drawn afresh are as often wron
 own, or a coin's: then some questions are always misread, and the rest now and then.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -57,9 +58,14 @@ SUREST = 0.001
 SHARES = np.array([kind.share for kind in KINDS])
 STAYS = np.array([kind.stays for kind in KINDS])
 _COINS = np.array([kind.coin for kind in KINDS])
-
-
 _LASTS = np.array([kind.share > 0 for kind in KINDS])
+
+
+@cache
+def _over(size: int) -> tuple[Floats, Floats, Floats]:
+    """Whether fresh answers are a coin's, whether errors last, and the shares, so often over."""
+    times = size // len(KINDS)
+    return np.tile(_COINS, times), np.tile(_LASTS, times), np.tile(SHARES, times)
 
 
 def own_rate(rate: Floats) -> Floats:
@@ -69,8 +75,7 @@ def own_rate(rate: Floats) -> Floats:
         rate: P(yes) of an answer of which nothing is known, by `KINDS` along the last axis, once or
             several times over.
     """
-    times = rate.shape[-1] // len(KINDS)
-    coins, shares = np.tile(_COINS, times), np.tile(SHARES, times)
+    coins, _, shares = _over(rate.shape[-1])
     own = np.clip((rate - (1 - shares) / 2) / np.maximum(shares, 0.5), SUREST, 1 - SUREST)
     return np.where(coins, own, rate)
 
@@ -83,7 +88,6 @@ def fresh_rate(rate: Floats, answers: Floats, yeses: Floats) -> Floats:
         answers: How many there were.
         yeses: How many of them were yeses.
     """
-    times = rate.shape[-1] // len(KINDS)
-    coins, lasts = np.tile(_COINS, times), np.tile(_LASTS, times)
+    coins, lasts, _ = _over(rate.shape[-1])
     known = (DISPERSED * rate + yeses) / (DISPERSED + answers)
     return np.where(coins, 0.5, np.where(lasts, known, rate))

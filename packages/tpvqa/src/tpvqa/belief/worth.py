@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from tpvqa.belief.heard import Drawn, after_answer, own
 from tpvqa.belief.information import Floats, Mixture, Reliability
-from tpvqa.belief.lasting import KINDS, RECORDED, SHARES, fresh_rate, own_rate
+from tpvqa.belief.lasting import DISPERSED, KINDS, RECORDED, SHARES, fresh_rate, own_rate
 from tpvqa.belief.trust import GRID, Trust
 
 SURE = 1e-9
@@ -89,10 +89,10 @@ class Worth:
         self._grid = np.repeat((1.0,) if trust is None else GRID, len(KINDS))
         self._shares = np.tile(SHARES, len(first))
         told = [(kind.share, kind.coin) for kind in KINDS] * len(first)
-        self._places = [
-            (each[0], np.flatnonzero([other == each for other in told]))
-            for each in dict.fromkeys(told)
-        ]
+        distinct = tuple(dict.fromkeys(told))
+        self._groups = np.array([[float(each == other) for other in distinct] for each in told])
+        self._distinct = np.array([share for share, _ in distinct])
+        self._counts = np.array([share > 0 and not coin for share, coin in told])
         self._weights: Floats = np.outer(first, last).ravel()
         self._new: dict[Pair, Reliability] = {}
         self._by_words = self._by_answers = ANSWERS
@@ -137,30 +137,43 @@ class Worth:
 
     def _expected(self, rates: Pair, cases: Cases | None) -> Reliability:
         mixtures: list[Mixture] = []
-        for true, rate in zip((True, False), self._rates(rates), strict=True):
+        known = self._aggregated(cases) if cases is not None else None
+        for place, rate in enumerate(self._rates(rates)):
             weights, yes, fresh = self._weights, own_rate(rate), fresh_rate(rate, *_NONE)
-            if cases is not None:
-                there = cases.truth == true
-                mass = cases.mass[there]
-                drawn = Drawn(*(each[there] for each in cases.drawn))
-                weights = mass.sum(axis=0) + SURE * self._weights
-                yes = (mass * own(drawn, yes)).sum(axis=0) + SURE * yes * self._weights
-                yes = yes / np.maximum(weights, 1e-300)
-                afresh = fresh_rate(rate, drawn.answers[:, None], drawn.yeses[:, None])
-                fresh = (mass * afresh).sum(axis=0) + SURE * fresh * self._weights
-                fresh = fresh / np.maximum(mass.sum(axis=0) + SURE * self._weights, 1e-300)
+            if known is not None:
+                mass, drawn, new, prior, seen = (each[place] for each in known)
+                weights = mass + SURE * self._weights
+                whole = np.maximum(weights, 1e-300)
+                yes = (drawn + new * yes + SURE * yes * self._weights) / whole
+                lasts = (prior * rate + seen + SURE * fresh * self._weights) / whole
+                fresh = np.where(self._counts, lasts, fresh)
             weights = weights / weights.sum()
+            together, low, said = (
+                each @ self._groups for each in (weights, weights * fresh, weights * yes)
+            )
+            low = (1 - self._distinct) * low / np.maximum(together, 1e-12)
             mixture: list[Pair] = []
-            for share, places in self._places:
-                weight = float(weights[places].sum())
-                said = float(weights[places] @ yes[places])
-                low = (1 - share) * float(weights[places] @ fresh[places]) / max(weight, 1e-12)
+            parts = np.stack([self._distinct, together, low, said], axis=1).tolist()
+            for share, weight, afresh, own_yes in parts:
                 if share == 0.0:
-                    mixture.append((weight, low))
+                    mixture.append((weight, afresh))
                 else:
-                    mixture += [(said, share + low), (weight - said, low)]
+                    mixture += [(own_yes, share + afresh), (weight - own_yes, afresh)]
             mixtures.append(tuple(mixture))
         return Reliability.mixed(mixtures[0], mixtures[1], 0.0)
+
+    @staticmethod
+    def _aggregated(cases: Cases) -> tuple[Floats, ...]:
+        """Sums over the cases in which yes is right and in which no is (rows), for everything told
+        apart: of their mass; of it where the scene's own answer is a yes, and not drawn yet; of the
+        shares by which the rate of those drawn afresh is known beforehand, and from answers."""
+        truth, drawn = cases.truth, cases.drawn
+        where = np.stack([truth, ~truth]).astype(float)
+        prior = DISPERSED / (DISPERSED + drawn.answers)
+        seen = drawn.yeses / (DISPERSED + drawn.answers)
+        once = np.concatenate([where, where * prior, where * seen]) @ cases.mass
+        own_yes, new = where @ (cases.mass * drawn.yes), where @ (cases.mass * drawn.new)
+        return once[:2], own_yes, new, once[2:4], once[4:]
 
     def _rates(self, rates: Pair) -> tuple[Floats, Floats]:
         """P(yes) of an answer drawn afresh: drawn towards one half as far as it cannot be
