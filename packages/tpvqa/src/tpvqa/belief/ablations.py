@@ -17,7 +17,9 @@ class FactwiseBelief(Belief):
 
     def act(self, action: Action, rates: Rates) -> None:
         """Predict, then forget how the facts hang together."""
+        noise = self.noise
         super().act(action, rates)
+        self.suppose(noise)
         atoms = {atom for number in self.weights for atom in self.model.state(number)}
         chances = {atom: self.probability(atom) for atom in atoms}
         doubted = sorted(
@@ -41,6 +43,7 @@ class ModelFreeBelief(Belief):
 
     def act(self, action: Action, rates: Rates) -> None:
         """Half of every joint state's probability goes to where the effects lead."""
+        self.suppose(self.noise)
         weights: dict[int, float] = {}
         for number, weight in self.weights.items():
             after = self.model.become(

@@ -92,7 +92,8 @@ class Belief:
         What disturbances undo is what was not so in the most probable one.
         """
         self.model.begin(max(states, key=lambda each: each[1])[0])
-        self.outcome_weights = None
+        self.suppose(self.noise)
+        self.outcome_weights = self.led = None
         self._earlier = []
         self._become({self.model.number(JointState(state)): weight for state, weight in states})
 

@@ -64,7 +64,7 @@ class Evidence:
     """Takes answers into a belief.
 
     With probability ρ a further look at an unchanged fact only repeats the last answer. Whether
-    it is unchanged is known as well as the fact was after that answer. ρ has a Beta prior around
+    it is unchanged is known in each joint state. ρ has a Beta prior around
     the calibration's and is learned from every further answer, where trust is.
 
     Args:
@@ -100,7 +100,6 @@ class Evidence:
         self.worth = Worth(trust, calibration.lasting)
         self._size = len(self.worth.weights)
         belief.suppose(self.worth.weights)
-        self._changed: frozenset[Atom] = frozenset()
         self._led: deque[Led | None] = deque(maxlen=REMEMBERED)
         self._acted = 0
         self._opened: set[tuple[Atom, ...]] = set()
@@ -114,9 +113,10 @@ class Evidence:
     def renumbered(self, numbers: Mapping[int, int]) -> None:
         """Go on with other numbers of the joint states."""
         for last in self._last.values():
-            known = last.heard[last.view] if last.acted == self._acted else Heard()
-            known.renumbered(numbers)
-            last.heard, last.acted = {last.view: known}, self._acted
+            known = last.heard if last.acted == self._acted else {last.view: Heard()}
+            for heard in known.values():
+                heard.renumbered(numbers)
+            last.heard, last.acted = known, self._acted
         self._led.clear()
 
     def _heard(self, last: LastAnswer, view: str | None) -> Heard:
@@ -143,17 +143,13 @@ class Evidence:
         right = np.array([truth[number] for number in numbers], bool)
         return Cases(mass, right, heard.drawn(numbers, right, self._size))
 
-    def acted(
-        self, action: str = "", *, failed: bool | None = None, effects: Collection[Atom] = ()
-    ) -> None:
+    def acted(self, action: str = "", *, failed: bool | None = None) -> None:
         """Note that an action was executed: facts may have changed, other things are in view.
 
         Args:
             action: Its name.
             failed: Whether the robot's own skill reports a failure; None where it reports nothing.
-            effects: What it was to change.
         """
-        self._changed = frozenset(effects)
         if failed is not None:
             self._take_report(action, failed=failed)
         self._readings.acted()
@@ -347,6 +343,7 @@ class Evidence:
             alike = masses.sum(axis=1) / np.maximum(cases.mass.sum(axis=1), 1e-300)
             learns = self._trust is not None
             self._belief.hear(taken.likely if learns else alike[:, None])
+            self.worth.believe(self._belief.noise)
             return
         self._weighed.see(question.atoms, *taken.whole)
         heard.told((), taken.drawn)

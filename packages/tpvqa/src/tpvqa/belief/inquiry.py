@@ -166,15 +166,18 @@ class Inquirer:
                         most_saved, asked = saving, (each.question, times)
             if asked is not None:
                 found = Inquiry(asked[0], max(1, asked[1] // 4), most_saved)
-        doubted = [each for each in doubted if _says(each.reliability)]
-        if len(doubted) > 1 and now > asking:
-            doubted.sort(key=lambda each: each.urgent)
-            first = doubted[:TOGETHER]
+        telling = [each for each in doubted if _says(each.reliability)]
+        if len(telling) > 1 and now > asking:
+            telling.sort(key=lambda each: each.urgent)
+            first = telling[:TOGETHER]
             own_truths = truths[[each.place for each in first]]
             found = self._together(
                 first, own_truths, weighted, work, budget, asking, looking, found
             )
         ending, action = table.best.action is None, self._costs.action
+        asks = person and self._costs.person is not None
+        exhausted = [each for each in doubted if each not in telling] if asks else []
+        doubted = [*telling, *exhausted]
         if len(doubted) > 1 and (ending or table.mistaken(action / 2) > 0.5):
             own_truths = truths[[each.place for each in doubted]]
             found = self._all(

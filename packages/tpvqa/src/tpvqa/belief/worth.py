@@ -219,10 +219,13 @@ class Worth:
     def compare(self, said: Said, rates: Pair) -> None:
         """Note how much an answer says beside what the rates of yes and no make one expect: a VLM
         that gives its P(yes) may be less sure than it was."""
+        if self.trust is None:
+            return
         yes, no = rates if said.yes else (1 - rates[0], 1 - rates[1])
         by_words = abs(yes - no) / (yes + no)
         self._by_words += by_words
         self._by_answers += min(abs(np.tanh(said.ratio / 2)), 1.0)
+        self._new.clear()
 
 
 def by_truth(weights: Floats, true: float | Floats, drawn: Drawn) -> Cases:

@@ -284,7 +284,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self._asking.begin(step.action)
         self._settlings.acted()
         before = {atom: self.belief.probability(atom) for atom in self._now.effects}
-        self.evidence.acted(step.action.name, failed=step.reported, effects=self._now.effects)
+        self.evidence.acted(step.action.name, failed=step.reported)
         for atom, was in before.items():
             self._now.notice(atom, was, self.belief.probability(atom), REPORTED)
         self._asking.sense(step.sensed)
