@@ -8,7 +8,15 @@ from numpy.typing import NDArray
 
 from tpvqa.belief.heard import Drawn, after_answer, own
 from tpvqa.belief.information import Floats, Mixture, Reliability
-from tpvqa.belief.lasting import DISPERSED, KINDS, RECORDED, SHARES, fresh_rate, own_rate
+from tpvqa.belief.lasting import (
+    DISPERSED,
+    KINDS,
+    RECORDED,
+    SHARES,
+    SUREST,
+    fresh_rate,
+    own_rate,
+)
 from tpvqa.belief.trust import GRID, Trust
 
 SURE = 1e-9
@@ -95,7 +103,7 @@ class Worth:
         self._counts = np.array([share > 0 and not coin for share, coin in told])
         self._weights: Floats = np.outer(first, last).ravel()
         self._new: dict[Pair, Reliability] = {}
-        self._by_words = self._by_answers = ANSWERS
+        self._by_words = self._by_answers = np.full_like(self._grid, ANSWERS)
 
     @property
     def weights(self) -> Floats:
@@ -182,10 +190,10 @@ class Worth:
         right = min(max((true + 1 - false) / 2, 0.501), 0.999)
         share: Floats = np.ones_like(self._grid)
         if self.trust is not None:
-            trusted = 1 / (1 + np.exp(-self._grid * np.log(right / (1 - right))))
-            share = np.minimum((trusted - 0.5) / (right - 0.5), 1.0)
-        share = share * min(self._by_answers / self._by_words, 1 / max(2 * right - 1, 0.1))
-        return 0.5 + share * (true - 0.5), 0.5 + share * (false - 0.5)
+            share = _says(self._grid, np.log(right / (1 - right))) / (2 * right - 1)
+        share = share * self._by_answers / self._by_words
+        yes, no = (np.clip(0.5 + share * (each - 0.5), SUREST, 1 - SUREST) for each in rates)
+        return yes, no
 
     def take(self, said: Said, cases: Cases, rates: Pair) -> Taken:
         """What an answer says.
@@ -222,9 +230,8 @@ class Worth:
         if self.trust is None:
             return
         yes, no = rates if said.yes else (1 - rates[0], 1 - rates[1])
-        by_words = abs(yes - no) / (yes + no)
-        self._by_words += by_words
-        self._by_answers += min(abs(np.tanh(said.ratio / 2)), 1.0)
+        self._by_words = self._by_words + _says(self._grid, abs(np.log(yes / no)))
+        self._by_answers = self._by_answers + _says(self._grid, abs(said.ratio))
         self._new.clear()
 
 
@@ -252,6 +259,17 @@ def moved(true: Floats | None, before: float, now: float) -> float | Floats:
         return now
     odds = true / (1 - true) * _odds(now) / _odds(before)
     found: Floats = np.clip(odds / (1 + odds), SURE, 1 - SURE)
+    return found
+
+
+def _says(trusted: Floats, ratio: float) -> Floats:
+    """How far answers with a log likelihood ratio say yes or no: 0 not at all, 1 for certain.
+
+    Args:
+        trusted: Factors of the ratio.
+        ratio: It.
+    """
+    found: Floats = np.tanh(trusted * ratio / 2)
     return found
 
 
