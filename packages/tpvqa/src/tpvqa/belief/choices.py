@@ -6,6 +6,7 @@ import numpy as np
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
+from tpvqa.belief.by_kind import ByKind, Kinds
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.falls import fallen
@@ -74,7 +75,9 @@ class Chooser:
         self.settles, self.finding = 1.0, 0.0
         self._going: dict[tuple[int, bool], float] = {}
         self._led: dict[Action, dict[tuple[int, bool], list[tuple[float, int, float]]]] = {}
-        self._cost: dict[Action, dict[tuple[int, bool], float]] = {}
+        self._near: dict[Action, dict[int, float]] = {}
+        self._far: dict[Action, ByKind] = {}
+        self._does: dict[Action, ByKind] = {}
         self._worked_out_for: tuple[int, Rates] | None = None
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
@@ -101,6 +104,8 @@ class Chooser:
         self.ahead.renumbered(model)
         self._commitments.renumbered(model)
         self._unseen.renumbered(model)
+        for known in (self._near, self._far, self._does):
+            known.clear()
         self._done = [(numbers.get(number, -1), action) for number, action in self._done]
 
     def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
@@ -169,9 +174,10 @@ class Chooser:
         self.ahead.may_be_blind(self.settles < SETTLED)
         if (self.ahead.version, rates) != self._worked_out_for:
             self._worked_out_for = self.ahead.version, rates
-            for known in (self._going, self._led, self._cost):
+            for known in (self._going, self._led, self._near, self._far):
                 known.clear()
         ranked = belief.ranked()
+        kinds = np.array([self._model.kind(number) for number, _ in ranked], np.intp)
         self._commitments.unplanned.clear()
         choices = [
             each
@@ -179,7 +185,7 @@ class Chooser:
             if self._allowed(each, current, barred) and self._worth_a_try(each)
         ]
         weights = np.array([weight for _, weight in ranked])
-        work = {each: self._work(each, ranked) for each in choices}
+        work = {each: self._work(each, ranked, kinds) for each in choices}
         acts = any(
             each.action is not None and (work[each] @ weights >= 0).all() for each in choices
         )
@@ -196,7 +202,7 @@ class Chooser:
                 continue
             more = 0.0 if self._in(each, current) else self._costs.replan
             more += self._weary(each.action, ranked)
-            seen = self._column(each.action, ranked, rates) + more
+            seen = self._column(each.action, ranked, kinds, rates) + more
             if self.settles >= SETTLED:
                 found.append((each, seen, work[each]))
                 continue
@@ -223,21 +229,26 @@ class Chooser:
         lost = self.ahead.failure
         return np.array([0.0 if self.ahead.is_goal(number) else lost for number, _ in ranked])
 
-    def _column(self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates) -> Floats:
+    def _column(
+        self, action: Action, ranked: Sequence[tuple[int, float]], kinds: Kinds, rates: Rates
+    ) -> Floats:
         """The expected costs of an action in the joint states."""
         together = self._together(action, ranked, rates)
         if together:
             return np.array([self._paid(action, *each, rates, together) for each in ranked])
-        costs, first, found = self._cost.setdefault(action, {}), self._model.first, list[float]()
-        for number, weight in ranked:
-            near = weight >= DISTURBED
-            if not near:  # only what holds counts then
-                number = first(number)
-            known = costs.get((number, near))
-            if known is None:
-                known = costs[number, near] = self._paid(action, number, weight, rates, together)
-            found.append(known)
-        return np.array(found)
+
+        def far(place: int) -> tuple[float]:  # only what holds counts then
+            return (self._paid(action, self._model.first(ranked[place][0]), 0.0, rates, {}),)
+
+        near, column = self._near.setdefault(action, {}), np.empty(len(ranked))
+        many = sum(weight >= DISTURBED for _, weight in ranked)  # the first ones
+        for place, (number, weight) in enumerate(ranked[:many]):
+            if number not in near:
+                near[number] = self._paid(action, number, weight, rates, {})
+            column[place] = near[number]
+        known = self._far.setdefault(action, ByKind(1))
+        column[many:] = known.of(kinds[many:], lambda place: far(place + many))[:, 0]
+        return column
 
     def _together(
         self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates
@@ -375,7 +386,9 @@ class Chooser:
         same, action = self._model.same_skill, choice.action
         return action is not None and any(same(action, each, choice.state) for each in plan)
 
-    def _work(self, choice: Choice, ranked: Sequence[tuple[int, float]]) -> Floats:
+    def _work(
+        self, choice: Choice, ranked: Sequence[tuple[int, float]], kinds: Kinds
+    ) -> Floats:
         """What a choice has to do in the joint states: what it would change, and what it can, each
         less how probable that has to be; shape (2, states).
 
@@ -383,14 +396,24 @@ class Chooser:
         """
         found = np.ones((2, len(ranked)))
         if choice.action is not None:
-            leads_to, first = self._model.outcomes(choice.action), self._model.first
             # Who does in vain what nothing shows never learns that it is in vain.
             hidden = self._sight.hidden(choice.action)
             works = 1 - self.ahead.skill(choice.action).failure if hidden else 1.0
             idle = HIDDEN_IDLE if hidden else IDLE
-            for place, (number, _) in enumerate(ranked):
-                outcomes = leads_to[first(number)]
-                undone, possible = not outcomes.achieved, outcomes.intended is not None
-                changes = works * (undone and possible)
-                found[:, place] = changes - (1 - idle), undone * (possible - FLOOR)
+            undone, possible = self._done_by(choice.action, ranked, kinds)
+            found[0] = works * undone * possible - (1 - idle)
+            found[1] = undone * (possible - FLOOR)
         return found
+
+    def _done_by(
+        self, action: Action, ranked: Sequence[tuple[int, float]], kinds: Kinds
+    ) -> Floats:
+        """Where something is left to do for an action, and where it can be done; shape (2,
+        states)."""
+        leads_to, first = self._model.outcomes(action), self._model.first
+
+        def done(place: int) -> tuple[float, float]:
+            outcomes = leads_to[first(ranked[place][0])]
+            return float(not outcomes.achieved), float(outcomes.intended is not None)
+
+        return self._does.setdefault(action, ByKind(2)).of(kinds, done).T

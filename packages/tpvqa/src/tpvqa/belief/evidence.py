@@ -11,7 +11,7 @@ from tpvqa.belief.belief import NEVER, Belief
 from tpvqa.belief.calibration import Apart, Calibration
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.doubts import Doubts
-from tpvqa.belief.heard import Heard
+from tpvqa.belief.heard import EVERY, Columns, Heard
 from tpvqa.belief.information import Reliability, answers_to_be_sure
 from tpvqa.belief.last_answer import LastAnswer, Picture
 from tpvqa.belief.led import Led
@@ -131,7 +131,9 @@ class Evidence:
             last.heard, last.acted = {last.view: heard}, self._acted
         return last.heard_from(view)
 
-    def _cases(self, question: FactQuestion, heard: Heard) -> Cases:
+    def _cases(
+        self, question: FactQuestion, heard: Heard, columns: Columns = EVERY
+    ) -> Cases:
         """What may be the case when a question is asked."""
         if self._weighed is not self._belief:
             now = self._weighed.probability(question.atom, question.alike)
@@ -141,7 +143,8 @@ class Evidence:
         self.worth.believe(self._belief.noise)
         truth = self._belief.model.truth(question.atoms)
         right = np.array([truth[number] for number in numbers], bool)
-        return Cases(mass, right, heard.drawn(numbers, right, self._size))
+        drawn = heard.drawn(numbers, right, self._size, columns)
+        return Cases(mass[:, columns], right, drawn, columns)
 
     def acted(self, action: str = "", *, failed: bool | None = None) -> None:
         """Note that an action was executed: facts may have changed, other things are in view.
@@ -262,7 +265,8 @@ class Evidence:
             last, expected = self._last.get(question.text), new
             if last is not None and in_doubt(true):
                 rates = self._calibration.group(question).rates
-                cases = self._cases(question, self._heard(last, last.view).elsewhere())
+                heard, columns = self._heard(last, last.view), self.worth.columns
+                cases = self._cases(question, heard, columns).elsewhere(self.worth.stays)
                 expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false), cases)
             doubts.append((true, expected))
         return Settling.of(doubts, new)
@@ -275,7 +279,7 @@ class Evidence:
         last = self._last.get(question.text)
         if last is None:
             return replace(self.worth.expect(said), abstains=abstains)
-        cases = self._cases(question, self._heard(last, view))
+        cases = self._cases(question, self._heard(last, view), self.worth.columns)
         found = self.worth.expect(said, cases)
         rho = self._repeats[_apart(last, view)].mean
         before = 1.0 if last.reply is Reply.YES else 0.0

@@ -6,6 +6,7 @@ ways come together in one, they are averaged.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,10 @@ from numpy.typing import NDArray
 from tpvqa.belief.information import Floats
 from tpvqa.belief.lasting import SHARES, STAYS
 from tpvqa.belief.led import Led
+
+
+Columns = NDArray[np.intp] | slice
+EVERY = slice(None)
 
 
 class Drawn(NamedTuple):
@@ -32,6 +37,19 @@ class Drawn(NamedTuple):
     kept: Floats
     answers: Floats
     yeses: Floats
+
+    def only(self, columns: Columns) -> "Drawn":
+        """That of some of what is told apart of the noise."""
+        return self._replace(yes=self.yes[:, columns], new=self.new[:, columns])
+
+    def elsewhere(self, stays: Floats) -> "Drawn":
+        """What that says of another scene.
+
+        Args:
+            stays: As of `lasting.Kind`, for everything that is told apart of the noise.
+        """
+        none = np.zeros_like(self.kept)
+        return Drawn(stays * self.yes, stays * self.new + 1 - stays, self.kept, none, none)
 
 
 @dataclass(slots=True)
@@ -53,26 +71,33 @@ class Heard:
     true: Floats | None = None
     believed: float = 0.5
 
-    def drawn(self, numbers: tuple[int, ...], truth: NDArray[np.bool_], size: int) -> Drawn:
+    def drawn(
+        self,
+        numbers: tuple[int, ...],
+        truth: NDArray[np.bool_],
+        size: int,
+        columns: Columns = EVERY,
+    ) -> Drawn:
         """What is known in joint states.
 
         Args:
             numbers: Theirs; none where nothing was done, for where yes is right and where no is.
             truth: Whether yes is right in them.
             size: How much is told apart of the noise.
+            columns: Of which of that.
         """
-        first = self.by_truth or _never(size)
+        first = (self.by_truth or _never(size)).only(columns)
         if not numbers:
             return first
-        if self.rows is not None and numbers == self.numbers:
-            return self.rows
+        rows = None if self.rows is None else self.rows.only(columns)
+        if rows is not None and numbers == self.numbers:
+            return rows
         unknown = np.where(truth, 0, 1)
-        if self.rows is None:
+        if rows is None:
             return Drawn(*(each[unknown] for each in first))
-        places = {number: place + 2 for place, number in enumerate(self.numbers)}
-        taken = np.array([places.get(number, -1) for number in numbers])
-        taken = np.where(taken < 0, unknown, taken)
-        return Drawn(*(np.concatenate(each)[taken] for each in zip(first, self.rows, strict=True)))
+        taken = _places(self.numbers, numbers)
+        taken = np.where(taken < 0, unknown, taken + 2)
+        return Drawn(*(np.concatenate(each)[taken] for each in zip(first, rows, strict=True)))
 
     def told(self, numbers: tuple[int, ...], drawn: Drawn) -> None:
         """Take in what is known after an answer; arguments as those of `drawn`, and its result."""
@@ -83,7 +108,10 @@ class Heard:
 
     def elsewhere(self) -> "Heard":
         """What that says of another view."""
-        first, rows = (each and _elsewhere(each) for each in (self.by_truth, self.rows))
+        first, rows = (
+            each and each.elsewhere(_stays(each.yes.shape[-1]))
+            for each in (self.by_truth, self.rows)
+        )
         return Heard(first, self.numbers, rows, self.true, self.believed)
 
     def acted(self, led: Led | None, truth: Mapping[int, bool]) -> None:
@@ -119,6 +147,13 @@ class Heard:
         self.numbers = tuple(numbers[self.numbers[place]] for place in kept)
 
 
+@lru_cache(maxsize=64)
+def _places(known: tuple[int, ...], numbers: tuple[int, ...]) -> NDArray[np.intp]:
+    """Where some joint states stand among those that are known; -1 where they do not."""
+    places = {number: place for place, number in enumerate(known)}
+    return np.array([places.get(number, -1) for number in numbers], np.intp)
+
+
 def own(drawn: Drawn, rate: Floats) -> Floats:
     """P(the scene's own answer is a yes), where one that is not drawn yet is with a rate."""
     found: Floats = drawn.yes + drawn.new * rate
@@ -144,11 +179,6 @@ def after_answer(yes: bool, own_yes: Floats, rate: Floats, repeated: Floats) -> 
 
 def _stays(size: int) -> Floats:
     return np.tile(STAYS, size // len(STAYS))
-
-
-def _elsewhere(drawn: Drawn) -> Drawn:
-    stays, none = _stays(drawn.yes.shape[-1]), np.zeros_like(drawn.kept)
-    return Drawn(stays * drawn.yes, stays * drawn.new + 1 - stays, drawn.kept, none, none)
 
 
 def _never(size: int) -> Drawn:

@@ -113,11 +113,8 @@ def _all_counts(probability: float, times: tuple[int, ...]) -> Floats:
 
 def _mixed(mixture: Mixture, times: tuple[int, ...]) -> Floats:
     """`_all_counts` of a mixture."""
-    found: Floats = sum(
-        (weight * _all_counts(round(each, 3), times) for weight, each in mixture[1:]),
-        mixture[0][0] * _all_counts(round(mixture[0][1], 3), times),
-    )
-    return found
+    weights = np.array([weight for weight, _ in mixture])
+    return weights @ np.stack([_all_counts(round(each, 3), times) for _, each in mixture])
 
 
 @lru_cache(maxsize=64)

@@ -2,8 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property, partial
+from itertools import islice
 from operator import mul
-from typing import NamedTuple
 
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import PERSON, PERSONS_VIEW, Evidence
@@ -136,8 +137,8 @@ class Inquirer:
                 (-round(most[place], 6), round(abs(likely[place] - 0.5), 6)),
                 place,
                 question,
-                self._evidence.expect(question, open_views[0]),
                 likely[place],
+                partial(self._evidence.expect, question, open_views[0]),
             )
             doubted.append(doubt)
             if most[place] > asking:  # else even the truth would not be worth a question
@@ -166,19 +167,23 @@ class Inquirer:
                         most_saved, asked = saving, (each.question, times)
             if asked is not None:
                 found = Inquiry(asked[0], max(1, asked[1] // 4), most_saved)
-        telling = [each for each in doubted if _says(each.reliability)]
-        if len(telling) > 1 and now > asking:
-            telling.sort(key=lambda each: each.urgent)
-            first = telling[:TOGETHER]
+        if now > asking:
+            doubted.sort(key=lambda each: each.urgent)
+        first = list(islice((each for each in doubted if _says(each.reliability)), TOGETHER))
+        if len(first) > 1 and now > asking:
             own_truths = truths[[each.place for each in first]]
             found = self._together(
                 first, own_truths, weighted, work, budget, asking, looking, found
             )
         ending, action = table.best.action is None, self._costs.action
         asks = person and self._costs.person is not None
-        exhausted = [each for each in doubted if each not in telling] if asks else []
-        doubted = [*telling, *exhausted]
         if len(doubted) > 1 and (ending or table.mistaken(action / 2) > 0.5):
+            doubted.sort(key=lambda each: not _says(each.reliability))
+            if not asks:
+                doubted = [each for each in doubted if _says(each.reliability)]
+        else:
+            doubted = []
+        if len(doubted) > 1:
             own_truths = truths[[each.place for each in doubted]]
             found = self._all(
                 doubted,
@@ -244,18 +249,27 @@ class Inquirer:
         return found
 
 
-class _Doubted(NamedTuple):
+@dataclass
+class _Doubted:
     """A question whose answer is not known.
 
     Attributes:
         urgent: Orders them: what matters most first, then what is least known.
+        place: Among all questions.
+        likely: The probability that yes is right.
+        expect: Works out `reliability`.
     """
 
     urgent: tuple[float, float]
     place: int
     question: FactQuestion
-    reliability: Reliability
     likely: float
+    expect: Callable[[], Reliability]
+
+    @cached_property
+    def reliability(self) -> Reliability:
+        """What is expected of the answers."""
+        return self.expect()
 
 
 def _settled(doubted: Sequence[_Doubted]) -> float:

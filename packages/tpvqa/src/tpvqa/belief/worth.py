@@ -1,18 +1,19 @@
 """What the answers of a VLM are worth: how far to trust its words, and how its errors last."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.belief.heard import Drawn, after_answer, own
+from tpvqa.belief.heard import EVERY, Columns, Drawn, after_answer, own
 from tpvqa.belief.information import Floats, Mixture, Reliability
 from tpvqa.belief.lasting import (
     DISPERSED,
     KINDS,
     RECORDED,
     SHARES,
+    STAYS,
     SUREST,
     fresh_rate,
     own_rate,
@@ -21,6 +22,8 @@ from tpvqa.belief.trust import GRID, Trust
 
 SURE = 1e-9
 """Nothing is surer than this, so that what was impossible can be learnt of."""
+SLIGHT = 1e-6
+"""What is told apart of the noise and is less probable counts for nothing in what is expected."""
 ANSWERS = 40.0
 """Answers' worth of belief that they say as much as the calibration's rates of yes and no."""
 Pair = tuple[float, float]
@@ -35,11 +38,17 @@ class Cases:
         mass: Probability of each case (row) with everything that is told apart of the noise.
         truth: Whether yes is right, in each case.
         drawn: What is known of the scene's own answer.
+        columns: Of which of all that is told apart of the noise; the rest is left out.
     """
 
     mass: Floats
     truth: NDArray[np.bool_]
     drawn: Drawn
+    columns: Columns = field(default_factory=lambda: EVERY)
+
+    def elsewhere(self, stays: Floats) -> "Cases":
+        """What may be the case when it is asked in another scene; see `Drawn.elsewhere`."""
+        return replace(self, drawn=self.drawn.elsewhere(stays[self.columns]))
 
     def where(self, known: Floats, *, true: bool) -> float:
         """The expectation of something, one number for each case, where yes is right or not."""
@@ -88,6 +97,9 @@ class Worth:
     Args:
         trust: What is believed of the one beforehand; None to take the calibration at its word.
         lasting: What is believed of the other.
+
+    Attributes:
+        stays: `Kind.stays` of everything that is told apart.
     """
 
     def __init__(self, trust: Trust | None = None, lasting: Sequence[float] = RECORDED):
@@ -95,7 +107,7 @@ class Worth:
         first = np.ones(1) if trust is None else np.array(trust.weights)
         last = np.array(lasting) / sum(lasting)
         self._grid = np.repeat((1.0,) if trust is None else GRID, len(KINDS))
-        self._shares = np.tile(SHARES, len(first))
+        self._shares, self.stays = (np.tile(each, len(first)) for each in (SHARES, STAYS))
         told = [(kind.share, kind.coin) for kind in KINDS] * len(first)
         distinct = tuple(dict.fromkeys(told))
         self._groups = np.array([[float(each == other) for other in distinct] for each in told])
@@ -118,6 +130,11 @@ class Worth:
             by_trust = weights.reshape(-1, len(KINDS)).sum(axis=1)
             self.trust.weights = tuple(by_trust.tolist())
             self._new.clear()
+
+    @property
+    def columns(self) -> Columns:
+        """Those of all that is told apart which are not next to impossible."""
+        return np.flatnonzero(self._weights > SLIGHT)
 
     @property
     def lasting(self) -> tuple[float, ...]:
@@ -146,18 +163,23 @@ class Worth:
     def _expected(self, rates: Pair, cases: Cases | None) -> Reliability:
         mixtures: list[Mixture] = []
         known = self._aggregated(cases) if cases is not None else None
-        for place, rate in enumerate(self._rates(rates)):
-            weights, yes, fresh = self._weights, own_rate(rate), fresh_rate(rate, *_NONE)
+        columns = EVERY if cases is None else cases.columns
+        believed, counts, groups = (
+            each[columns] for each in (self._weights, self._counts, self._groups)
+        )
+        for place, every in enumerate(self._rates(rates)):
+            weights, rate = believed, every[columns]
+            yes, fresh = own_rate(every)[columns], fresh_rate(every, *_NONE)[columns]
             if known is not None:
                 mass, drawn, new, prior, seen = (each[place] for each in known)
-                weights = mass + SURE * self._weights
+                weights = mass + SURE * believed
                 whole = np.maximum(weights, 1e-300)
-                yes = (drawn + new * yes + SURE * yes * self._weights) / whole
-                lasts = (prior * rate + seen + SURE * fresh * self._weights) / whole
-                fresh = np.where(self._counts, lasts, fresh)
+                yes = (drawn + new * yes + SURE * yes * believed) / whole
+                lasts = (prior * rate + seen + SURE * fresh * believed) / whole
+                fresh = np.where(counts, lasts, fresh)
             weights = weights / weights.sum()
             together, low, said = (
-                each @ self._groups for each in (weights, weights * fresh, weights * yes)
+                each @ groups for each in (weights, weights * fresh, weights * yes)
             )
             low = (1 - self._distinct) * low / np.maximum(together, 1e-12)
             mixture: list[Pair] = []
