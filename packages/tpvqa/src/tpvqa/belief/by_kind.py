@@ -1,4 +1,4 @@
-"""Numbers that are worked out once for every set of facts that may hold, and looked up by arrays."""
+"""Numbers worked out once for every set of facts that may hold, and looked up by arrays."""
 
 from collections.abc import Callable
 

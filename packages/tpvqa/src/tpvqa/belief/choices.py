@@ -13,6 +13,7 @@ from tpvqa.belief.falls import fallen
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
+from tpvqa.belief.rounds import Rounds
 from tpvqa.belief.settling import SETTLED
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice, Table
@@ -33,8 +34,6 @@ HIDDEN_IDLE = 0.99
 """The same where nothing shows what it does: what it costs tells how often it is worth doing."""
 FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
-ROUNDS = 3.0
-"""How often it is no surprise to come back to the same action, were every step of it progress."""
 SEVERAL = 40
 """Joint states of which it is worked out what they cost unseen; the rest is lost."""
 DISTURBED = 0.02
@@ -58,6 +57,7 @@ class Chooser:
     Attributes:
         ahead: What lies ahead of single joint states.
         changes_left: Changes of plan that the trial still allows; None for any number.
+        rounds: What was done where.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class Chooser:
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._sought: set[State] = set()
         self._unlikely = self._ends = 0
-        self._done: list[tuple[int, Action]] = []
+        self.rounds = Rounds(costs.action)
         self.changes_left: int | None = None
 
     @property
@@ -95,7 +95,7 @@ class Chooser:
         """Note that an action is executed, before the belief predicts what it leads to."""
         self._sought.clear()
         self._unlikely = self._ends = 0
-        self._done.append((belief.ranked()[0][0], action))
+        self.rounds.acted(belief.ranked()[0][0], action)
 
     def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
         """Go on with a model that gives joint states other numbers."""
@@ -106,7 +106,7 @@ class Chooser:
         self._unseen.renumbered(model)
         for known in (self._near, self._far, self._does):
             known.clear()
-        self._done = [(numbers.get(number, -1), action) for number, action in self._done]
+        self.rounds.renumbered(numbers)
 
     def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
         """The cheapest known way from a state: a place in a plan, and that plan."""
@@ -201,7 +201,7 @@ class Chooser:
                 found += self._unseen.ends(each, end) if unseen else [(each, end, work[each])]
                 continue
             more = 0.0 if self._in(each, current) else self._costs.replan
-            more += self._weary(each.action, ranked)
+            more += self.rounds.dearer(each.action, ranked[0][0], self.ahead.progress)
             seen = self._column(each.action, ranked, kinds, rates) + more
             if self.settles >= SETTLED:
                 found.append((each, seen, work[each]))
@@ -242,9 +242,9 @@ class Chooser:
 
         near, column = self._near.setdefault(action, {}), np.empty(len(ranked))
         many = sum(weight >= DISTURBED for _, weight in ranked)  # the first ones
-        for place, (number, weight) in enumerate(ranked[:many]):
+        for place, (number, _) in enumerate(ranked[:many]):
             if number not in near:
-                near[number] = self._paid(action, number, weight, rates, {})
+                near[number] = self._paid(action, number, 1.0, rates, {})
             column[place] = near[number]
         known = self._far.setdefault(action, ByKind(1))
         column[many:] = known.of(kinds[many:], lambda place: far(place + many))[:, 0]
@@ -330,23 +330,6 @@ class Chooser:
             self._going[number, near] = known
         return known
 
-    def _weary(self, action: Action, ranked: Sequence[tuple[int, float]]) -> float:
-        """What an action costs more each time that the trial comes back to it.
-
-        To repeat it is no coming back; to do something else in between, and to believe again what
-        was believed then, is going round in a circle. So often as faults explain it costs nothing.
-        """
-        times = self.returns(action, ranked[0][0]) - ROUNDS / self.ahead.progress
-        return self._costs.action * max(0.0, times) ** 2
-
-    def returns(self, action: Action, number: int) -> int:
-        """How often an action was begun anew where the same joint state was most probable."""
-        done = self._done
-        return sum(
-            each == (number, action) and (not place or done[place - 1][1] != action)
-            for place, each in enumerate(done)
-        )
-
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[Action | None, Choice] = {}
         least, left = 0.1 * self._costs.action / self._costs.failure, 1.0
@@ -386,9 +369,7 @@ class Chooser:
         same, action = self._model.same_skill, choice.action
         return action is not None and any(same(action, each, choice.state) for each in plan)
 
-    def _work(
-        self, choice: Choice, ranked: Sequence[tuple[int, float]], kinds: Kinds
-    ) -> Floats:
+    def _work(self, choice: Choice, ranked: Sequence[tuple[int, float]], kinds: Kinds) -> Floats:
         """What a choice has to do in the joint states: what it would change, and what it can, each
         less how probable that has to be; shape (2, states).
 
@@ -405,9 +386,7 @@ class Chooser:
             found[1] = undone * (possible - FLOOR)
         return found
 
-    def _done_by(
-        self, action: Action, ranked: Sequence[tuple[int, float]], kinds: Kinds
-    ) -> Floats:
+    def _done_by(self, action: Action, ranked: Sequence[tuple[int, float]], kinds: Kinds) -> Floats:
         """Where something is left to do for an action, and where it can be done; shape (2,
         states)."""
         leads_to, first = self._model.outcomes(action), self._model.first

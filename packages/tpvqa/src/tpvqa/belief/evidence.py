@@ -131,9 +131,7 @@ class Evidence:
             last.heard, last.acted = {last.view: heard}, self._acted
         return last.heard_from(view)
 
-    def _cases(
-        self, question: FactQuestion, heard: Heard, columns: Columns = EVERY
-    ) -> Cases:
+    def _cases(self, question: FactQuestion, heard: Heard, columns: Columns = EVERY) -> Cases:
         """What may be the case when a question is asked."""
         if self._weighed is not self._belief:
             now = self._weighed.probability(question.atom, question.alike)
@@ -264,9 +262,10 @@ class Evidence:
             true = self._weighed.probability(question.atom, question.alike)
             last, expected = self._last.get(question.text), new
             if last is not None and in_doubt(true):
-                rates = self._calibration.group(question).rates
-                heard, columns = self._heard(last, last.view), self.worth.columns
-                cases = self._cases(question, heard, columns).elsewhere(self.worth.stays)
+                rates, cases = self._calibration.group(question).rates, None
+                if self.worth.lasts:
+                    heard, columns = self._heard(last, last.view), self.worth.columns
+                    cases = self._cases(question, heard, columns).elsewhere(self.worth.stays)
                 expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false), cases)
             doubts.append((true, expected))
         return Settling.of(doubts, new)

@@ -16,7 +16,6 @@ from tpvqa.belief.information import Floats
 from tpvqa.belief.lasting import SHARES, STAYS
 from tpvqa.belief.led import Led
 
-
 Columns = NDArray[np.intp] | slice
 EVERY = slice(None)
 

@@ -24,6 +24,8 @@ SURE = 1e-9
 """Nothing is surer than this, so that what was impossible can be learnt of."""
 SLIGHT = 1e-6
 """What is told apart of the noise and is less probable counts for nothing in what is expected."""
+LASTS = 1e-3
+"""Where errors last with a smaller probability, what was heard says nothing of another scene."""
 ANSWERS = 40.0
 """Answers' worth of belief that they say as much as the calibration's rates of yes and no."""
 Pair = tuple[float, float]
@@ -145,6 +147,11 @@ class Worth:
     def share(self) -> float:
         """The expected lasting share."""
         return float(self._weights @ self._shares)
+
+    @property
+    def lasts(self) -> bool:
+        """Whether errors may last at all, as far as is worth a thought."""
+        return float(self._weights[self._shares > 0].sum()) > LASTS
 
     def expect(self, rates: Pair, cases: Cases | None = None) -> Reliability:
         """What further answers will be.
