@@ -1,18 +1,18 @@
 """How far answers can be trusted, and how their errors last, learned from the answers alone."""
 
 from dataclasses import replace
-from math import isclose, log
+from math import exp, isclose, log
 from random import Random
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tpvqa.belief.heard import Heard
 from tpvqa.belief.information import TIMES, settled
 from tpvqa.belief.lasting import FRESH, KINDS, RECORDED
-from tpvqa.belief.trust import Trust
+from tpvqa.belief.trust import GRID, Trust
 from tpvqa.belief.worth import Cases, Said, Worth, by_truth
 
 RIGHT = 0.8
@@ -100,3 +100,21 @@ def test_further_answers_are_expected_as_they_come() -> None:
         )
     assert mean * times == pytest.approx(np.mean(drawn), abs=0.1)
     assert variance == pytest.approx(np.var(drawn), rel=0.1)
+
+
+@settings(max_examples=20)
+@given(right=st.floats(0.7, 0.95), said=st.floats(0.55, 0.95), trust=st.floats(0.3, 2.2))
+def test_as_much_is_expected_of_answers_as_they_have_said(
+    right: float, said: float, trust: float
+) -> None:
+    """A VLM whose P(yes) is less sure than its words were in the calibration, or surer: what it
+    says and how far it is trusted count once each."""
+    worth, ratio = Worth(Trust(), FRESH), log(said / (1 - said))
+    nearest = int(np.argmin(abs(np.array(GRID) - trust)))
+    only = np.zeros((len(GRID), len(KINDS)))
+    only[nearest, 0] = 1.0
+    worth.believe(only.ravel())
+    for _ in range(3000):
+        worth.compare(Said(True, ratio), (right, 1 - right))
+    expected = worth.expect((right, 1 - right)).yes_if_true
+    assert isclose(expected, 1 / (1 + exp(-GRID[nearest] * ratio)), abs_tol=0.02)
