@@ -17,8 +17,11 @@ _LABEL = re.compile(r"(?:question|q)\s*:\s*", re.IGNORECASE)
 _END = re.compile(r"(?:short |final )?(?:answer|a)\s*:", re.IGNORECASE)
 _ASKS_FOR_A_WORD = re.compile(r"(?:please )?(?:only |just )?(?:answer|reply|respond|say)\b")
 _HOW_TO_ANSWER = frozenset(
-    "please only just answer reply respond say with by in using one a single the word words either "
-    "exactly of yes or no unknown and nothing else".split()
+    re.findall(
+        r"\w+",
+        "please only just answer reply respond say with by in using one a single the word words "
+        "either exactly of yes or no unknown and nothing else",
+    )
 )
 
 
@@ -51,6 +54,6 @@ def _bare(sentence: str) -> str:
     if _SEVERAL_VIEWS.fullmatch(sentence) or _END.fullmatch(sentence):
         return ""
     said = sentence.lower()
-    words = set(re.findall(r"[a-z']+", said))
+    words = set(re.findall(r"\w+", said))
     only_how = {"yes", "no"} <= words <= _HOW_TO_ANSWER and "?" not in said
     return "" if only_how and _ASKS_FOR_A_WORD.match(said) else sentence.strip()

@@ -14,7 +14,7 @@ from tpvqa.vlm.answer import Answer, Reply
 
 YES, NO = Reply.YES.value, Reply.NO.value
 _LEAST = -9999.0
-"""What stands for the logarithm of nothing, which JSON has no number for; OpenAI writes the same."""
+"""What stands for the logarithm of nothing, for which JSON has no number; OpenAI has the same."""
 _MOST_LEFT = 0.49
 """Of the probability, for neither yes nor no where the answer is one of them."""
 
@@ -72,11 +72,10 @@ def spoken(answer: Answer) -> Spoken:
         other = Reply.UNKNOWN if unseen is None else Reply.CANNOT_SEE
         return Spoken(word, _shared(p_yes, min(left, _MOST_LEFT), other.value))
     why = answer.text or "the VLM does not say why"
-    if answer.reply is Reply.CANNOT_SEE and p_yes is not None and unseen is not None:
-        if unseen > 0.5:
-            why = "the picture does not show it"
-            return Spoken(word, _shared(p_yes, unseen, word), why)
-    return Spoken(word, {word: 1.0}, why)
+    sure = answer.reply is Reply.CANNOT_SEE and (unseen or 0.0) > 0.5
+    if not sure or p_yes is None or unseen is None:
+        return Spoken(word, {word: 1.0}, why)
+    return Spoken(word, _shared(p_yes, unseen, word), "the picture does not show it")
 
 
 def _shared(p_yes: float, left: float, other: str) -> dict[str, float]:
