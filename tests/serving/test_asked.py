@@ -8,7 +8,7 @@ from tpvqa.observation import Frame
 from tpvqa.pddl import Action, Task, load_task
 from tpvqa.planning import Plan
 from tpvqa.planning.making import make_planner
-from tpvqa.questions import QuestionBook
+from tpvqa.questions import Question, QuestionBook
 from tpvqa.serving.asked import LONGEST, question_in
 from tpvqa.serving.refusal import Refusal
 from tpvqa.tasks import find_task
@@ -40,9 +40,9 @@ def test_every_question_of_the_shipped_tasks_comes_through(name: str, views: int
     plan = planned(task)
     asked: list[str] = []
     for action in plan:
-        facts = (*book.preconditions(action, task.init), *book.effects(action, task.init))
-        actions = (book.possible(action), book.successful(action), book.did(action))
-        asked += [question.text for question in (*facts, *actions)]
+        found: list[Question] = [*book.preconditions(action, task.init), book.possible(action)]
+        found += [*book.effects(action, task.init), book.successful(action), book.did(action)]
+        asked += [question.text for question in found]
     assert len(set(asked)) > 8
     assert [question_in(prompt(text, views)) for text in asked] == asked
 
@@ -55,6 +55,7 @@ def test_every_question_of_the_shipped_tasks_comes_through(name: str, views: int
         "Is the fridge open? Please answer with 'yes' or 'no' only.",
         "Is the fridge open?\nReply with one word: yes or no",
         "Answer only yes or no. Is the fridge open?",
+        "Is the fridge open? Yes or no?",
         "Question: Is the fridge open? Answer:",
         "Question: Is the fridge open?\nShort answer:",
         "  Is the fridge open?  \n\nAnswer yes, no or unknown.\n",

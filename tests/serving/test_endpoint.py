@@ -2,9 +2,11 @@
 
 import http.client
 import json
+import os
 import socket
 import threading
 import time
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 from urllib.parse import urlsplit
@@ -13,10 +15,13 @@ import pytest
 
 from tests.serving.running import INSTRUCTION, Known, body, call, complete, picture, running
 from tpvqa.errors import AnswerError, TpvqaError
+from tpvqa.observation import Observation
+from tpvqa.questions import Question
 from tpvqa.serving.app import Limits
 from tpvqa.serving.door import TOKEN, is_loopback, token_for
 from tpvqa.serving.server import Serving
-from tpvqa.vlm import Reply
+from tpvqa.vlm import Answer, Reply
+from tpvqa.vlm.capabilities import SideBySide
 
 TABLE: dict[str, float | Reply] = {
     "Is the fridge open?": 0.9,
@@ -398,21 +403,39 @@ def test_at_the_end_who_cannot_be_answered_is_told() -> None:
         vlm.free.set()
 
 
-def test_several_threads_ask_a_vlm_only_where_it_allows_that() -> None:
-    at_once, most = [0], [0]
-    lock = threading.Lock()
+class Counting(Known):
+    """Counts its calls that are under way at once, in all and about one picture."""
 
-    class Counting(Known):
-        def ask(self, observation: Any, questions: Any) -> Any:
-            with lock:
-                at_once[0] += 1
-                most[0] = max(most[0], at_once[0])
-            time.sleep(0.01)
-            with lock:
-                at_once[0] -= 1
-            return super().ask(observation, questions)
+    def __init__(self) -> None:
+        super().__init__(TABLE)
+        self._lock = threading.Lock()
+        self._under_way: list[bytes] = []
+        self.most = self.most_of_one = 0
 
-    with running(Counting(TABLE)) as serving, ThreadPoolExecutor(8) as pool:
-        asked = [pool.submit(complete, serving, body("Is it dark?", picture(n))) for n in range(8)]
-        assert {each.result().word for each in asked} == {"cannot see"}
-    assert most == [1]
+    def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
+        (frame,) = observation.frames.values()
+        with self._lock:
+            self._under_way.append(frame.data)
+            self.most = max(self.most, len(self._under_way))
+            self.most_of_one = max(self.most_of_one, self._under_way.count(frame.data))
+        time.sleep(0.03)
+        with self._lock:
+            self._under_way.remove(frame.data)
+        return super().ask(observation, questions)
+
+
+class SideBySideCounting(Counting, SideBySide):
+    pass
+
+
+@pytest.mark.parametrize(("vlm", "at_once"), [(Counting(), 1), (SideBySideCounting(), 2)])
+def test_several_threads_ask_a_vlm_that_allows_it_and_never_about_one_picture(
+    vlm: Counting, at_once: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
+    asked = [body(text, picture(n)) for n in range(3) for text in TABLE for _ in range(2)]
+    with running(vlm) as serving, ThreadPoolExecutor(len(asked)) as pool:
+        words = [each.result().word for each in [pool.submit(complete, serving, a) for a in asked]]
+    assert words == ["yes", "yes", "no", "no", "cannot see", "cannot see"] * 3
+    assert (vlm.most, vlm.most_of_one) == (at_once, 1)
+    assert len(vlm.calls) < len(asked)

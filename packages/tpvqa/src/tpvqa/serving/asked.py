@@ -15,7 +15,6 @@ _SENTENCES = re.compile(r"(?<=[.?!])\s+|\s*\n\s*")
 _SEVERAL_VIEWS = re.compile(r"These \d+ pictures show the same moment from several views\.")
 _LABEL = re.compile(r"(?:question|q)\s*:\s*", re.IGNORECASE)
 _END = re.compile(r"(?:short |final )?(?:answer|a)\s*:", re.IGNORECASE)
-_ASKS_FOR_A_WORD = re.compile(r"(?:please )?(?:only |just )?(?:answer|reply|respond|say)\b")
 _HOW_TO_ANSWER = frozenset(
     re.findall(
         r"\w+",
@@ -53,7 +52,5 @@ def _bare(sentence: str) -> str:
     sentence = _LABEL.sub("", sentence.strip(), count=1) if _LABEL.match(sentence) else sentence
     if _SEVERAL_VIEWS.fullmatch(sentence) or _END.fullmatch(sentence):
         return ""
-    said = sentence.lower()
-    words = set(re.findall(r"\w+", said))
-    only_how = {"yes", "no"} <= words <= _HOW_TO_ANSWER and "?" not in said
-    return "" if only_how and _ASKS_FOR_A_WORD.match(said) else sentence.strip()
+    words = set(re.findall(r"\w+", sentence.lower()))
+    return "" if {"yes", "no"} <= words <= _HOW_TO_ANSWER else sentence.strip()
