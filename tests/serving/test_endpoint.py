@@ -432,7 +432,7 @@ class SideBySideCounting(Counting, SideBySide):
 def test_several_threads_ask_a_vlm_that_allows_it_and_never_about_one_picture(
     vlm: Counting, at_once: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
     asked = [body(text, picture(n)) for n in range(3) for text in TABLE for _ in range(2)]
     with running(vlm) as serving, ThreadPoolExecutor(len(asked)) as pool:
         words = [each.result().word for each in [pool.submit(complete, serving, a) for a in asked]]

@@ -4,7 +4,7 @@ import pytest
 
 from tests.doubles import worded
 from tests.serving.faulty_proxy import Fault, FaultyProxy
-from tests.serving.running import Known, picture, running
+from tests.serving.running import Known, body, complete, picture, running
 from tpvqa.errors import AnswerError
 from tpvqa.observation import Frame, Observation
 from tpvqa.serving.app import Limits
@@ -92,3 +92,15 @@ def test_a_server_that_has_no_room_is_asked_again() -> None:
         answers = vlm.ask(Observation(0, 0.0, {"front": frame}), [worded(text) for text in TABLE])
         vlm.close()
     assert [answer.reply for answer in answers] == list(RIGHT.values())
+
+
+def test_a_served_vlm_may_be_another_server() -> None:
+    """P(yes) comes through two of them, and what the first does not know stays unknown."""
+    with running(Known(TABLE)) as first:
+        passing_on = OpenAICompatibleVLM("known", base_url=first.address)
+        with running(passing_on, model="known") as second:
+            see_nothing_invented(found := ask(second.address, retries=0))
+            unknown = complete(second, body("Is it raining?", picture(), logprobs=True))
+    assert [answer.reply for answer in found] == list(RIGHT.values())
+    assert unknown.word == "unknown"
+    assert "so says the table" in unknown.json["choices"][0]["message"]["refusal"]

@@ -60,8 +60,7 @@ def serve_vlm(
 ) -> None:
     """Serve a VLM to OpenAI-compatible clients, until Ctrl-C.
 
-    Ask it with `--vlm openai:embedded --base-url http://127.0.0.1:8000/v1`, or with any client that
-    speaks chat completions with pictures.
+    Ask it with --vlm openai:embedded --base-url http://127.0.0.1:8000/v1, or any such client.
     """
     import importlib.util
 

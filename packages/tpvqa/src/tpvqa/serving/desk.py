@@ -93,7 +93,7 @@ class Desk:
     def open(self) -> None:
         """Start the threads that ask, in the running loop."""
         self._loop = asyncio.get_running_loop()
-        cores = len(os.sched_getaffinity(0))
+        cores = os.cpu_count() or 1
         side_by_side = may_be_asked_side_by_side(self.vlm)
         self._threads = min(cores, _MOST_THREADS) if side_by_side else 1
         for _ in range(self._threads):
