@@ -296,6 +296,27 @@ def test_a_vlm_that_breaks_is_an_error_of_the_request(
     assert ("ZeroDivisionError: secret" in capfd.readouterr().err) == (code == "vlm_broke")
 
 
+class Shuffled(Known):
+    """Answers as many questions as were asked, in another order."""
+
+    def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
+        return super().ask(observation, questions)[::-1]
+
+
+def test_answers_in_another_order_are_nobodys_answers() -> None:
+    vlm = Shuffled(TABLE)
+    with running(vlm) as serving, ThreadPoolExecutor() as pool:
+        vlm.free.clear()
+        first = pool.submit(complete, serving, FRIDGE)
+        assert vlm.asked.wait(10)
+        rest = [pool.submit(complete, serving, body(text, picture())) for text in TABLE]
+        eventually(lambda: call(serving, "GET", "/health").json["waiting"] == 4)
+        vlm.free.set()
+        assert first.result().word == "yes"
+        for each in rest:
+            assert (each.result().status, each.result().error["code"]) == (500, "vlm_failed")
+
+
 def test_a_token_is_asked_for_and_never_told(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

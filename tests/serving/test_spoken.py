@@ -70,6 +70,14 @@ def test_a_vlm_that_contradicts_itself_is_not_read_as_the_other_word(
     assert found.reply in (Reply.UNKNOWN, reply)
 
 
+@pytest.mark.parametrize("share", ["p_yes", "p_cannot_see", "leftover"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -0.1, 1.1])
+def test_a_probability_that_is_none_says_nothing(share: str, value: float) -> None:
+    shares = {"p_yes": 0.9, share: value}
+    found = read_with_logprobs(Answer(QUESTION, Reply.YES, **shares))
+    assert (found.reply, found.p_yes) == (Reply.UNKNOWN, None)
+
+
 def test_the_reason_of_an_abstention_reaches_the_log() -> None:
     found = read_with_logprobs(Answer(QUESTION, Reply.UNKNOWN, text="no word for weather"))
     assert found.text == "refused: no word for weather"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from tpvqa.cli.options import pair
 from tpvqa.cli.saying import tell
 
 if TYPE_CHECKING:
@@ -32,6 +33,9 @@ def serve_vlm(
     ] = None,
     base_url: Annotated[
         str | None, typer.Option(help="With --vlm openai:MODEL: the address of that server.")
+    ] = None,
+    option: Annotated[
+        list[str] | None, typer.Option(help="NAME=VALUE: more for the VLM. Can be repeated.")
     ] = None,
     name: Annotated[
         str | None, typer.Option(help="What clients call the model. Default: as --vlm does.")
@@ -66,6 +70,7 @@ def serve_vlm(
 
     from tpvqa.defaults import default_vlm
     from tpvqa.errors import MissingExtraError
+    from tpvqa.plugins import see_free, see_taken
     from tpvqa.vlm.making import make_vlm
 
     for package in ("fastapi", "uvicorn"):
@@ -77,8 +82,11 @@ def serve_vlm(
     from tpvqa.serving.server import Serving
 
     token = token_for(host, token_file)
-    context = {"base_url": base_url, "remember": _REMEMBERED}
-    model, _ = make_vlm(vlm or default_vlm(), context)
+    options = dict(map(pair, option or ()))
+    context = {**options, "base_url": base_url, "remember": _REMEMBERED}
+    see_free(options, context)
+    model, taken = make_vlm(vlm or default_vlm(), context)
+    see_taken(options, taken, context)
     limits = Limits(waiting=waiting, patience=patience)
     with Serving(model, model=name, host=host, port=port, token=token, limits=limits) as serving:
         _try(model)

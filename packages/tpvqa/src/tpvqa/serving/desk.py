@@ -14,13 +14,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from threading import Condition, Thread
 
-from tpvqa.errors import TpvqaError
+from tpvqa.errors import PluginError, TpvqaError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Atom
 from tpvqa.questions.question import FactQuestion, Way
 from tpvqa.serving.refusal import Refusal
 from tpvqa.serving.sent import Key
-from tpvqa.vlm.answer import Answer
+from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import may_be_asked_side_by_side
 from tpvqa.vlm.protocol import VLM
 from tpvqa.vlm.sight import ask_seeing
@@ -225,8 +225,9 @@ class Desk:
         # A VLM that looks at pictures goes by the words alone.
         asked = [FactQuestion(text, Way.PRECONDITION, Atom("asked")) for text in texts]
         answers = ask_seeing(self.vlm, seen, asked)
-        if len(answers) != len(texts) or not all(isinstance(each, Answer) for each in answers):
-            raise TypeError(f"{self.vlm.name} has to return an Answer for every question")
+        in_place = [isinstance(each, Answer) and each.question for each in answers] == asked
+        if not in_place or not all(isinstance(each.reply, Reply) for each in answers):
+            raise PluginError(f"{self.vlm.name} has to answer each question in its place.")
         return answers
 
     def _deliver(

@@ -5,6 +5,7 @@ import hashlib
 import re
 from collections import OrderedDict
 from collections.abc import Sequence
+from threading import Lock
 
 from tpvqa.errors import PictureError
 from tpvqa.observation import Frame
@@ -21,6 +22,8 @@ Key = tuple[bytes, ...]
 class Pictures:
     """Reads the pictures of requests; of the same content the header is read once.
 
+    Safe to use from several threads.
+
     Args:
         most: How many one request may have.
     """
@@ -28,6 +31,7 @@ class Pictures:
     def __init__(self, *, most: int):
         self._most = most
         self._types: OrderedDict[bytes, str] = OrderedDict()
+        self._lock = Lock()
 
     def read(self, urls: Sequence[str]) -> tuple[Key, tuple[Frame, ...]]:
         """The pictures behind addresses that hold them.
@@ -57,16 +61,17 @@ class Pictures:
     def _frame(self, number: int, url: str) -> tuple[bytes, Frame]:
         data = _decoded(number, url)
         key = hashlib.blake2b(data, digest_size=16).digest()
-        if key in self._types:
-            self._types.move_to_end(key)
-        else:
+        kind = self._types.get(key)
+        if kind is None:
             try:
-                self._types[key] = picture_type(data)
+                kind = picture_type(data)
             except PictureError as error:
                 raise Refusal(400, f"Picture {number} {error}.", param="messages") from None
-            if len(self._types) > _REMEMBERED:
-                self._types.popitem(last=False)
-        return key, Frame(f"picture{number}", f"view{number}", data, self._types[key])
+            with self._lock:
+                self._types[key] = kind
+                while len(self._types) > _REMEMBERED:
+                    self._types.popitem(last=False)
+        return key, Frame(f"picture{number}", f"view{number}", data, kind)
 
 
 def _decoded(number: int, url: str) -> bytes:

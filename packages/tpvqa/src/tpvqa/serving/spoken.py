@@ -65,6 +65,10 @@ def spoken(answer: Answer) -> Spoken:
     """
     word, p_yes = answer.reply.value, answer.p_yes
     unseen = answer.p_cannot_see
+    shares = (p_yes, unseen, answer.leftover)
+    if not all(each is None or 0.0 <= each <= 1.0 for each in shares):  # NaN neither
+        unknown = Reply.UNKNOWN.value
+        return Spoken(unknown, {unknown: 1.0}, "the VLM gives a probability that is none")
     if answer.reply in (Reply.YES, Reply.NO):
         if p_yes is None:
             return Spoken(word, None)
