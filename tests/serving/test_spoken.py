@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -73,8 +74,8 @@ def test_a_vlm_that_contradicts_itself_is_not_read_as_the_other_word(
 @pytest.mark.parametrize("share", ["p_yes", "p_cannot_see", "leftover"])
 @pytest.mark.parametrize("value", [math.nan, math.inf, -0.1, 1.1])
 def test_a_probability_that_is_none_says_nothing(share: str, value: float) -> None:
-    shares = {"p_yes": 0.9, share: value}
-    found = read_with_logprobs(Answer(QUESTION, Reply.YES, **shares))
+    answer = Answer(QUESTION, Reply.YES, p_yes=0.9)
+    found = read_with_logprobs(replace(answer, **{share: value}))  # type: ignore[arg-type]
     assert (found.reply, found.p_yes) == (Reply.UNKNOWN, None)
 
 
