@@ -14,7 +14,7 @@ from tpvqa.errors import AnswerError, PictureError
 from tpvqa.observation import Frame, Observation
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
-from tpvqa.vlm.capabilities import NeedsPictures
+from tpvqa.vlm.capabilities import NeedsPictures, SideBySide
 from tpvqa_household.embedded.lexicon import Unknown
 from tpvqa_household.embedded.sessions import Floats, Sessions
 from tpvqa_household.embedded.weights import SHIPPED, Weights
@@ -25,7 +25,7 @@ _ANSWERS = 100_000
 """Answers that are kept."""
 
 
-class EmbeddedVLM(NeedsPictures):
+class EmbeddedVLM(NeedsPictures, SideBySide):
     """Answers questions about the household with a small network on the CPU.
 
     Not a general VLM: it knows the household's objects in pictures like those it was trained on,

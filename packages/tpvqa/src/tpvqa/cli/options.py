@@ -177,13 +177,18 @@ def _layer(typed: Sequence[tuple[Setting, Any]]) -> Layer:
         if value is None or value == []:
             continue
         if setting.key == ("options",):
-            value = dict(map(_pair, value))
+            value = dict(map(pair, value))
         values[setting.key] = _resolved(value) if setting.file else value
     options = {each.key: each.option for each, _ in typed}
     return Layer(values, {key: options[key] for key in values})
 
 
-def _pair(text: str) -> tuple[str, str]:
+def pair(text: str) -> tuple[str, str]:
+    """Name and value of an --option.
+
+    Raises:
+        TpvqaError: It is not written so.
+    """
     name, equals, value = text.partition("=")
     if not equals or not name.strip():
         raise TpvqaError(f"--option {text!r}: write NAME=VALUE")

@@ -18,6 +18,10 @@ class FactsOnly:
     """It answers questions about facts only, never about whole actions."""
 
 
+class SideBySide:
+    """It may be asked from several threads at once, and gains by that."""
+
+
 class SaidInFull:
     """What its arguments leave open means something else than in logs of before.
 
@@ -49,3 +53,8 @@ def needs_pictures(vlm: object) -> bool:
 def answers_facts_only(vlm: object) -> bool:
     """Whether a VLM, or a class of VLMs, answers nothing about whole actions."""
     return issubclass(class_of(vlm), FactsOnly)
+
+
+def may_be_asked_side_by_side(vlm: object) -> bool:
+    """Whether a VLM, or a class of VLMs, may be asked from several threads at once."""
+    return issubclass(class_of(vlm), SideBySide)

@@ -86,11 +86,13 @@ def cannot_see(questions: Sequence[Question], why: str) -> list[Answer]:
 def picture_fault(frame: Frame) -> str:
     """Why nothing is to be seen in a picture; empty where something is."""
     key = hashlib.blake2b(frame.data, digest_size=16).digest()
-    if key not in _known:
+    fault = _known.get(key)
+    if fault is None:
+        fault = _fault(frame.data)
         if len(_known) >= 10_000:
             _known.clear()
-        _known[key] = _fault(frame.data)
-    return _known[key]
+        _known[key] = fault  # not read again: another thread may clear it
+    return fault
 
 
 def _fault(data: bytes) -> str:

@@ -1,0 +1,218 @@
+"""The bodies of requests and replies, as OpenAI's chat completions have them."""
+
+import re
+import time
+import uuid
+from collections.abc import Iterator
+from dataclasses import dataclass
+from random import Random
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, Field, TypeAdapter, ValidationError
+
+from tpvqa.serving.refusal import Refusal
+from tpvqa.serving.spoken import NO, YES, Spoken
+
+MOST_CHOICES = 16
+
+
+class _ImageURL(BaseModel):
+    url: str
+
+
+class _ImagePart(BaseModel):
+    type: Literal["image_url"]
+    image_url: _ImageURL
+
+
+class _TextPart(BaseModel):
+    type: Literal["text"]
+    text: str
+
+
+_Part = Annotated[_ImagePart | _TextPart, Field(discriminator="type")]
+_Content = TypeAdapter[list[_ImagePart | _TextPart]](list[_Part])
+
+
+class _Message(BaseModel):
+    role: str
+    content: Any = None
+
+
+class _StreamOptions(BaseModel):
+    include_usage: bool | None = None
+
+
+class _Format(BaseModel):
+    type: str
+
+
+class _Request(BaseModel):
+    """What of a request is read; what else a client says is let pass."""
+
+    model: str
+    messages: list[_Message] = Field(min_length=1)
+    logprobs: bool | None = None
+    top_logprobs: int | None = Field(None, ge=0, le=20)
+    max_tokens: int | None = Field(None, ge=1)
+    max_completion_tokens: int | None = Field(None, ge=1)
+    n: int | None = Field(None, ge=1, le=MOST_CHOICES)
+    temperature: float | None = Field(None, ge=0, le=2)
+    seed: int | None = None
+    stream: bool | None = None
+    stream_options: _StreamOptions | None = None
+    response_format: _Format | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Asking:
+    """What a request asks.
+
+    Attributes:
+        model: Of whom.
+        text: The words of the last message.
+        urls: The addresses of its pictures.
+        top: Alternatives to list of each token; None where no probabilities are wanted.
+        choices: How many replies.
+        temperature: 0 where none is given: the surest word.
+        seed: Makes draws the same again.
+        stream: Whether the reply is wanted as a stream of events.
+        usage: Whether that stream is to end with what was used.
+    """
+
+    model: str
+    text: str
+    urls: tuple[str, ...]
+    top: int | None
+    choices: int
+    temperature: float
+    seed: int | None
+    stream: bool
+    usage: bool
+
+
+def read_request(body: bytes) -> Asking:
+    """Read the body of a request. Only the last message is read: it holds question and pictures.
+
+    Raises:
+        Refusal: It is no such request, or asks for what is not to be had.
+    """
+    try:
+        request = _Request.model_validate_json(body)
+    except ValidationError as error:
+        raise _refusal(error, "") from None
+    if request.top_logprobs is not None and not request.logprobs:
+        raise Refusal(400, "top_logprobs needs logprobs: true.", param="top_logprobs")
+    if request.response_format is not None and request.response_format.type != "text":
+        raise Refusal(
+            400,
+            "A reply is one word; response_format can be 'text' alone. Leave it out.",
+            param="response_format",
+            code="unsupported_value",
+        )
+    last = request.messages[-1]
+    place = f"messages.{len(request.messages) - 1}"
+    if last.role != "user":
+        raise Refusal(
+            400, f"The last message is the {last.role}'s; it has to be the user's.", param=place
+        )
+    if isinstance(last.content, str):
+        texts, urls = [last.content], []
+    else:
+        try:
+            parts = _Content.validate_python(last.content)
+        except ValidationError as error:
+            raise _refusal(error, f"{place}.content") from None
+        texts = [part.text for part in parts if isinstance(part, _TextPart)]
+        urls = [part.image_url.url for part in parts if isinstance(part, _ImagePart)]
+    options = request.stream_options
+    return Asking(
+        model=request.model,
+        text="\n".join(texts),
+        urls=tuple(urls),
+        top=(request.top_logprobs or 0) if request.logprobs else None,
+        choices=request.n or 1,
+        temperature=request.temperature or 0.0,
+        seed=request.seed,
+        stream=bool(request.stream),
+        usage=bool(options and options.include_usage),
+    )
+
+
+def _refusal(error: ValidationError, place: str) -> Refusal:
+    first = error.errors(include_url=False, include_input=False)[0]
+    param = ".".join(part for part in (place, *map(str, first["loc"])) if part)
+    message = re.sub(r"\s+", " ", first["msg"])
+    if not param:
+        return Refusal(400, f"The body is no request in JSON: {message}.")
+    return Refusal(400, f"{param}: {message}.", param=param)
+
+
+class Reply:
+    """What is replied to a request.
+
+    Args:
+        asking: What was asked.
+        question: The question in it.
+        said: What the VLM says.
+        random: Draws, where a temperature is given.
+    """
+
+    def __init__(self, asking: Asking, question: str, said: Spoken, random: Random):
+        self._asking, self._said = asking, said
+        self._words = [said.sampled(asking.temperature, random) for _ in range(asking.choices)]
+        self._prompt_words = len(question.split())
+        self._id = f"chatcmpl-{uuid.uuid4().hex}"
+        self._created = int(time.time())
+
+    @property
+    def body(self) -> dict[str, Any]:
+        """The reply in one piece."""
+        choices = [
+            {
+                "index": index,
+                "message": {"role": "assistant", **self._spoken(word)},
+                "logprobs": self._logprobs(word),
+                "finish_reason": "stop",
+            }
+            for index, word in enumerate(self._words)
+        ]
+        return {**self._head("chat.completion"), "choices": choices, "usage": self._usage}
+
+    def events(self) -> Iterator[dict[str, Any]]:
+        """The reply as a stream."""
+        head = self._head("chat.completion.chunk")
+        if self._asking.usage:
+            head["usage"] = None
+        for index, word in enumerate(self._words):
+            delta = {"role": "assistant", **self._spoken(word)}
+            more = {"logprobs": self._logprobs(word), "finish_reason": None}
+            yield {**head, "choices": [{"index": index, "delta": delta, **more}]}
+            end = {"index": index, "delta": {}, "logprobs": None, "finish_reason": "stop"}
+            yield {**head, "choices": [end]}
+        if self._asking.usage:
+            yield {**head, "choices": [], "usage": self._usage}
+
+    def _head(self, kind: str) -> dict[str, Any]:
+        return {
+            "id": self._id,
+            "object": kind,
+            "created": self._created,
+            "model": self._asking.model,
+        }
+
+    def _spoken(self, word: str) -> dict[str, Any]:
+        return {"content": word, "refusal": None if word in (YES, NO) else self._said.why or None}
+
+    def _logprobs(self, word: str) -> dict[str, Any] | None:
+        return None if self._asking.top is None else self._said.logprobs(word, self._asking.top)
+
+    @property
+    def _usage(self) -> dict[str, int]:
+        """In words, which are the tokens here; pictures are not counted."""
+        asked, said = self._prompt_words, len(self._words)
+        return {
+            "prompt_tokens": asked,
+            "completion_tokens": said,
+            "total_tokens": asked + said,
+        }
