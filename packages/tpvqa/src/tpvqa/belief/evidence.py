@@ -158,6 +158,8 @@ class Evidence:
         self._acted += 1
         for last in self._last.values():
             last.pictures.clear()
+            if self._acted - last.acted == REMEMBERED + 1:  # forgotten: it need not be kept
+                last.heard = {last.view: Heard()}
         self._opened.clear()
         self._silent.clear()
 
