@@ -47,21 +47,23 @@ class Phrases:
 
     Args:
         things: The things.
+        plain: Whether to do without attributes: for single lines in a file that has others.
 
     Attributes:
         wanted: The attributes that what was said so far relies on: the, place, Is, Has, Does.
         places: The objects whose place was spoken of.
     """
 
-    def __init__(self, things: Things):
+    def __init__(self, things: Things, *, plain: bool = False):
         self.things = things
+        self._plain = plain
         self.wanted: set[str] = set()
         self.places: set[str] = set()
 
     def noun(self, parameter: str, objects: tuple[str, ...]) -> Noun:
         """A parameter as a noun: with "the", unless its objects are called crate 2."""
         articles = {self.things.label(obj).article for obj in objects} or {True}
-        if articles == {True}:
+        if self._plain or articles == {True}:
             return Noun(f"the {{{parameter}}}", objects, parameter)
         self.wanted.add("the")
         return Noun(f"{{{parameter}.the}}", objects, parameter)
@@ -74,6 +76,8 @@ class Phrases:
             written: The preposition that the domain's author used.
         """
         ways = {self.things.place_of(obj) for obj in noun.objects} or {"at"}
+        if self._plain and len(ways) > 1:
+            return f"{written or 'at'} {noun.said}"
         known = all(map(self.things.holds_things, noun.objects)) and bool(noun.objects)
         if written == "on" and known and ways == {"in"}:
             return f"on {noun.said}"
@@ -99,7 +103,11 @@ class Phrases:
         word = clause.auxiliary.capitalize()
         if clause.subject.plural:
             word = {"Is": "Are", "Has": "Have", "Does": "Do"}.get(word, word)
-        elif word != "Can" and any(self.things.label(obj).plural for obj in clause.subject.objects):
+        elif (
+            not self._plain
+            and word != "Can"
+            and any(self.things.label(obj).plural for obj in clause.subject.objects)
+        ):
             self.wanted.add(word)
             word = f"{{{clause.subject.parameter}.{word}}}"
         return " ".join(f"{word} {clause.subject.said} {clause.rest}".split()) + "?"

@@ -1,7 +1,8 @@
 """A questions file to edit, with what to look at in it."""
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 from tpvqa.drafting.actions import Actions
 from tpvqa.drafting.clauses import Phrases
@@ -21,6 +22,31 @@ _HEAD = """\
 # - What no picture can show belongs under never_asked.
 # `tpvqa questions` prints what comes of this file, `tpvqa check` what does not fit.
 """
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """Words for single lines of a questions file.
+
+    Attributes:
+        questions: A question about each predicate that changes.
+        actions: Each action as a command, and once it is done.
+    """
+
+    questions: Mapping[str, str]
+    actions: Mapping[str, tuple[str, str]]
+
+
+def words(task: Task) -> Words:
+    """Words that rely on no attribute of objects: to be put into a file that is there."""
+    phrases = Phrases(Things(task), plain=True)
+    facts, actions = Facts(phrases), Actions(phrases)
+    asked = (n for n in task.predicates if n in task.fluents | task.derived)
+    spoken = {schema.name: actions.said(schema) for schema in task.schemas}
+    return Words(
+        {name: facts.said(name).wordings[0] for name in asked},
+        {name: (each.say, each.done) for name, each in spoken.items()},
+    )
 
 
 def draft(task: Task) -> str:

@@ -2,6 +2,7 @@
 
 import re
 from enum import Enum, auto
+from functools import cache
 
 from tpvqa.drafting.lexicon import (
     INTRANSITIVE,
@@ -13,8 +14,9 @@ from tpvqa.drafting.lexicon import (
 )
 
 _VERBS = REGULAR | STATES | STATIVE | POSTURES | INTRANSITIVE | set(IRREGULAR)
-_OF_PARTICIPLES = {participle: base for base, (_, participle) in IRREGULAR.items()}
-_OF_PAST = {past: base for base, (past, _) in IRREGULAR.items()}
+
+NOUNS = ("saw", "ground", "lay")
+"""What reads as another word before it reads as a participle."""
 
 
 class Form(Enum):
@@ -38,35 +40,28 @@ def verb_form(word: str) -> tuple[str, Form] | None:
     ('carry', <Form.THIRD: 2>)
     >>> verb_form("table")
     """
-    if word in _OF_PARTICIPLES:
-        return _OF_PARTICIPLES[word], Form.PARTICIPLE
-    if word in _VERBS:
-        return word, Form.BASE
-    if word in _OF_PAST:
-        return _OF_PAST[word], Form.PARTICIPLE
-    for ending, form in (("ing", Form.ING), ("ed", Form.PARTICIPLE), ("s", Form.THIRD)):
-        if word.endswith(ending) and len(word) > len(ending) + 2:
-            known = [base for base in _bases(word, ending) if base in _VERBS]
-            if known:
-                return known[0], form
-            if ending == "ed" or (ending == "ing" and len(word) > 6):
-                return _bases(word, ending)[0], form
+    if word in _known_forms():
+        return _known_forms()[word]
+    for ending, form in (("ing", Form.ING), ("ed", Form.PARTICIPLE)):
+        if word.endswith(ending) and len(word) > len(ending) + 3:
+            return word[: -len(ending)], form
     return None
 
 
-def _bases(word: str, ending: str) -> list[str]:
-    stem = word[: -len(ending)]
-    found = [stem]
-    if ending == "s":
-        found = [stem, *([stem[:-1]] if stem.endswith("e") else [])]
-        return [*found, stem[:-2] + "y"] if stem.endswith("ie") else found
-    if len(stem) > 2 and stem[-1] == stem[-2] and stem[-1] not in "sl":
-        found.insert(0, stem[:-1])
-    if stem.endswith("i") and ending == "ed":
-        found.insert(0, stem[:-1] + "y")
-    found.append(stem + "e")
-    if len(stem) > 2 and stem[-1] == stem[-2]:
-        found.append(stem[:-1])
+@cache
+def _known_forms() -> dict[str, tuple[str, Form]]:
+    """The forms of the verbs of the lexicon; a word that is several is the first of these."""
+    found: dict[str, tuple[str, Form]] = {}
+    for form, made in (
+        (Form.PARTICIPLE, participle),
+        (Form.BASE, str),
+        (Form.PARTICIPLE, past),
+        (Form.ING, ing),
+        (Form.THIRD, third),
+    ):
+        for base in sorted(_VERBS):
+            if not (form is Form.PARTICIPLE and made(base) in NOUNS):
+                found.setdefault(made(base), (base, form))
     return found
 
 

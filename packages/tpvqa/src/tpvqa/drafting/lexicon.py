@@ -27,6 +27,10 @@ PEOPLE = word_set(
 )
 """Agents that are made to do something: have driver 1 walk."""
 HANDS = word_set("arm claw effector gripper hand hands jaws manipulator fingers")
+PERSONS = word_set("person human patient man woman child customer guest employee resident")
+"""Who has a name of their own."""
+COLOURS = word_set("color colour paint")
+"""What a thing is painted, without an article."""
 PARTS_OF_ROBOTS = HANDS | {"flange", "wrist", "battery", "camera"}
 
 INSIDE = word_set(

@@ -54,15 +54,15 @@ def _done(
             yield Clause("has", first, f"been {said} by {rest[0].said}")
             return
         if things.act(rest[0].objects) and base in ("hold", "carry", "grasp", "lift", "grip"):
-            joint = "in" if things.hold(rest[0].objects) else "by"
-            yield Clause("is", first, f"{said} {joint} {rest[0].said}")
+            held = "in" if things.hold(rest[0].objects) else "by"
+            yield Clause("is", first, f"{said} {held} {rest[0].said}")
             yield Clause("is", rest[0], f"{ing(base)} {first.said}")
             return
         if rest[0].parameter in ("from", "to", "with", "by", "into"):
             tail = " ".join(others(rest))
             yield Clause("has", first, f"been {said} {extra} {tail}".replace("  ", " "))
             return
-        if things.nouns(rest[0].objects) & {"color", "colour", "paint"} and not extra:
+        if things.nouns(rest[0].objects) & lexicon.COLOURS and not extra:
             yield Clause("is", first, f"{said} {{{rest[0].parameter}}}")
             yield Clause("has", first, f"been {said} {{{rest[0].parameter}}}")
             return

@@ -8,9 +8,11 @@ from functools import cached_property
 
 from tpvqa.drafting.lexicon import (
     AGENTS,
+    COLOURS,
     GENERIC,
     HANDS,
     INSIDE,
+    PERSONS,
     PLACES,
     PLURAL_EXCEPTIONS,
     SIDES,
@@ -124,6 +126,10 @@ class Things:
             return Label(f"{kind} {obj[len(noun) :].upper()}", article=False)
         if any(any(map(str.isdigit, word)) for word in words) or is_number(words[-1]):
             return Label(_enumerated(words, kind, obj), article=False)
+        if noun in PERSONS and raw.isalpha() and raw.lower() not in AGENTS | PERSONS:
+            return Label(raw.capitalize(), article=False)
+        if noun in COLOURS and all(map(str.isalpha, words)):
+            return Label(" ".join(words), article=False)
         if kind and noun not in words and set(words) <= SIDES:
             return Label(f"{' '.join(words)} {kind}")
         others = {*self.task.objects} - {obj}
