@@ -83,7 +83,10 @@ def in_vain(task: Task, given: Wordings, file: Path | None) -> Iterator[Finding]
     for section, patterns in (("never_asked", given.never_asked), ("in_doubt", given.in_doubt)):
         for pattern in patterns:
             fact = pattern.fact
-            if pattern.actions or any(fact.match(a, {}, task) is not None for a in known):
+            idle = fact.predicate not in task.fluents | task.derived  # its reason may be that
+            if pattern.actions or (idle and section == "never_asked"):
+                continue
+            if any(fact.match(a, {}, task) is not None for a in known):
                 continue
             yield Finding(
                 "pattern-matches-nothing",

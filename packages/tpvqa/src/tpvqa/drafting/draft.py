@@ -183,8 +183,16 @@ def _entries(task: Task, things: Things, said: dict[str, Said]) -> Iterable[tupl
         words = things.words(name)
         if each.opposite in said:
             yield _form(task, name), f"it is asked as {each.opposite}, which is its opposite"
-        elif len(words) > 1 and words[-1] in _FELT and words[0] in HANDS:
+        elif words[-1] in _FELT and words[0] in HANDS and _follows(task, name):
             yield _form(task, name), "what is held is asked about the things; a gripper may feel it"
+
+
+def _follows(task: Task, predicate: str) -> bool:
+    """Whether its facts follow from others: of a group with them exactly one holds."""
+    return any(
+        group.exactly_one and {predicate} < {atom.predicate for atom in group.atoms}
+        for group in task.mutex_groups
+    )
 
 
 def _form(task: Task, predicate: str) -> str:
