@@ -16,7 +16,7 @@ from tpvqa.questions import QuestionBook
 
 ROOT = Path(__file__).parents[2]
 TASKS = [
-    *((folder / "domain.pddl", folder / "problem.pddl") for folder in ROOT.glob("examples/*")
+    *((folder / "domain.pddl", folder / "problem.pddl") for folder in ROOT.glob("examples/**/")
       if (folder / "domain.pddl").exists()),
     (ROOT / "tests/fixtures/toys/domain.pddl", ROOT / "tests/fixtures/toys/collect.pddl"),
     (ROOT / "tests/fixtures/ward/domain.pddl", ROOT / "tests/fixtures/ward/problem.pddl"),

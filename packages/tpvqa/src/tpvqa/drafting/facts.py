@@ -59,7 +59,9 @@ class Facts:
             wordings.append(affirmed)
         missing = [n.said for n in nouns if f"{{{n.parameter}" not in wordings[0]]
         unsure = unsure or (bool(missing) and not self._leaves_out(nouns, wordings[0]))
-        unsure = unsure or clauses[0].subject.said in ("it", "anything") and words[0] not in _WEATHER
+        unsure = unsure or (
+            clauses[0].subject.said in ("it", "anything") and words[0] not in _WEATHER
+        )
         return Said(tuple(wordings[:3]), unsure, self._opposite(predicate) if denied else None)
 
     def _leaves_out(self, nouns: list[Noun], wording: str) -> bool:
