@@ -162,7 +162,7 @@ def test_the_labelled_pictures_show_every_state_that_can_be_seen(project: Path) 
         frozenset(atom for atom in state if atom.predicate not in HIDDEN)
         for state in states(task, load_world_file(project / "world.yaml", task))
     }
-    shown = {each.true_state for each in load_set(project / "pictures").pictures}
+    shown = {each.true_state for each in load_set(project / "pictures").manifest.pictures}
     assert shown == wanted
 
 

@@ -20,6 +20,8 @@ _TAKING = word_set("pick take fetch collect get grab")
 _DIRECT = word_set("board enter leave exit cross reach visit")
 """Verbs whose direct object is where somebody goes, or comes from."""
 _WAYS = word_set("up down left right forward forwards backward backwards north south east west")
+_UNSAID = word_set("first second third half not")
+"""Words of names that are left out, and may be what matters."""
 _SEEKING = word_set("find search seek look detect")
 
 
@@ -70,7 +72,7 @@ class Actions:
         if verb == "pick" and not tail.startswith("up"):
             tail = f"up {tail}"
         perfect = participle(verb) if is_verb(verb) else past(verb)
-        unsure = tail.count("with ") > 1 or not is_verb(verb)
+        unsure = tail.count("with ") > 1 or not is_verb(verb) or _UNSAID & set(rest) != set()
         if doer is None:
             return Spoken(f"{verb} {tail}".strip(), f"{perfect} {tail}".strip(), unsure)
         said = f"have {doer.said} {verb} {tail}".strip()

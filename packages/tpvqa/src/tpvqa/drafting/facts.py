@@ -62,6 +62,8 @@ class Facts:
         unsure = unsure or (
             clauses[0].subject.said in ("it", "anything") and words[0] not in _WEATHER
         )
+        guessed = bool(nouns) and " of " in clauses[0].subject.said and len(words) > 1
+        unsure = unsure or (guessed and words[0] not in ADJECTIVES and _is_done(words[0]))
         return Said(tuple(wordings[:3]), unsure, self._opposite(predicate) if denied else None)
 
     def _leaves_out(self, nouns: list[Noun], wording: str) -> bool:
@@ -358,6 +360,11 @@ class Facts:
             else:
                 said.append(f"with {noun.said}")
         return said
+
+
+def _is_done(word: str) -> bool:
+    form = verb_form(word)
+    return form is not None and form[1] is Form.PARTICIPLE
 
 
 def _is_ing(word: str) -> bool:

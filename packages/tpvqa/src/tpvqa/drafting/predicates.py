@@ -278,7 +278,7 @@ def _adjective(
         yield Clause("does", first, "stand open")
     elif not rest and state in ELSE:
         yield Clause("is", first, ELSE[state])
-    elif not rest:
+    elif not rest and state not in PARTICLES:
         yield Clause("does", first, f"look {said}")
 
 
