@@ -72,7 +72,11 @@ class Actions:
         if verb == "pick" and not tail.startswith("up"):
             tail = f"up {tail}"
         perfect = participle(verb) if is_verb(verb) else past(verb)
-        unsure = tail.count("with ") > 1 or not is_verb(verb) or _UNSAID & set(rest) != set()
+        unsure = (
+            tail.count("with ") > 1
+            or not is_verb(verb)
+            or bool(_UNSAID & set(rest) - set(tail.split()))
+        )
         if doer is None:
             return Spoken(f"{verb} {tail}".strip(), f"{perfect} {tail}".strip(), unsure)
         said = f"have {doer.said} {verb} {tail}".strip()
