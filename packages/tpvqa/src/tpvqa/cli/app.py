@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tpvqa.cli import bench, calibrate, label, plan, questions, risk, run, serve_vlm
+from tpvqa.cli import bench, calibrate, check, label, plan, questions, risk, run, serve_vlm
 from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.cli.saying import tell
 from tpvqa.errors import TpvqaError, WriteError, cut
@@ -64,6 +64,7 @@ def _options(
 
 plan.register(app)
 questions.register(app)
+check.register(app)
 run.register(app)
 label.register(app)
 calibrate.register(app)

@@ -135,6 +135,7 @@ def task_config(
     domain: Path | None,
     problem: Path | None,
     questions: Path | None = None,
+    world_file: Path | None = None,
 ) -> tuple[TaskConfig, list[str]]:
     """The task that a command names, by arguments and options as `tpvqa run` takes them.
 
@@ -144,11 +145,16 @@ def task_config(
     Raises:
         TpvqaError: None is named, or one in two ways.
     """
-    named = {"domain": domain, "problem": problem, "questions": questions}
+    named = {
+        "domain": domain,
+        "problem": problem,
+        "questions": questions,
+        "world_file": world_file,
+    }
     values: dict[Key, Any] = {
         ("task", name): _resolved(path) for name, path in named.items() if path is not None
     }
-    places = {key: f"--{key[1]}" for key in values}
+    places = {key: f"--{key[1].replace('_', '-')}" for key in values}
     layers = trial_layers([Layer(values, places)], task, problem_after)
     found = combined(layers).task
     if found.name is None and (found.domain is None or found.problem is None):

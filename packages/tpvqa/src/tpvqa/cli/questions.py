@@ -57,14 +57,30 @@ def questions(
         Literal["usual", "paper"],
         typer.Option(help="How whole actions are asked about: paper is without articles."),
     ] = "usual",
+    drafted: Annotated[
+        bool,
+        typer.Option(
+            "--draft",
+            help="Write a questions file to edit, drafted from the names in the PDDL, instead: "
+            "questions.yaml beside the problem, or --questions.",
+        ),
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="With --draft: write over a file that is there.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Print every question of a task's plan, action by action, for each way of asking."""
+    from tpvqa.cli.drafting import write_draft
     from tpvqa.errors import GroundingTimedOut
     from tpvqa.planning import Crashed, Plan, TimedOut, Unsolvable
     from tpvqa.planning.making import make_planner
 
     try:
+        if drafted:
+            wanted, _ = task_config(task, problem_file, domain, problem)
+            write_draft(wanted, questions_file, timeout=timeout, force=force, as_json=as_json)
+            return
         wanted, notes = task_config(task, problem_file, domain, problem, questions_file)
         loaded, book = _load(wanted, timeout)
     except GroundingTimedOut as error:

@@ -1,9 +1,10 @@
 """The questions file: reading it, and seeing that it fits the domain."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, TypeVar
 
 from tpvqa.errors import PDDLError, QuestionsError, suggestion
 from tpvqa.pddl import Task
@@ -23,6 +24,7 @@ Wording: TypeAlias = Literal["usual", "paper"]
 """How an action is said in questions about it as a whole: "wash the plate", or without articles as
 in the paper, "wash plate"."""
 
+T = TypeVar("T")
 _OWN_ATTRIBUTES = ("name", "article")  # that every object has
 
 
@@ -70,8 +72,14 @@ def parameters_of(task: Task) -> tuple[Mapping[str, list[str]], Mapping[str, lis
     return predicates, actions
 
 
-def read_wordings(path: Path, task: Task) -> Wordings:
+def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None = None) -> Wordings:
     """Read a questions file.
+
+    Args:
+        path: The file.
+        task: The task that it is about.
+        wrong: Where given, what is wrong with single entries is put into it, and the entries are
+            left out: for who wants to know all that is wrong.
 
     Raises:
         QuestionsError: It cannot be read, or does not fit the domain; with file and line.
@@ -85,38 +93,70 @@ def read_wordings(path: Path, task: Task) -> Wordings:
     predicates, actions = parameters_of(task)
     attributes = _attributes(sections.get("attributes"), [], of_objects=True)
     known = [*_OWN_ATTRIBUTES, *attributes]
-    say: dict[str, Template] = {}
-    done: dict[str, Template] = {}
-    for name, value in _named(sections.get("actions"), actions, "action"):
-        parts = value.sections("say", "done")
-        for target, key in ((say, "say"), (done, "done")):
-            if key in parts:
-                target[name] = _template(parts[key], actions[name], known)
+    kept = _Kept(wrong)
+
+    def named(
+        section: str, names: Collection[str], kind: str, read: Callable[[str, Place], T]
+    ) -> dict[str, T]:
+        """The entries of a section whose keys are names of the domain."""
+        found: dict[str, T] = {}
+        for name, key, value in _entries(sections.get(section)):
+            with kept:
+                _check_name(name, key, names, kind)
+                found[name] = read(name, value)
+        return found
+
+    def patterns(section: str, read: Callable[[Place, Task], T]) -> list[T]:
+        found: list[T] = []
+        for item in _items(sections.get(section)):
+            with kept:
+                found.append(read(item, task))
+        return found
+
+    said = named("actions", actions, "action", lambda name, it: _said(it, actions[name], known))
     of_objects, notices = {}, []
     for name, place, value in _entries(sections.get("objects")):
         if name in task.objects:
-            of_objects[name] = _own(value, known)
+            with kept:
+                of_objects[name] = _own(value, known)
         else:
             near = suggestion(name, task.objects)
             notices.append(f"{place.file}:{place.line}: this problem has no object {name!r}{near}")
     return Wordings(
-        predicates={
-            name: _template(value, predicates[name], known)
-            for name, value in _named(sections.get("predicates"), predicates, "predicate")
-        },
-        say=say,
-        done=done,
+        predicates=named(
+            "predicates",
+            predicates,
+            "predicate",
+            lambda name, it: _template(it, predicates[name], known),
+        ),
+        say={name: parts["say"] for name, parts in said.items() if "say" in parts},
+        done={name: parts["done"] for name, parts in said.items() if "done" in parts},
         attributes=attributes,
-        of_types={
-            name: _own(value, known)
-            for name, value in _named(sections.get("types"), task.types, "type")
-        },
+        of_types=named("types", task.types, "type", lambda _, it: _own(it, known)),
         of_objects=of_objects,
-        never_asked=[_never_asked(item, task) for item in _items(sections.get("never_asked"))],
-        in_doubt=[_pattern(item, task) for item in _items(sections.get("in_doubt"))],
+        never_asked=patterns("never_asked", _never_asked),
+        in_doubt=patterns("in_doubt", _pattern),
         ways=_ways(sections.get("ways")),
         notices=notices,
     )
+
+
+class _Kept(AbstractContextManager[None]):
+    """Keeps what is wrong with an entry, or lets it be raised where nobody collects it."""
+
+    def __init__(self, wrong: list[QuestionsError] | None):
+        self._wrong = wrong
+
+    def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> bool:
+        if self._wrong is None or not isinstance(error, QuestionsError):
+            return False
+        self._wrong.append(error)
+        return True
+
+
+def _said(place: Place, parameters: Sequence[str], known: Sequence[str]) -> dict[str, Template]:
+    parts = place.sections("say", "done")
+    return {key: _template(part, parameters, known) for key, part in parts.items()}
 
 
 def _entries(place: Place | None) -> list[tuple[str, Place, Place]]:
@@ -127,12 +167,9 @@ def _items(place: Place | None) -> list[Place]:
     return [] if place is None else list(place.items())
 
 
-def _named(place: Place | None, known: Collection[str], kind: str) -> Iterable[tuple[str, Place]]:
-    """The entries of a section whose keys are names of the domain."""
-    for name, key, value in _entries(place):
-        if name not in known:
-            raise key.wrong(f"the domain has no {kind} {name!r}{suggestion(name, known)}")
-        yield name, value
+def _check_name(name: str, key: Place, known: Collection[str], kind: str) -> None:
+    if name not in known:
+        raise key.wrong(f"the domain has no {kind} {name!r}{suggestion(name, known)}")
 
 
 def _template(place: Place, parameters: Sequence[str], attributes: Sequence[str]) -> Template:

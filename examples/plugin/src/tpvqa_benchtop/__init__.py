@@ -1,0 +1,1 @@
+"""A plug-in for tpvqa: a VLM, a world, a planner and a monitor."""

@@ -1,0 +1,5 @@
+(define (problem morning)
+  (:domain greenhouse)
+  (:objects fern cactus - plant)
+  (:init (dry fern) (dry cactus) (empty) (dark))
+  (:goal (and (moist fern) (moist cactus) (lit))))

@@ -1,0 +1,5 @@
+(define (problem two_parts)
+  (:domain sorting)
+  (:objects red_cube blue_disc - part in_tray left_tray right_tray - tray)
+  (:init (gripper_empty) (lies red_cube in_tray) (lies blue_disc in_tray))
+  (:goal (and (lies red_cube left_tray) (lies blue_disc right_tray))))

@@ -1,0 +1,93 @@
+"""All that is wrong with a domain, a problem, its questions and its world file."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from tpvqa.checking import possible, wordings, world
+from tpvqa.checking.finding import Finding, Severity, of_error
+from tpvqa.checking.seeing import Telling
+from tpvqa.drafting import words
+from tpvqa.errors import PDDLError, QuestionsError, WorldFileError
+from tpvqa.pddl import Task, load_task
+from tpvqa.planning import Planner
+from tpvqa.questions import QuestionBook
+from tpvqa.questions.wordings import Wordings, read_wordings
+from tpvqa.tasks import QUESTIONS, WORLD
+from tpvqa.worlds.world_file import WorldRules, load_world_file
+
+
+def check(
+    domain: Path,
+    problem: Path,
+    *,
+    questions: Path | None,
+    world_file: Path | None,
+    planner: Planner,
+    timeout: float = 60.0,
+) -> list[Finding]:
+    """Find what does not fit, errors first.
+
+    Args:
+        domain: The domain.
+        problem: The problem.
+        questions: The questions file; None for none.
+        world_file: The world file; None for none.
+        planner: Says whether the goal can be reached.
+        timeout: Seconds for grounding, and for planning.
+
+    Raises:
+        GroundingTimedOut: Grounding took too long.
+        PlannerError: Grounding failed.
+        PDDLError: The domain or the problem is no file that can be read.
+    """
+    try:
+        task = load_task(domain, problem, timeout=timeout)
+    except PDDLError as error:
+        if not (domain.is_file() and problem.is_file()):
+            raise
+        return [of_error("pddl", error)]
+    found = list(_findings(task, questions, world_file, planner, timeout))
+    order = list(Severity)
+    return sorted(found, key=lambda each: order.index(each.severity))
+
+
+def _findings(
+    task: Task, questions: Path | None, world_file: Path | None, planner: Planner, timeout: float
+) -> Iterator[Finding]:
+    into = str(questions) if questions is not None else QUESTIONS
+    given, wrong = Wordings(), list[QuestionsError]()
+    try:
+        if questions is not None:
+            given = read_wordings(questions, task, wrong=wrong)
+    except QuestionsError as error:
+        wrong.append(error)
+    yield from (of_error("questions", error) for error in wrong)
+    rules = WorldRules()
+    try:
+        rules = load_world_file(world_file, task)
+    except WorldFileError as error:
+        yield of_error("world", error)
+    rules_into = str(world_file) if world_file is not None else WORLD
+    yield from possible.of_goal(task, planner, timeout)
+    yield from possible.of_actions(task, _undone(rules))
+    yield from possible.of_predicates(task)
+    yield from wordings.in_vain(task, given, questions)
+    if questions is None:
+        yield Finding(
+            "no-questions",
+            Severity.WARNING,
+            "there is no questions file, so that all is asked in words made of the names",
+            "`tpvqa questions --draft` writes one to edit.",
+        )
+    elif not wrong:
+        yield from wordings.without_words(task, given, words(task), into)
+    book = QuestionBook(task, given)
+    yield from wordings.alike(task, book, questions)
+    yield from Telling(task, book, rules, into=rules_into, questions=into).findings()
+    yield from world.of_rules(task, rules, world_file)
+    yield from world.not_taken(task, rules, rules_into)
+
+
+def _undone(rules: WorldRules) -> frozenset[str]:
+    """The predicates of what a disturbance can bring about."""
+    return frozenset(p.predicate for rule in rules.undo for o in rule.outcomes for p in o.add)

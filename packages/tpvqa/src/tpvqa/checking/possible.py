@@ -1,0 +1,205 @@
+"""What can never be: actions without a way to their preconditions, goals out of reach."""
+
+from collections.abc import Iterator, Mapping
+from itertools import combinations
+
+from tpvqa.belief.mutexes import Mutexes, h2_mutexes
+from tpvqa.checking.finding import Finding, Severity, named
+from tpvqa.checking.places import line_of_action, line_of_goal, line_of_predicate
+from tpvqa.pddl import Action, Atom, Conjunction, Literal, Task, literals
+from tpvqa.pddl.conditions import Condition
+from tpvqa.pddl.schema import ActionSchema, ConditionSchema, Junction, LiteralSchema, Quantified
+from tpvqa.planning import Plan, Planner, TimedOut, Unsolvable
+from tpvqa.planning.obstacles import obstacle
+
+
+def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Finding]:
+    """Actions that can never be done, with what keeps them from it.
+
+    Args:
+        task: The task.
+        undone: The predicates of facts that disturbances bring about: what needs them may come to
+            be possible.
+    """
+    if task.left_out:
+        return  # what is left out may make them possible
+    reached = {words[0] for words in task.reachable_actions}
+    proved = h2_mutexes(task)
+    by_name: dict[str, list[Action]] = {}
+    for action in task.ground_actions():
+        by_name.setdefault(action.name, []).append(action)
+    for schema in task.schemas:
+        why = ""
+        if undone & set(_predicates(schema.precondition)):
+            continue
+        if schema.name not in reached:
+            why = _never(task, schema)
+        elif all(_excluded(action, proved) for action in by_name[schema.name]):
+            why = _excluded(by_name[schema.name][0], proved)
+        if why:
+            yield Finding(
+                "action-never-possible",
+                Severity.WARNING,
+                f"the action {schema.name} can never be done in this problem: {why}",
+                "Mend its precondition or the initial state; if other problems need it, leave it.",
+                named(task.domain_path),
+                line_of_action(task, schema.name),
+            )
+
+
+def _never(task: Task, schema: ActionSchema) -> str:
+    """Why no ground action of a schema is reachable."""
+    for parameter in schema.parameters:
+        if not task.objects_by_type.get(parameter.type):
+            return f"there is no object of the type {parameter.type} for {parameter.name}"
+    possible = task.reachable_atoms | task.init
+    for literal in _needed(schema.precondition):
+        if literal.predicate == "=" or not literal.positive:
+            continue
+        kinds = {p.name: p.type for p in schema.parameters}
+        fitting = any(
+            atom.predicate == literal.predicate
+            and all(
+                argument == word if word not in kinds else task.is_a(argument, kinds[word])
+                for word, argument in zip(literal.arguments, atom.arguments, strict=True)
+            )
+            for atom in possible
+        )
+        if not fitting:
+            said = f"({' '.join((literal.predicate, *literal.arguments))})"
+            return f"it needs {said}, which never holds, and nothing brings it about"
+    return "no objects meet its whole precondition, even where nothing is ever undone"
+
+
+def _needed(condition: ConditionSchema) -> Iterator[LiteralSchema]:
+    """The literals that a condition cannot do without."""
+    if isinstance(condition, LiteralSchema):
+        yield condition
+    elif isinstance(condition, Junction) and condition.conjunctive:
+        for part in condition.parts:
+            yield from _needed(part)
+    elif isinstance(condition, Quantified):
+        return
+
+
+def _needs(condition: Condition) -> Iterator[Literal]:
+    if isinstance(condition, Literal):
+        yield condition
+    elif isinstance(condition, Conjunction):
+        for part in condition.parts:
+            yield from _needs(part)
+
+
+def _excluded(action: Action, proved: Mutexes) -> str:
+    """Why a ground action is never possible although each of its preconditions may hold."""
+    atoms = [literal.atom for literal in _needs(action.precondition) if literal.positive]
+    for atom in atoms:
+        if atom in proved.never:
+            return f"it needs {atom.pddl()}, which never holds"
+    for one, other in combinations(atoms, 2):
+        if frozenset((one, other)) in proved.pairs:
+            return f"it needs {one.pddl()} and {other.pddl()}, which never hold together"
+    return ""
+
+
+def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
+    """A goal that cannot be reached, or for which no plan is found in time."""
+    file, line = named(task.problem_path), line_of_goal(task)
+    demanded = [each.atom for each in _needs(task.goal) if each.positive]
+    for one, other in combinations(demanded, 2):
+        if any({one, other} <= group.atoms for group in task.mutex_groups):
+            yield Finding(
+                "goal-unreachable",
+                Severity.ERROR,
+                f"the goal wants {one.pddl()} and {other.pddl()}, which never hold together",
+                "Leave one of them out.",
+                file,
+                line,
+            )
+            return
+    result = planner.plan(task, timeout=timeout)
+    match result:
+        case Plan():
+            return
+        case Unsolvable(reason):
+            why = obstacle(task, task.init) or f"there is no plan: {reason}"
+            yield Finding(
+                "goal-unreachable",
+                Severity.ERROR,
+                why,
+                "Mend the goal, the initial state, or the action that is to bring it about.",
+                file,
+                line,
+            )
+        case TimedOut(limit):
+            yield Finding(
+                "plan-not-found",
+                Severity.WARNING,
+                f"no plan was found in {limit:g} s",
+                "Give it more time with --timeout, or try `tpvqa plan --planner "
+                "fast-downward:lama`.",
+                file,
+                line,
+            )
+        case _:
+            yield Finding(
+                "planner-failed",
+                Severity.ERROR,
+                f"the planner failed: {result.reason}",
+                "Run `tpvqa plan` on the same files.",
+                file,
+                line,
+            )
+
+
+def of_predicates(task: Task) -> Iterator[Finding]:
+    """Predicates that are declared and play no part."""
+    spoken = _spoken_of(task)
+    for name in task.predicates:
+        if name not in spoken:
+            yield Finding(
+                "predicate-unused",
+                Severity.WARNING,
+                f"the predicate {name} stands in no action, in no axiom and not in the goal",
+                "Leave it out, or mend the name where it was meant.",
+                named(task.domain_path),
+                line_of_predicate(task, name),
+            )
+
+
+def _spoken_of(task: Task) -> set[str]:
+    found = {literal.atom.predicate for literal in literals(task.goal)}
+    for axiom in task.axioms:
+        found |= {axiom.predicate, *_predicates(axiom.condition)}
+    for schema in task.schemas:
+        found.update(_predicates(schema.precondition))
+        for effect in schema.effects:
+            found |= {effect.literal.predicate, *_predicates(effect.condition)}
+    return found
+
+
+def _predicates(condition: ConditionSchema) -> Iterator[str]:
+    match condition:
+        case LiteralSchema():
+            yield condition.predicate
+        case Junction():
+            for part in condition.parts:
+                yield from _predicates(part)
+        case Quantified():
+            yield from _predicates(condition.part)
+
+
+def needed_predicates(task: Task) -> Mapping[str, str]:
+    """The predicates that the goal or a precondition rests on, each with who needs it."""
+    found: dict[str, str] = {}
+    for literal in literals(task.goal):
+        found.setdefault(literal.atom.predicate, "the goal")
+    for schema in task.schemas:
+        for predicate in _predicates(schema.precondition):
+            found.setdefault(predicate, f"the action {schema.name}")
+    return found
+
+
+def atoms_of(task: Task, predicate: str) -> list[Atom]:
+    """The atoms of a predicate that may hold."""
+    return sorted(a for a in task.reachable_atoms | task.init if a.predicate == predicate)

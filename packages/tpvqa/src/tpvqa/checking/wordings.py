@@ -1,0 +1,204 @@
+"""Whether the questions fit the domain: facts without words, words in vain, words that coincide."""
+
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+
+from tpvqa.checking.finding import Finding, Severity, named
+from tpvqa.checking.places import (
+    line_of_action,
+    line_of_entry,
+    line_of_object,
+    line_of_predicate,
+)
+from tpvqa.checking.possible import atoms_of
+from tpvqa.drafting import Words
+from tpvqa.pddl import Action, Atom, Literal, Task
+from tpvqa.questions import QuestionBook
+from tpvqa.questions.wordings import Wordings
+
+_LOOKED_AT = 20_000
+"""Ground actions, and atoms, that are put into words to be compared."""
+
+
+def without_words(task: Task, given: Wordings, drafted: Words, into: str) -> Iterator[Finding]:
+    """Facts and actions for which the questions file has no words, with words to paste.
+
+    Args:
+        task: The task.
+        given: The questions file.
+        drafted: A draft of one: what is proposed.
+        into: The questions file's name.
+    """
+    never = {each.fact.predicate for each in given.never_asked if each.everywhere}
+    for name in task.predicates:
+        changes = name in task.fluents | task.derived
+        if changes and name not in given.predicates and name not in never:
+            said = drafted.questions[name]
+            yield Finding(
+                "fact-without-question",
+                Severity.WARNING,
+                f"no question is given for the predicate {name}",
+                "Give it one, or list it under never_asked where no camera shows it.",
+                named(task.domain_path),
+                line_of_predicate(task, name),
+                ("predicates:", f'  {_key(name)}: "{said}"'),
+                into,
+            )
+    for schema in task.schemas:
+        if schema.name not in given.say:
+            say, done = drafted.actions[schema.name]
+            yield Finding(
+                "action-without-words",
+                Severity.NOTE,
+                f"the action {schema.name} has no words",
+                "Give it some: questions about whole actions, and reports, are made of them.",
+                named(task.domain_path),
+                line_of_action(task, schema.name),
+                ("actions:", f'  {_key(schema.name)}: {{say: "{say}", done: "{done}"}}'),
+                into,
+            )
+
+
+def _key(name: str) -> str:
+    return f'"{name}"' if name in ("on", "off", "yes", "no", "true", "false", "null") else name
+
+
+def in_vain(task: Task, given: Wordings, file: Path | None) -> Iterator[Finding]:
+    """Questions that are never asked, and patterns that match nothing."""
+    doubted = {each.fact.predicate for each in given.in_doubt}
+    for name in given.predicates:
+        if name not in task.fluents | task.derived | doubted and not any(
+            atom.predicate == name for atom in task.left_open
+        ):
+            yield Finding(
+                "question-in-vain",
+                Severity.WARNING,
+                f"the question about {name} is never asked, as no action changes it",
+                "Leave it out, or name the fact under in_doubt where it may be wrong.",
+                named(file),
+                line_of_entry(file, "predicates", name),
+            )
+    known = task.reachable_atoms | task.init
+    for section, patterns in (("never_asked", given.never_asked), ("in_doubt", given.in_doubt)):
+        for pattern in patterns:
+            fact = pattern.fact
+            idle = fact.predicate not in task.fluents | task.derived  # its reason may be that
+            if pattern.actions or (idle and section == "never_asked"):
+                continue
+            if any(fact.match(a, {}, task) is not None for a in known):
+                continue
+            yield Finding(
+                "pattern-matches-nothing",
+                Severity.WARNING,
+                f"{fact} under {section} matches no fact that can hold in this problem",
+                "Mend it; if other problems of the domain need it, leave it.",
+                named(file),
+                line_of_entry(file, section, fact.predicate),
+            )
+    for each in given.notices:
+        place, _, says = each.partition(": ")
+        where, _, line = place.rpartition(":")
+        number = int(line) if line.isdigit() else None
+        yield Finding("unknown-object", Severity.NOTE, says, "", where or None, number)
+
+
+def alike(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding]:
+    """Objects, facts and actions that are called the same."""
+    yield from _same_names(task, book)
+    yield from _same_questions(task, book, file)
+    yield from _contradictions(task, book, file)
+    yield from _same_actions(task, book, file)
+
+
+def _same_names(task: Task, book: QuestionBook) -> Iterator[Finding]:
+    names: dict[str, str] = {}
+    for obj in task.objects:
+        other = names.setdefault(book.name(obj).lower(), obj)
+        if other != obj:
+            yield Finding(
+                "same-name",
+                Severity.WARNING,
+                f"{other} and {obj} are both called {book.name(obj)!r}",
+                "Name them under objects by what tells them apart in a picture.",
+                named(task.problem_path),
+                line_of_object(task, obj),
+            )
+
+
+def _same_questions(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding]:
+    texts: dict[str, Atom] = {}
+    told: set[frozenset[str]] = set()
+    changing = task.fluents | task.derived
+    atoms = (a for name in task.predicates if name in changing for a in atoms_of(task, name))
+    for atom in islice(atoms, _LOOKED_AT):
+        if not book.asked(Literal(atom)):
+            continue
+        first = texts.setdefault(book.fact(Literal(atom)).text, atom)
+        pair = frozenset((first.predicate, atom.predicate))
+        if first == atom or pair in told:
+            continue
+        told.add(pair)
+        text = book.fact(Literal(atom)).text
+        one = first.predicate == atom.predicate
+        yield Finding(
+            "same-question",
+            Severity.NOTE if one else Severity.WARNING,
+            f"{first.pddl()} and {atom.pddl()} are asked in the same words: {text!r}",
+            "Yes is then right if either holds; that is well where no picture tells them apart, "
+            "else name in the question what does."
+            if one
+            else "Ask about them in words that differ.",
+            named(file),
+            line_of_entry(file, "predicates", atom.predicate),
+        )
+
+
+def _contradictions(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding]:
+    told = set()
+    for action in islice(task.ground_actions(), _LOOKED_AT):
+        texts: dict[str, Literal] = {}
+        for effect in action.effects:
+            literal = effect.literal
+            if not book.asked(literal, action):
+                continue
+            first = texts.setdefault(book.fact(literal).text, literal)
+            if first.positive != literal.positive and first.atom != literal.atom:
+                if action.name in told:
+                    continue
+                told.add(action.name)
+                yield Finding(
+                    "opposite-answers",
+                    Severity.WARNING,
+                    f"after {action.pddl()} {first} and {literal} are asked in the same words, and "
+                    "expect opposite answers, so that neither is asked",
+                    "Name in the question what tells them apart.",
+                    named(file),
+                    line_of_entry(file, "predicates", literal.atom.predicate),
+                )
+
+
+def _same_actions(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding]:
+    texts: dict[str, Action] = {}
+    told: set[frozenset[str]] = set()
+    for action in islice(task.ground_actions(), _LOOKED_AT):
+        first = texts.setdefault(book.say(action), action)
+        pair = frozenset((first.name, action.name))
+        one = len(pair) == 1
+        if first is action or pair in told or (one and _brings(first) == _brings(action)):
+            continue
+        told.add(pair)
+        yield Finding(
+            "same-words-for-actions",
+            Severity.NOTE if one else Severity.WARNING,
+            f"{first.pddl()} and {action.pddl()} are said in the same words: {book.say(action)!r}",
+            "Whole actions cannot be asked about apart then (possible, successful, did); name in "
+            "`say` what differs, where that can be seen.",
+            named(file),
+            line_of_entry(file, "actions", action.name),
+        )
+
+
+def _brings(action: Action) -> frozenset[Atom]:
+    """What an action makes true."""
+    return frozenset(e.literal.atom for e in action.effects if e.literal.positive)

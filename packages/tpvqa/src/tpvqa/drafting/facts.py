@@ -1,0 +1,388 @@
+"""Predicates put into questions, by what their names are in English."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from tpvqa.drafting import lexicon
+from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases
+from tpvqa.drafting.facts_tables import ROADS, SAME
+from tpvqa.drafting.forms import Form, participle, verb_form
+from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, word_set
+from tpvqa.drafting.predicates import of_noun, of_verb
+from tpvqa.drafting.things import Things
+from tpvqa.questions.template import indefinite_article
+
+_NEGATIONS = ("not", "no", "non")
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """The wordings of a predicate.
+
+    Attributes:
+        wordings: Templates of questions that are answered yes exactly if the fact is true, the
+            one to ask first.
+        unsure: Whether the name does not tell what it means.
+        opposite: The predicate that it denies, where the domain has it.
+    """
+
+    wordings: tuple[str, ...]
+    unsure: bool = False
+    opposite: str | None = None
+
+
+class Facts:
+    """Puts the predicates of a task into questions.
+
+    Args:
+        phrases: Says the task's things.
+    """
+
+    def __init__(self, phrases: Phrases):
+        self._phrases = phrases
+        self._things: Things = phrases.things
+        self._task = phrases.things.task
+
+    def said(self, predicate: str) -> Said:
+        """The wordings of a predicate."""
+        words = self._things.words(predicate)
+        nouns = self._nouns(predicate)
+        denied = words[0] in _NEGATIONS and len(words) > 1
+        clauses = list(self._clauses(words[1:] if denied else words, nouns, predicate))
+        unsure = not clauses
+        if unsure:
+            clauses = [_unknown(words[1:] if denied else words, nouns)]
+        say = self._phrases.denial if denied else self._phrases.question
+        wordings = list(dict.fromkeys(map(say, clauses)))
+        affirmed = self._phrases.affirmation(clauses[0])
+        if len(wordings) == 1 and not denied and not unsure and affirmed:
+            wordings.append(affirmed)
+        missing = [n.said for n in nouns if f"{{{n.parameter}" not in wordings[0]]
+        unsure = unsure or (bool(missing) and not self._leaves_out(nouns, wordings[0]))
+        unsure = unsure or (
+            clauses[0].subject.said in ("it", "anything") and words[0] not in _WEATHER
+        )
+        guessed = bool(nouns) and " of " in clauses[0].subject.said and len(words) > 1
+        unsure = unsure or (guessed and words[0] not in ADJECTIVES and _is_done(words[0]))
+        return Said(tuple(wordings[:3]), unsure, self._opposite(predicate) if denied else None)
+
+    def _leaves_out(self, nouns: list[Noun], wording: str) -> bool:
+        """Whether a wording leaves out only what there is one of."""
+        left = [n for n in nouns if f"{{{n.parameter}" not in wording]
+        return all(len(noun.objects) == 1 for noun in left)
+
+    def _nouns(self, predicate: str) -> list[Noun]:
+        names = [v.lstrip("?") for v in self._task.predicate_variables[predicate]]
+        return [
+            self._phrases.noun(name, self._things.standing(predicate, at))
+            for at, name in enumerate(names)
+        ]
+
+    def _opposite(self, predicate: str) -> str | None:
+        plain = "".join(self._things.words(predicate)[1:])
+        count = len(self._task.predicates[predicate])
+        for other, kinds in self._task.predicates.items():
+            if len(kinds) == count and "".join(self._things.words(other)) == plain:
+                return other
+        return None
+
+    # Which kind of name it is
+
+    def _clauses(self, words: list[str], nouns: list[Noun], predicate: str) -> Iterator[Clause]:
+        if words[0] in ("is", "are", "was", "being") and len(words) > 1:
+            words = words[1:]
+        if words[-1] == "top" and words[0] in PREPOSITIONS and len(nouns) > 1:
+            words = [*words, "of"]
+        if words[-1] == "of" and len(words) > 1 and len(nouns) > 1 and words[-2] != "top":
+            words = words[:-1] if verb_form(words[0]) is None else words
+        if not nouns:
+            yield from self._of_nothing(words)
+        elif (
+            len(words) > 1
+            and words[0] in lexicon.AGENTS | lexicon.HANDS
+            and (words[1] in ("has", "have") or _is_ing(words[1]))
+        ):
+            yield from self._of_agent(words, nouns)
+        elif words[0] in ("have", "has", "got", "having", "possess", "possesses", "owns", "own"):
+            yield from self._having(words[1:], nouns)
+        elif words[0] == "can" and len(words) > 1:
+            yield Clause(
+                "can", nouns[0], " ".join([*words[1:], *self._others(nouns[1:], plain=True)])
+            )
+        elif words[-1] in PREPOSITIONS and (len(words) == 1 or len(nouns) > 1):
+            yield from self._where(words, nouns, predicate)
+        elif words[0] in PREPOSITIONS and len(words) > 1:
+            yield from self._at_something(words, nouns)
+        elif len(words) == 2 and words[-1] in ("on", "off") and words[0] in lexicon.SWITCHED:
+            placed = self._things.are_places(nouns[0].objects)
+            where = self._phrases.placed(nouns[0]) if placed else f"of {nouns[0].said}"
+            yield Clause(
+                "is", Noun(f"the {words[0]} {where}", plural=words[0] == "lights"), words[1]
+            )
+        elif words[-1] in PREPOSITIONS and (
+            (verb_form(words[0]) or ("", Form.BASE))[1] is Form.BASE
+        ):
+            yield from self._somebody_is_at(words, nouns)
+        else:
+            yield from self._verb(words, nouns)
+
+    def _of_agent(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
+        """robot_has(x), gripper-holding(x)."""
+        who = Noun(f"the robot's {words[0]}" if words[0] in lexicon.HANDS else f"the {words[0]}")
+        rest = " ".join([*words[2:], *self._others(nouns, plain=True)])
+        if words[1] in ("has", "have"):
+            yield Clause("does", who, f"have {rest}")
+        else:
+            yield Clause("is", who, f"{words[1]} {rest}")
+
+    def _of_nothing(self, words: list[str]) -> Iterator[Clause]:
+        if words[0] in ("have", "has"):
+            rest = " ".join(words[1:])
+            yield Clause("does", ROBOT, f"have any {rest}")
+            return
+        form = verb_form(words[0])
+        if len(words) == 1 or (form and form[1] is Form.ING):
+            moving = form is not None and form[1] is Form.ING and words[0] not in _WEATHER
+            done = form is not None and form[1] is Form.PARTICIPLE
+            who = Noun("anything") if done else Noun("it")
+            who = Noun("the task") if words[0] in ("done", "finished", "completed") else who
+            who = ROBOT if words[0] in _OF_ROBOTS or moving else who
+            yield Clause("is", who, " ".join(words))
+            return
+        if (form and form[1] is Form.PARTICIPLE) or (
+            words[0] in ADJECTIVES and words[0] not in lexicon.SWITCHED
+        ):
+            particle = words[1] in PARTICLES
+            who = ROBOT if particle else Noun(f"the {' '.join(words[1:])}")
+            yield Clause("is", who, " ".join(words) if particle else words[0])
+            return
+        split = next(
+            (
+                at
+                for at, word in enumerate(words)
+                if at
+                and (
+                    word in PREPOSITIONS | ADJECTIVES | PARTICLES
+                    or (verb_form(word) or ("", None))[1] in (Form.PARTICIPLE, Form.ING)
+                )
+            ),
+            None,
+        )
+        if split is None:
+            return
+        subject = " ".join(words[:split])
+        own = words[split - 1] in lexicon.PARTS_OF_ROBOTS and words[0] != "robot"
+        several = words[split - 1] in ("hands", "jaws", "fingers", "grippers", "arms", "lights")
+        noun = Noun(f"the robot's {subject}" if own else f"the {subject}", plural=several)
+        rest = " ".join(words[split:])
+        yield Clause("is", noun, rest)
+        if rest in ("empty", "free") and own:
+            yield Clause("is", noun, "free" if rest == "empty" else "empty")
+
+    def _having(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
+        first, *rest = nouns
+        spoken = [word for word in words if word.isalpha()]
+        if rest:
+            second = {*self._things.nouns(rest[0].objects), rest[0].parameter}
+            spoken = [] if set(spoken) & second else spoken
+            thing = f"{' '.join(words)} " if spoken else ""
+            yield Clause(
+                "does",
+                first,
+                f"have {thing and indefinite_article(thing) + ' '}"
+                f"{thing}{' '.join(self._others(rest, plain=not spoken))}",
+            )
+            return
+        acting = self._things.act(first.objects)
+        matches = set(spoken) & {*self._things.nouns(first.objects), first.parameter}
+        if not spoken or (matches and not acting) or not (acting or words):
+            yield Clause("does", ROBOT, f"have {first.said}")
+            yield Clause("is", ROBOT, f"in possession of {first.said}")
+        else:
+            noun = " ".join(words)
+            some = "any" if words[-1] in lexicon.MASS else indefinite_article(noun)
+            yield Clause("does", first, f"have {some} {noun}")
+
+    def _where(self, words: list[str], nouns: list[Noun], predicate: str) -> Iterator[Clause]:
+        """on(a, b); robot_at(r, l); next_to(a, b); set_in(w, l); at(l)."""
+        *before, preposition = words
+        if len(nouns) == 1:
+            yield from self._alone(preposition, nouns[0], predicate)
+            return
+        first, second, *rest = nouns
+        if preposition == "between" and rest:
+            second, rest = Noun(f"{second.said} and {rest[0].said}"), rest[1:]
+        said = self._others(rest)
+        kinds = self._things.nouns(first.objects) | {"robot", "object", "thing", first.parameter}
+        if before and before[-1] not in kinds:
+            if before[0] in ROADS:
+                yield Clause(
+                    "is",
+                    Noun("there"),
+                    f"{indefinite_article(before[0])} "
+                    f"{' '.join(before)} from {first.said} to {second.said}",
+                )
+                return
+            tail = self._phrases.placed(second, preposition)
+            yield Clause("is", first, " ".join([*before, tail, *said]))
+            return
+        if self._things.hold(second.objects) and preposition in ("in", "on", "at"):
+            yield Clause("is", first, " ".join([f"in {second.said}", *said]))
+            yield Clause("is", second, f"holding {first.said}")
+            return
+        place = self._phrases.placed(second, preposition)
+        yield Clause("is", first, " ".join([place, *said]))
+        if place.startswith(f"{preposition} ") and preposition in SAME:
+            yield Clause("is", first, " ".join([SAME[preposition], second.said, *said]))
+        elif preposition == "on":
+            yield Clause("does", first, " ".join(["lie", place, *said]))
+        else:
+            yield Clause("can", first, " ".join(["be found", place, *said]))
+
+    def _alone(self, preposition: str, noun: Noun, predicate: str) -> Iterator[Clause]:
+        """at(place), near(thing), on(lamp), on(car) where board adds it."""
+        adds = [
+            schema.name
+            for schema in self._task.schemas
+            if any(e.literal.positive and e.literal.predicate == predicate for e in schema.effects)
+        ]
+        if preposition in ("on", "in", "aboard") and any("board" in name for name in adds):
+            yield Clause("is", noun, "on board")
+        elif preposition in ("on", "off"):
+            yield Clause("is", noun, preposition)
+            yield Clause("is", noun, f"switched {preposition}")
+        elif preposition in ("in", "inside", "out", "outside", "up", "down", "above", "below"):
+            yield Clause("is", noun, {"in": "inside"}.get(preposition, preposition))
+        else:
+            place = self._phrases.placed(noun, preposition)
+            yield Clause("is", ROBOT, place)
+            yield from self._elsewhere_said(ROBOT, place, preposition)
+
+    def _elsewhere_said(self, subject: Noun, place: str, written: str) -> Iterator[Clause]:
+        other = self._phrases.another(place)
+        if other != place and (written != "at" or place.startswith("in ")):
+            yield Clause("is", subject, other)
+        else:
+            yield Clause("can", subject, f"be found {place}")
+
+    def _at_something(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
+        """on_table(x), in_hand(x, h), at_robot(place)."""
+        preposition, *named = words
+        first, *rest = nouns
+        what = " ".join(named)
+        if rest and self._things.hold(rest[0].objects):
+            yield Clause("is", first, " ".join([f"in {rest[0].said}", *self._others(rest[1:])]))
+            yield Clause("is", rest[0], f"holding {first.said}")
+        elif named[-1] in lexicon.HANDS:
+            whose = (
+                rest[0].said + "'s" if rest and self._things.act(rest[0].objects) else "the robot's"
+            )
+            yield Clause("is", first, f"in {whose} {what}")
+            holder = rest[0] if rest and self._things.act(rest[0].objects) else ROBOT
+            yield Clause("is", holder, f"holding {first.said}")
+        elif not rest and named[-1] in lexicon.AGENTS and preposition in ("at", "in"):
+            subject = Noun(f"the {'robot' if what == 'robby' else what}")
+            place = self._phrases.placed(first, preposition)
+            yield Clause("is", subject, place)
+            yield from self._elsewhere_said(subject, place, preposition)
+        elif rest and named[-1] in self._things.nouns(rest[0].objects):
+            yield Clause("is", first, f"{preposition} {rest[0].said}")
+        elif not rest:
+            yield Clause("is", first, f"{preposition} the {what}")
+            if preposition in SAME:
+                yield Clause("is", first, f"{SAME[preposition]} the {what}")
+
+    def _somebody_is_at(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
+        """robot_at(place), lift-at(floor)."""
+        *who, preposition = words
+        name = " ".join(who)
+        subject = Noun(f"the {'robot' if name == 'robby' else name}")
+        place = self._phrases.placed(nouns[0], preposition)
+        if who[-1] in lexicon.MASS:
+            yield Clause("is", Noun("there"), f"{name} {place}")
+            yield Clause("is", Noun("there"), f"any {name} {place}")
+            return
+        yield Clause("is", subject, place)
+        yield from self._elsewhere_said(subject, place, preposition)
+
+    def _verb(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
+        form = None if words[0] in ADJECTIVES and len(words) == 1 else verb_form(words[0])
+        if form is not None and words[0] not in lexicon.HANDS and not self._is_noun(words, nouns):
+            yield from of_verb(self._phrases, form, words, nouns, self._others)
+        else:
+            yield from of_noun(self._phrases, words, nouns, self._others)
+
+    def _is_noun(self, words: list[str], nouns: list[Noun]) -> bool:
+        """Whether a base form is meant as a noun: sample(rover, spot), board(x)."""
+        (_, form) = verb_form(words[0]) or ("", Form.ING)
+        if form is not Form.BASE or participle(words[0]) == words[0]:
+            return False
+        plain = words[0] in (
+            "hold",
+            "carry",
+            "contain",
+            "support",
+            "touch",
+            "grasp",
+            "cover",
+            "block",
+            "push",
+            "pull",
+            "follow",
+            "need",
+            "see",
+            "know",
+            "serve",
+            "use",
+            "face",
+            "lift",
+            "drive",
+            "occupy",
+        )
+        return not (plain and len(nouns) > 1)
+
+    def _others(self, nouns: list[Noun], *, plain: bool = False) -> list[str]:
+        """Further things, with the prepositions that their names or kinds suggest."""
+        said: list[str] = []
+        for noun in nouns:
+            if plain and not said:
+                said.append(noun.said)
+            elif noun.parameter in ("from", "to", "with", "by", "on", "in", "at", "into"):
+                said.append(f"{noun.parameter} {noun.said}")
+            elif len(noun.objects) == 1 and self._things.act(noun.objects):
+                continue  # there is one robot: whose else
+            elif self._things.hold(noun.objects):
+                said.append(f"with {noun.said}")
+            elif self._things.act(noun.objects):
+                said.append(f"by {noun.said}")
+            elif self._things.are_places(noun.objects):
+                said.append(self._phrases.placed(noun))
+            else:
+                said.append(f"with {noun.said}")
+        return said
+
+
+def _is_done(word: str) -> bool:
+    form = verb_form(word)
+    return form is not None and form[1] is Form.PARTICIPLE
+
+
+def _is_ing(word: str) -> bool:
+    form = verb_form(word)
+    return form is not None and form[1] is Form.ING
+
+
+_WEATHER = ("raining", "snowing", "freezing", "burning")
+_OF_ROBOTS = word_set(
+    "free idle ready busy moving docked holding charging charged parked "
+    "standing armed tired hungry awake broken alive home crashed"
+)
+
+
+def _unknown(words: list[str], nouns: list[Noun]) -> Clause:
+    """Where a name does not tell what it means: something to be rewritten."""
+    said = " ".join(words)
+    if not nouns:
+        return Clause("is", Noun("it"), f"true that {said}")
+    rest = " and ".join(noun.said for noun in nouns[1:])
+    return Clause("is", nouns[0], f"{said}{f' with {rest}' if rest else ''}")

@@ -1,0 +1,189 @@
+"""Drafted questions: what they say, and that they are a questions file that needs no fallback."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tpvqa.drafting import draft, words
+from tpvqa.pddl import Literal, Task, load_task
+from tpvqa.pddl.loading import task_from_text
+from tpvqa.planning import Plan
+from tpvqa.planning.making import make_planner
+from tpvqa.questions import QuestionBook
+
+ROOT = Path(__file__).parents[2]
+TASKS = [
+    *((folder / "domain.pddl", folder / "problem.pddl") for folder in ROOT.glob("examples/**/")
+      if (folder / "domain.pddl").exists()),
+    (ROOT / "tests/fixtures/toys/domain.pddl", ROOT / "tests/fixtures/toys/collect.pddl"),
+    (ROOT / "tests/fixtures/ward/domain.pddl", ROOT / "tests/fixtures/ward/problem.pddl"),
+    (ROOT / "tests/fixtures/drawer/domain.pddl", ROOT / "tests/fixtures/drawer/problem.pddl"),
+]  # fmt: skip
+TYPES = (
+    """(:types robot block table drawer door room key switch plate person arm color cup - object)"""
+)
+OBJECTS = """front_door - door top_drawer - drawer ceiling_light - switch robot - robot key1 - key
+  red_block blue_block - block kitchen - room plate - plate mug - cup blue - color
+  anna - person left right - arm desk - table beans - plate"""
+SAID = {
+    "(isOpen ?d - door)": "Is the front door open?",
+    "(opened ?d - drawer)": "Is the top drawer open?",
+    "(closed ?d - door)": "Is the front door closed?",
+    "(toggledOn ?s - switch)": "Is the ceiling light toggled on?",
+    "(switched_off ?s - switch)": "Is the ceiling light switched off?",
+    "(has-key ?r - robot ?k - key)": "Does the robot have key 1?",
+    "(have_key ?k - key)": "Does the robot have key 1?",
+    "(robotAt ?r - room)": "Is the robot in the kitchen?",
+    "(at-robot ?r - room)": "Is the robot in the kitchen?",
+    "(in-hand ?b - block ?a - arm)": "Is the red block in the left arm?",
+    "(holding ?b - block)": "Is the robot holding the red block?",
+    "(is_holding ?p - person ?b - block)": "Is Anna holding the red block?",
+    "(held ?b - block ?r - robot)": "Is the red block held by the robot?",
+    "(handEmpty)": "Is the robot's hand empty?",
+    "(handempty)": "Is the robot's hand empty?",
+    "(arm-free ?a - arm)": "Is the left arm free?",
+    "(OnTable ?b - block)": "Is the red block on the table?",
+    "(on ?a - block ?t - table)": "Is the red block on the desk?",
+    "(on-top-of ?a ?b - block)": "Is the blue block on top of the blue block?",
+    "(at ?p - person ?r - room)": "Is Anna in the kitchen?",
+    "(inside ?b - block ?d - drawer)": "Is the red block inside the top drawer?",
+    "(washed ?p - block)": "Has the red block been washed?",
+    "(cut_in_half ?b - block)": "Is the red block cut in half?",
+    "(not-dirty ?p - table)": "Is it true that the desk is not dirty?",
+    "(filled-with ?c - cup ?b - block)": "Is the mug filled with the red block?",
+    "(painted ?b - block ?c - color)": "Is the red block painted blue?",
+    "(colour ?b - block ?c - color)": "Is the red block blue?",
+    "(contains ?d - drawer ?b - block)": "Does the top drawer contain the red block?",
+    "(carries ?r - robot ?b - block)": "Is the robot carrying the red block?",
+    "(between ?a ?b ?c - table)": "Is the desk between the desk and the desk?",
+    "(moved ?b - block ?from ?to - room)":
+        "Has the red block been moved from the kitchen to the kitchen?",
+    "(boarded ?p - person)": "Has Anna boarded?",
+    "(light-on)": "Is the light on?",
+    "(lightOn ?r - room)": "Is the light in the kitchen on?",
+    "(battery-low ?r - robot)": "Is the battery of the robot low?",
+    "(can-reach ?r - robot ?b - block)": "Can the robot reach the red block?",
+    "(has-water ?c - cup)": "Does the mug have any water?",
+    "(clear ?t - table)": "Is the top of the desk clear?",
+    "(raining)": "Is it raining?",
+    "(lying ?p - person)": "Is Anna lying?",
+    "(clean ?p - plate)": "Is the plate clean?",
+}  # fmt: skip
+
+
+def task_of(predicates: list[str]) -> Task:
+    """A task in which one action changes all of some predicates."""
+    heads = [re.sub(r" - \w+", "", each) for each in predicates]
+    parameters, effects = [], []
+    for number, (each, head) in enumerate(zip(predicates, heads, strict=True)):
+        mine = re.sub(r"\?(\w+)", rf"?\g<1>{number}", each)
+        parameters.append(re.sub(r"^\(\S+\s*|\)$", "", mine))
+        effects.append(re.sub(r"\?(\w+)", rf"?\g<1>{number}", head))
+    actions = "\n".join(
+        f"(:action do{n} :parameters ({p}) :precondition (and) :effect {e})"
+        for n, (p, e) in enumerate(zip(parameters, effects, strict=True))
+    )
+    domain = f"(define (domain d) {TYPES} (:predicates {' '.join(predicates)}) {actions})"
+    problem = f"(define (problem p) (:domain d) (:objects {OBJECTS}) (:init) (:goal (and)))"
+    return task_from_text(domain, problem)
+
+
+def book_of(task: Task, folder: Path) -> QuestionBook:
+    file = folder / "questions.yaml"
+    file.write_text(draft(task), encoding="utf-8")
+    return QuestionBook.load(file, task)
+
+
+@pytest.fixture(scope="module")
+def said(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
+    """All questions about each of the predicates."""
+    found: dict[str, set[str]] = {}
+    names: set[str] = set()
+    groups: list[list[str]] = [[]]
+    for each in SAID:  # PDDL knows no capitals: two names that differ by them go apart
+        name = each.strip("()").split()[0].lower()
+        if name in names:
+            groups.append([each])
+        else:
+            groups[0].append(each)
+        names.add(name)
+    for group in groups:
+        task = task_of(group)
+        book = book_of(task, tmp_path_factory.mktemp("draft"))
+        for each in group:
+            name = each.strip("()").split()[0].lower()
+            atoms = [atom for atom in task.atoms() if atom.predicate == name]
+            found[each] = {book.fact(Literal(atom)).text for atom in atoms}
+    return found
+
+
+@pytest.mark.parametrize("predicate", SAID)
+def test_predicates_become_questions_that_people_ask(
+    predicate: str, said: dict[str, set[str]]
+) -> None:
+    assert SAID[predicate] in said[predicate]
+
+
+def test_verbs_agree_with_several_things(said: dict[str, set[str]]) -> None:
+    assert "Are the beans clean?" in said["(clean ?p - plate)"]
+
+
+@pytest.mark.parametrize("files", TASKS, ids=lambda files: files[0].parent.name)
+def test_a_draft_is_a_whole_questions_file(files: tuple[Path, Path], tmp_path: Path) -> None:
+    task = load_task(*files)
+    book = book_of(task, tmp_path)
+    assert book.notices == []
+    planner = make_planner("fast-downward")
+    plan = planner.plan(task)
+    planner.close()
+    assert isinstance(plan, Plan)
+    state = task.init
+    for action in plan.actions:
+        for question in (*book.preconditions(action, state), *book.effects(action, state)):
+            assert re.fullmatch(r"(?:Is|Are|Has|Have|Does|Do|Can) \S.*\S\?", question.text)
+            assert not re.search(r"\b(\w+) \1\b|  |[{}_]", question.text), question.text
+        assert not re.search(r"  |[{}_]", book.say(action))
+        state = task.apply(state, action)
+
+
+@pytest.mark.parametrize("files", TASKS, ids=lambda files: files[0].parent.name)
+def test_every_predicate_has_other_words_where_errors_last(files: tuple[Path, Path]) -> None:
+    task = load_task(*files)
+    text = draft(task)
+    blocks = re.findall(r"^  (\S+): \"(.*)\".*\n((?:  #   also: .*\n)*)", text, re.MULTILINE)
+    told = {name.strip('"'): (first, others) for name, first, others in blocks}
+    for name in task.fluents | task.derived:
+        first, others = told[name]
+        assert others
+        assert first not in re.findall(r'"(.*)"', others)
+
+
+NAMES = st.from_regex(r"[a-z][a-z]{0,9}([_-][a-z0-9]{1,7}){0,3}", fullmatch=True)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(NAMES, min_size=1, max_size=6, unique_by=str.lower), st.data())
+def test_whatever_names_there_are_a_draft_can_be_read(
+    names: list[str], data: st.DataObject
+) -> None:
+    reserved = {"and", "or", "not", "forall", "exists", "when", "imply", "define", "either"}
+    predicates = [
+        f"({name} {' '.join(f'?x{n} - block' for n in range(data.draw(st.integers(0, 3))))})"
+        for name in names
+        if name not in reserved
+    ]
+    if not predicates:
+        return
+    task = task_of(predicates)
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        book = book_of(task, Path(folder))
+    assert book.notices == []
+    plain = words(task)
+    assert set(plain.questions) == {p.strip("()").split()[0] for p in predicates}
+    assert all("." not in place for each in plain.questions.values()
+               for place in re.findall(r"{(.*?)}", each))  # fmt: skip
