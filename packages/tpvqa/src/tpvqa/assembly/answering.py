@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
-from tpvqa.config import SimulationConfig
+from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.errors import TpvqaError
-from tpvqa.plugins import Kind, class_of, load_spec, takes
+from tpvqa.plugins import Kind, class_of, load_spec, see_taken, takes
 from tpvqa.vlm import VLM
-from tpvqa.vlm.capabilities import kind_of
-from tpvqa.vlm.making import make_vlm
+from tpvqa.vlm.capabilities import is_noise_model, kind_of
+from tpvqa.vlm.making import in_full, make_vlm
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
@@ -41,17 +41,12 @@ def answering(
     inner, taken = given, _options(trial.vlm_spec, given)
     if given is None and use is not Use.REPLAY:
         inner, taken = make_vlm(trial.vlm_spec, context)
-    told = {
-        name: json.dumps(value, sort_keys=True, default=str)
-        for name, value in config.options.items()
-        if name in taken or "*" in taken
-    }
     made = kept(
         trial.vlm_spec,
         path,
         use,
         inner=inner,
-        options=told,
+        options=_told(config, taken),
         trial=identity(trial),
         owned=given is None,
     )
@@ -67,6 +62,45 @@ def _options(spec: str, given: VLM | None) -> set[str]:
             raise
         return set()
     return takes(target) if given is None or kind_of(given) is class_of(target) else set()
+
+
+def vlm_with_answers(
+    spec: str, config: TrialConfig, *, trial: bytes | None = None, remember: int | None = None
+) -> VLM:
+    """A VLM that belongs to no trial, with its recorded answers where a file of them is named.
+
+    Args:
+        spec: Its specification.
+        config: Names the file, and what the VLM is given.
+        trial: Tells who asks from others; None where each asking is for itself.
+        remember: Pictures that it may keep, where it keeps any.
+
+    Raises:
+        TpvqaError: It cannot be made, or the file of recorded answers cannot be used.
+    """
+    spec, answers, options = in_full(spec), config.vlm.answers, config.plugin_options()
+    context = options | ({} if remember is None else {"remember": remember})
+    taken = _options(spec, None)
+    if "*" not in taken:
+        see_taken(config.options, taken, context)
+    if answers is None:
+        return make_vlm(spec, context)[0]
+    from tpvqa.vlm.kept import Use, kept
+
+    use = Use(answers[0])
+    noise = is_noise_model(load_spec(Kind.VLM, spec))  # which `kept` refuses
+    made = None if use is Use.REPLAY or noise else make_vlm(spec, context)[0]
+    told = _told(config, taken)
+    return kept(spec, answers[1], use, inner=made, options=told, trial=trial, owned=True)
+
+
+def _told(config: TrialConfig, taken: set[str]) -> dict[str, str]:
+    """The user's options that a VLM is given, as texts."""
+    return {
+        name: json.dumps(value, sort_keys=True, default=str)
+        for name, value in config.options.items()
+        if name in taken or "*" in taken
+    }
 
 
 def identity(trial: "Trial") -> bytes:

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tpvqa.cli import bench, calibrate, label, plan, questions, risk, run
+from tpvqa.cli import bench, cache, calibrate, label, plan, questions, risk, run
 from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.cli.saying import tell
 from tpvqa.errors import TpvqaError, WriteError, cut
@@ -69,6 +69,7 @@ label.register(app)
 calibrate.register(app)
 risk.register(app)
 bench.register(app)
+cache.register(app)
 
 
 def _print_anything() -> None:

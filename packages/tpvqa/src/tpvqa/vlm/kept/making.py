@@ -5,9 +5,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tpvqa.errors import CacheError
-from tpvqa.plugins import Kind, load_spec
+from tpvqa.plugins import Kind, class_of, load_spec
 from tpvqa.vlm.capabilities import (
-    class_of,
     is_deterministic,
     is_noise_model,
     kind_of,
