@@ -1,6 +1,7 @@
 """Answers beside the truth, from pictures whose facts are known."""
 
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.errors import CalibrationError
@@ -41,29 +42,47 @@ def ask_pictures(
         CalibrationError: The set knows no fact that there is a question about.
         TpvqaError: A picture cannot be read, or the VLM not be asked.
     """
-    domain = pictures.manifest.domain
-    books = list(_shipped(domain)) if books is None else books
-    questions = list(_questions(pictures, books))
-    if not questions:
-        names = ", ".join(book.task.name for book in books) or f"a shipped task of {domain!r}"
-        raise CalibrationError(
-            f"{pictures.folder}: no fact of this set is asked about in {names}. Name a set of that "
-            "domain, your own --domain, --problem and --questions, or calibrate from episodes"
-        )
+    questions = questions_about(pictures, books)
     rows: list[LabelledAnswer] = []
     for look, picture in enumerate(pictures.manifest.pictures):
-        asked = [each for each in questions if hidden or _shows(picture, each)]
+        asked = [each for each in questions if hidden or shows(picture, each)]
         rows += _ask(vlm, pictures, picture, look, asked)
         done()
     return rows
 
 
-def _shipped(domain: str) -> Iterator[QuestionBook]:
-    """The questions of the shipped tasks of a domain."""
-    for files in shipped_tasks():
-        task = load_task(files.domain, files.problem)
-        if task.domain_name == domain:
-            yield QuestionBook.load(files.questions, task)
+def questions_about(
+    pictures: PictureSet[P], books: Sequence[QuestionBook] | None = None
+) -> list[FactQuestion]:
+    """Every question about the facts of a set, once.
+
+    Args:
+        pictures: The set.
+        books: The questions; by default those of the shipped tasks of the set's domain.
+
+    Raises:
+        CalibrationError: The set knows no fact that there is a question about.
+    """
+    domain = pictures.manifest.domain
+    books = shipped_books(domain) if books is None else books
+    found = list(_questions(pictures, books))
+    if not found:
+        names = ", ".join(book.task.name for book in books) or f"a shipped task of {domain!r}"
+        raise CalibrationError(
+            f"{pictures.folder}: no fact of this set is asked about in {names}. Name a set of that "
+            "domain, your own --domain, --problem and --questions, or take episodes"
+        )
+    return found
+
+
+def shipped_books(domain: str, questions: Path | None = None) -> list[QuestionBook]:
+    """The questions of the shipped tasks of a domain; in other words, where a file gives them."""
+    tasks = [(files, load_task(files.domain, files.problem)) for files in shipped_tasks()]
+    return [
+        QuestionBook.load(questions or files.questions, task)
+        for files, task in tasks
+        if task.domain_name == domain
+    ]
 
 
 def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterator[FactQuestion]:
@@ -82,13 +101,17 @@ def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterat
                 yield book.fact(Literal(atom))
 
 
-def _shows(picture: P, question: FactQuestion) -> bool:
+def shows(picture: P, question: FactQuestion) -> bool:
+    """Whether a picture shows what the right answer is."""
     return any(atom.pddl() in picture.seen for atom in question.atoms)
 
 
-def _ask(
-    vlm: VLM, pictures: PictureSet[P], picture: P, look: int, questions: list[FactQuestion]
-) -> Iterator[LabelledAnswer]:
+def look_at(pictures: PictureSet[P], picture: P, look: int) -> Observation:
+    """A look at a picture of a set.
+
+    Raises:
+        TpvqaError: It cannot be read.
+    """
     frame = Frame(
         id=picture.file.rpartition(".")[0],
         view=VIEW,
@@ -96,10 +119,15 @@ def _ask(
         media_type=media_type(picture.file),
         source=picture.file,
     )
+    return Observation(look, 0.0, {VIEW: frame})
+
+
+def _ask(
+    vlm: VLM, pictures: PictureSet[P], picture: P, look: int, questions: list[FactQuestion]
+) -> Iterator[LabelledAnswer]:
+    seen = look_at(pictures, picture, look)
     true = picture.true_state
-    for question, answer in zip(
-        questions, ask_seeing(vlm, Observation(look, 0.0, {VIEW: frame}), questions), strict=True
-    ):
+    for question, answer in zip(questions, ask_seeing(vlm, seen, questions), strict=True):
         for way in (Way.PRECONDITION, Way.EFFECT):
             yield LabelledAnswer(
                 way=way,

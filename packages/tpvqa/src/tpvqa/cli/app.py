@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tpvqa.cli import bench, cache, calibrate, label, plan, questions, risk, run
+from tpvqa.cli import bench, cache, calibrate, label, plan, questions, risk, run, vlm
 from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.cli.saying import tell
 from tpvqa.errors import TpvqaError, WriteError, cut
@@ -70,6 +70,7 @@ calibrate.register(app)
 risk.register(app)
 bench.register(app)
 cache.register(app)
+vlm.register(app)
 
 
 def _print_anything() -> None:

@@ -234,7 +234,7 @@ def _from_pictures(
     from tpvqa.plugins import Closing
     from tpvqa.worlds.pictures import load_set
 
-    opened = load_set(_shipped_set() if where == "shipped" else Path(where))
+    opened = load_set(shipped_set() if where == "shipped" else Path(where))
     books = _own_book(*own)
     asked = vlm_with_answers(vlm, config)
     try:
@@ -245,8 +245,12 @@ def _from_pictures(
             asked.close()
 
 
-def _shipped_set() -> Path:
-    """The pictures that come with the shipped tasks."""
+def shipped_set() -> Path:
+    """The pictures that come with the shipped tasks.
+
+    Raises:
+        CalibrationError: There are none, or several sets.
+    """
     from tpvqa.distributions import HOUSEHOLD, how_to_install
     from tpvqa.errors import CalibrationError
     from tpvqa.tasks import shipped_tasks

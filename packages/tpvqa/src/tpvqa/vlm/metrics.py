@@ -117,3 +117,19 @@ def calibration_error(
         if inside.any():
             total += inside.mean() * abs(p_yes[inside].mean() - truth[inside].mean())
     return float(total)
+
+
+def log_loss(
+    p_yes: NDArray[np.float64], truth: NDArray[np.bool_], *, least: float = 1e-4
+) -> float | None:
+    """Mean negative log-likelihood of the truth, in nats.
+
+    Args:
+        p_yes: Probabilities.
+        truth: Whether yes is right.
+        least: No probability counts as nearer to 0 or 1: one wrong certainty would decide all.
+    """
+    if not len(truth):
+        return None
+    p = np.clip(p_yes, least, 1 - least)
+    return float(-np.log(np.where(truth, p, 1 - p)).mean())
