@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 _HEADS = {
     "accuracy": "accuracy",
+    "when_answered": "if answered",
     "balanced_accuracy": "balanced",
     "auroc": "AUROC",
     "calibration_error": "ECE",
@@ -25,11 +26,14 @@ def print_comparison(found: "Comparison") -> None:
     """Print all VLMs, then their parts, differences and wordings."""
     from rich.console import Console
 
+    from tpvqa.bench.vlms.lasting import LEAST
+
     console = Console()
-    console = console if console.is_terminal else Console(width=140)
+    console = console if console.is_terminal else Console(width=150)
+    intervals = "95% intervals over" if found.clusters >= LEAST else "too few for intervals:"
     tell(
-        f"{found.of}: {found.looks:,} looks; 95% intervals over {found.clusters} groups of looks "
-        "that hang together"
+        f"{found.of}: {found.looks:,} looks; {intervals} {found.clusters} groups of looks that "
+        "hang together"
     )
     console.print(_whole(found))
     for by in dict.fromkeys(part.by for vlm in found.vlms for part in vlm.parts):
@@ -86,7 +90,7 @@ def _wordings(found: "Comparison") -> "Table":
             cell(each.example if each.predicate else ""),
             _said(each.score.balanced_accuracy),
             "" if other is None else _signed(other.balanced_accuracy),
-            "best" if each.best else "",
+            each.verdict,
         )
     return table
 

@@ -119,17 +119,13 @@ def calibration_error(
     return float(total)
 
 
-def log_loss(
-    p_yes: NDArray[np.float64], truth: NDArray[np.bool_], *, least: float = 1e-4
-) -> float | None:
-    """Mean negative log-likelihood of the truth, in nats.
+NEAREST = 1e-4
+"""To 0 or 1 of a probability in the log loss: one wrong certainty would decide it."""
 
-    Args:
-        p_yes: Probabilities.
-        truth: Whether yes is right.
-        least: No probability counts as nearer to 0 or 1: one wrong certainty would decide all.
-    """
+
+def log_loss(p_yes: NDArray[np.float64], truth: NDArray[np.bool_]) -> float | None:
+    """Mean negative log-likelihood of the truth, in nats; None where there is none."""
     if not len(truth):
         return None
-    p = np.clip(p_yes, least, 1 - least)
+    p = np.clip(p_yes, NEAREST, 1 - NEAREST)
     return float(-np.log(np.where(truth, p, 1 - p)).mean())

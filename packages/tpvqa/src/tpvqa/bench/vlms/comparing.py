@@ -65,8 +65,9 @@ class Worded:
         example: A question in them.
         score: The figures.
         difference: From the first wording, on the same facts in the same pictures; None for it.
-        best: Whether no other wording has a higher balanced accuracy (or accuracy, where only yes
-            or only no is ever right).
+        verdict: "best" where it is surely better than all others, "among the best" where it is
+            the highest or not told apart from that, else empty; by balanced accuracy (or
+            accuracy, where only yes or only no is ever right).
     """
 
     vlm: str
@@ -75,7 +76,7 @@ class Worded:
     example: str
     score: Score
     difference: Difference | None
-    best: bool
+    verdict: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,8 +163,17 @@ def _worded(rows: list[Row], seed: int) -> list[Worded]:
 def _lines(predicate: str | None, rows: list[Row], seed: int) -> list[Worded]:
     groups = _groups(rows, PARTS["wording"])
     scores = {name: score(own, seed=seed) for name, own in groups.items()}
-    best = max(_merit(each) for each in scores.values())
     first = next(iter(groups))
+    best = max(groups, key=lambda name: _merit(scores[name]))
+    behind = {
+        name: difference(groups[best], own, (best, name), seed=seed)
+        for name, own in groups.items()
+        if name != best
+    }
+    worse = {name for name, found in behind.items() if found and (found.merit.low or 0.0) > 0}
+    verdicts = {name: "" if name in worse else "among the best" for name in groups}
+    if len(worse) == len(behind):
+        verdicts[best] = "best"
     return [
         Worded(
             vlm=own[0].vlm,
@@ -174,7 +184,7 @@ def _lines(predicate: str | None, rows: list[Row], seed: int) -> list[Worded]:
             difference=None
             if name == first
             else difference(own, groups[first], (name, first), seed=seed),
-            best=_merit(scores[name]) == best,
+            verdict=verdicts[name],
         )
         for name, own in groups.items()
     ]

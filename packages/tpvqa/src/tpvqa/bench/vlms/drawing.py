@@ -52,9 +52,10 @@ def comparison_figure(found: Comparison) -> Figure:
         axes.spines["left"].set_visible(False)
     panels[0].set_yticks(range(len(found.vlms)), [_short(each.vlm) for each in found.vlms])
     panels[0].set_ylim(len(found.vlms) - 0.4, -0.6)
+    told = found.vlms[0].score.accuracy.low is not None
     figure.suptitle(
-        f"{found.of}: {found.looks:,} looks, {found.vlms[0].score.answers:,} answers a VLM, "
-        f"95% intervals over {found.clusters} groups of looks",
+        f"{found.of}: {found.looks:,} looks, {found.vlms[0].score.answers:,} questions, "
+        + (f"95% intervals over {found.clusters} groups of looks" if told else "no intervals"),
         fontsize=13,
         x=0.01,
         ha="left",

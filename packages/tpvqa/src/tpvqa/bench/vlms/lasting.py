@@ -14,7 +14,10 @@ import numpy as np
 from tpvqa.bench.vlms.asking import Row
 from tpvqa.vlm import Reply
 
+LEAST = 6
+"""Clusters, below which there is no interval: of fewer a bootstrap is too sure."""
 SAMPLES = 1000
+"""Of a bootstrap."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +59,8 @@ def lasting_errors(rows: Sequence[Row], *, seed: int = 0) -> Lasting:
         rows: Answers of one VLM; abstentions do not count.
         seed: Decides the draws of the interval.
     """
-    answered = [row for row in rows if row.reply in (Reply.YES, Reply.NO)]
+    once = {(row.look, row.question, row.repeat): row for row in rows}
+    answered = [row for row in once.values() if row.reply in (Reply.YES, Reply.NO)]
     rates: dict[tuple[str, str, bool], list[float]] = {}
     for row in answered:
         rates.setdefault(_stratum(row), []).append(row.reply is Reply.YES)
@@ -76,7 +80,7 @@ def lasting_errors(rows: Sequence[Row], *, seed: int = 0) -> Lasting:
     alike = np.array([(each.same, each.of_same) for each in every]).reshape(-1, 2)
     share = _share(other.sum(0))
     low = high = None
-    if share is not None and len(every) > 1:
+    if share is not None and len(every) >= LEAST:
         draws = np.random.default_rng(seed)
         drawn = draws.integers(0, len(every), (SAMPLES, len(every)))
         found = [s for s in map(_share, other[drawn].sum(1)) if s is not None]
@@ -85,7 +89,7 @@ def lasting_errors(rows: Sequence[Row], *, seed: int = 0) -> Lasting:
 
 
 def _stratum(row: Row) -> tuple[str, str, bool]:
-    return row.way, row.predicate, row.truth
+    return row.wording, row.predicate, row.truth
 
 
 def _add(sums: _Sums, looks: list[list[float]]) -> tuple[int, int]:

@@ -1,20 +1,18 @@
 """How good the answers of one VLM are, with intervals that heed what hangs together."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.bench.vlms.asking import Row
+from tpvqa.bench.vlms.lasting import LEAST, SAMPLES
 from tpvqa.vlm import Reply
-from tpvqa.vlm.metrics import auroc, calibration_error, log_loss
+from tpvqa.vlm.metrics import NEAREST
 
-SAMPLES = 1000
-"""Bootstrap samples."""
-LEAST = 2
-"""Clusters, below which there is no interval."""
-Indices = NDArray[np.int64]
+BINS = 10
+"""Of the calibration error, as in `vlm.metrics`."""
 Floats = NDArray[np.float64]
 
 
@@ -41,7 +39,8 @@ class Score:
         answers: How many, abstentions included.
         clusters: How many independent groups of looks they are of.
         accuracy: Right answers; abstentions count as wrong.
-        balanced_accuracy: Mean of that where yes and where no is right.
+        when_answered: Right answers among yes and no.
+        balanced_accuracy: Mean of the accuracies where yes and where no is right.
         auroc: Of P(yes).
         calibration_error: Expected, of P(yes), in 10 bins.
         log_loss: Of P(yes), in nats.
@@ -52,6 +51,7 @@ class Score:
     answers: int
     clusters: int
     accuracy: Estimate
+    when_answered: Estimate
     balanced_accuracy: Estimate
     auroc: Estimate
     calibration_error: Estimate
@@ -60,101 +60,108 @@ class Score:
     seconds: Estimate
 
 
-FIGURES = (
-    "accuracy",
-    "balanced_accuracy",
-    "auroc",
-    "calibration_error",
-    "log_loss",
-    "abstained",
-    "seconds",
-)
+def score(rows: Sequence[Row], *, seed: int = 0) -> Score:
+    """The figures of some answers of one VLM.
 
-
-class Columns:
-    """Answers as arrays."""
-
-    def __init__(self, rows: Sequence[Row]):
-        self.truth = np.array([row.truth for row in rows], bool)
-        self.yes = np.array([row.reply is Reply.YES for row in rows], bool)
-        self.no = np.array([row.reply is Reply.NO for row in rows], bool)
-        self.right = np.where(self.truth, self.yes, self.no)
-        told = [np.nan if row.p_yes is None else row.p_yes for row in rows]
-        self.p_yes = np.array(told, float)
-        self.seconds = np.array([row.seconds for row in rows], float)
-
-    def figures(self, at: Indices) -> Floats:
-        """`FIGURES` over some of the answers; NaN where there is nothing to count."""
-        truth, right = self.truth[at], self.right[at]
-        p_yes = self.p_yes[at]
-        told = ~np.isnan(p_yes)
-        p, of_told = p_yes[told], truth[told]
-        found = (
-            _mean(right),
-            (_mean(right[truth]) + _mean(right[~truth])) / 2,
-            auroc(p, of_told),
-            calibration_error(p, of_told),
-            log_loss(p, of_told),
-            _mean(~(self.yes[at] | self.no[at])),
-            _mean(self.seconds[at]),
-        )
-        return np.array([np.nan if value is None else value for value in found])
-
-
-def _mean(values: NDArray[np.bool_] | Floats) -> float:
-    return float(values.mean()) if len(values) else float("nan")
-
-
-def clusters_of(rows: Sequence[Row]) -> list[Indices]:
-    """Where the answers of each cluster stand."""
-    places: dict[str, list[int]] = {}
-    for place, row in enumerate(rows):
-        places.setdefault(row.cluster, []).append(place)
-    return [np.array(found, np.int64) for _, found in sorted(places.items())]
-
-
-def resampled(
-    statistic: Callable[[Indices], Floats], clusters: Sequence[Indices], *, seed: int
-) -> list[Estimate]:
-    """Figures with 95% intervals: whole clusters are drawn anew, with replacement.
-
-    Percentiles of the bootstrap (Efron 1979), of clusters as Davison and Hinkley 1997, 3.8.
+    Intervals are percentiles of a bootstrap that draws whole clusters anew (Davison and Hinkley
+    1997, 3.8).
 
     Args:
-        statistic: Figures over the answers at some places, each perhaps several times.
-        clusters: Where the answers of each cluster stand.
+        rows: The answers.
         seed: Decides the draws.
     """
-    whole = statistic(np.concatenate(clusters) if clusters else np.empty(0, np.int64))
-    if len(clusters) < LEAST:
-        return [_estimate(value) for value in whole]
-    draws = np.random.default_rng(seed)
-    samples = np.array(
-        [
-            statistic(np.concatenate([clusters[k] for k in drawn]))
-            for drawn in draws.integers(0, len(clusters), (SAMPLES, len(clusters)))
-        ]
+    cluster, count = _clusters([row.cluster for row in rows])
+    weights = _weights(count, seed)
+    truth = np.array([row.truth for row in rows], bool)
+    yes = np.array([row.reply is Reply.YES for row in rows], bool)
+    answered = yes | np.array([row.reply is Reply.NO for row in rows], bool)
+    right = np.where(truth, yes, answered & ~yes)
+    p_yes = np.array([np.nan if row.p_yes is None else row.p_yes for row in rows], float)
+    told = ~np.isnan(p_yes)
+    p = np.where(told, p_yes, 0.5)
+    near = np.clip(p, NEAREST, 1 - NEAREST)
+    seconds = np.array([row.seconds for row in rows], float)
+
+    def summed(values: NDArray[np.bool_] | Floats) -> Floats:
+        """The sum of a column in every sample."""
+        return weights @ np.bincount(cluster, values.astype(float), count)
+
+    every = summed(np.ones(len(rows)))
+    surprise = np.where(told, -np.log(np.where(truth, near, 1 - near)), 0.0)
+    found = (
+        _ratio(summed(right), every),
+        _ratio(summed(right), summed(answered)),
+        _balanced(summed, right.astype(float), truth),
+        _auroc(weights, cluster[told], p[told], truth[told]),
+        _calibration(summed, p, truth, told),
+        _ratio(summed(surprise), summed(told)),
+        _ratio(summed(~answered), every),
+        _ratio(summed(seconds), every),
     )
-    found = []
-    for value, column in zip(whole, samples.T, strict=True):
-        known = column[~np.isnan(column)]
-        if np.isnan(value) or len(known) < SAMPLES // 2:
-            found.append(_estimate(value))
-            continue
-        low, high = np.percentile(known, (2.5, 97.5))
-        found.append(Estimate(float(value), float(low), float(high)))
+    return Score(len(rows), count, *map(_estimate, found))
+
+
+def _clusters(names: Sequence[str]) -> tuple[NDArray[np.int64], int]:
+    """The number of the cluster of each answer, and how many clusters there are."""
+    known, numbers = np.unique(np.array(names), return_inverse=True)
+    return numbers.astype(np.int64), len(known)
+
+
+def _weights(clusters: int, seed: int) -> Floats:
+    """How often each cluster counts: once in the first row, as drawn in the others."""
+    whole = np.ones((1, clusters))
+    if clusters < LEAST:
+        return whole
+    drawn = np.random.default_rng(seed).multinomial(clusters, whole[0] / clusters, SAMPLES)
+    return np.concatenate([whole, drawn])
+
+
+def _ratio(hits: Floats, of: Floats) -> Floats:
+    found = np.full(len(of), np.nan)
+    np.divide(hits, of, out=found, where=of > 0)
     return found
 
 
-def _estimate(value: float) -> Estimate:
-    return Estimate(None if np.isnan(value) else float(value))
+def _balanced(summed, right: Floats, truth: NDArray[np.bool_]) -> Floats:  # type: ignore[no-untyped-def]
+    on_yes = _ratio(summed(right * truth), summed(truth))
+    return (on_yes + _ratio(summed(right * ~truth), summed(~truth))) / 2
 
 
-def score(rows: Sequence[Row], *, seed: int = 0) -> Score:
-    """The figures of some answers of one VLM."""
-    columns, clusters = Columns(rows), clusters_of(rows)
-    found = resampled(columns.figures, clusters, seed=seed)
-    return Score(len(rows), len(clusters), *found)
+def _calibration(  # type: ignore[no-untyped-def]
+    summed, p: Floats, truth: NDArray[np.bool_], told: NDArray[np.bool_]
+) -> Floats:
+    bin_of = np.minimum((p * BINS).astype(int), BINS - 1)
+    inside = [told & (bin_of == b) for b in range(BINS)]
+    gaps = sum(np.abs(summed(np.where(each, p - truth, 0.0))) for each in inside)
+    return _ratio(np.asarray(gaps, float), summed(told))
+
+
+def _auroc(
+    weights: Floats, cluster: NDArray[np.int64], p: Floats, truth: NDArray[np.bool_]
+) -> Floats:
+    """Area under the ROC curve in every sample; ties count half."""
+    levels, level = np.unique(p, return_inverse=True)
+    found = np.full(len(weights), np.nan)
+    for place, sample in enumerate(weights):
+        weight = sample[cluster]
+        yes = np.bincount(level, weight * truth, len(levels))
+        no = np.bincount(level, weight * ~truth, len(levels))
+        total = yes.sum() * no.sum()
+        if total:
+            found[place] = yes @ (np.cumsum(no) - no / 2) / total
+    return found
+
+
+def _estimate(samples: Floats) -> Estimate:
+    """Of a figure in the whole and in every sample."""
+    value, drawn = samples[0], samples[1:]
+    if np.isnan(value):
+        return Estimate(None)
+    known = drawn[~np.isnan(drawn)]
+    if not len(drawn) or len(known) < len(drawn) / 2:
+        return Estimate(float(value))
+    low, high = np.percentile(known, (2.5, 97.5))
+    return Estimate(float(value), float(low), float(high))
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +182,11 @@ class Difference:
     accuracy: Estimate
     balanced_accuracy: Estimate
 
+    @property
+    def merit(self) -> Estimate:
+        """The balanced one, where yes and no are both right at times."""
+        return self.accuracy if self.balanced_accuracy.value is None else self.balanced_accuracy
+
 
 Key = tuple[str, str, str, str, int]
 
@@ -194,15 +206,21 @@ def difference(
     pairs = [(row, other[_key(row)]) for row in first if _key(row) in other]
     if not pairs:
         return None
-    one, two = (Columns(list(side)) for side in zip(*pairs, strict=True))
-    truth, gain = one.truth, one.right.astype(float) - two.right
+    cluster, count = _clusters([row.cluster for row, _ in pairs])
+    weights = _weights(count, seed)
+    truth = np.array([row.truth for row, _ in pairs], bool)
+    gain = np.array([float(_right(one)) - _right(two) for one, two in pairs])
 
-    def gains(at: Indices) -> Floats:
-        known, gained = truth[at], gain[at]
-        return np.array([_mean(gained), (_mean(gained[known]) + _mean(gained[~known])) / 2])
+    def summed(values: NDArray[np.bool_] | Floats) -> Floats:
+        return weights @ np.bincount(cluster, values.astype(float), count)
 
-    found = resampled(gains, clusters_of([row for row, _ in pairs]), seed=seed)
-    return Difference(*names, len(pairs), *found)
+    plain = _ratio(summed(gain), summed(np.ones(len(pairs))))
+    balanced = _balanced(summed, gain, truth)
+    return Difference(*names, len(pairs), _estimate(plain), _estimate(balanced))
+
+
+def _right(row: Row) -> bool:
+    return row.reply is (Reply.YES if row.truth else Reply.NO)
 
 
 def _key(row: Row) -> Key:
