@@ -1,17 +1,18 @@
 """Answers beside the truth, from pictures whose facts are known."""
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.errors import CalibrationError
 from tpvqa.observation import Frame, Observation
-from tpvqa.pddl import Atom, Literal, load_task
+from tpvqa.pddl import Atom, Literal, State, Task, load_task
 from tpvqa.questions import FactQuestion, QuestionBook, Way
 from tpvqa.tasks import shipped_tasks
 from tpvqa.vlm import VLM
 from tpvqa.vlm.sight import ask_seeing
-from tpvqa.worlds.pictures import VIEW, PictureSet, media_type
+from tpvqa.worlds.pictures import VIEW, Picture, PictureSet, media_type
 from tpvqa.worlds.pictures.manifest import P
 
 
@@ -45,7 +46,7 @@ def ask_pictures(
     questions = questions_about(pictures, books)
     rows: list[LabelledAnswer] = []
     for look, picture in enumerate(pictures.manifest.pictures):
-        asked = [each for each in questions if hidden or shows(picture, each)]
+        asked = [each for each in questions if hidden or shows(picture, each[0])]
         rows += _ask(vlm, pictures, picture, look, asked)
         done()
     return rows
@@ -53,8 +54,8 @@ def ask_pictures(
 
 def questions_about(
     pictures: PictureSet[P], books: Sequence[QuestionBook] | None = None
-) -> list[FactQuestion]:
-    """Every question about the facts of a set, once.
+) -> list[tuple[FactQuestion, Task]]:
+    """Every question about the facts of a set, once, each with a task that it is of.
 
     Args:
         pictures: The set.
@@ -85,7 +86,9 @@ def shipped_books(domain: str, questions: Path | None = None) -> list[QuestionBo
     ]
 
 
-def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterator[FactQuestion]:
+def _questions(
+    pictures: PictureSet[P], books: Sequence[QuestionBook]
+) -> Iterator[tuple[FactQuestion, Task]]:
     """Every question about the set's facts, once."""
     facts = [Atom.parse(text) for text in pictures.facts]
     texts: set[str] = set()
@@ -98,12 +101,28 @@ def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterat
             text = book.fact(Literal(atom)).text
             if text not in texts:
                 texts.add(text)
-                yield book.fact(Literal(atom))
+                yield book.fact(Literal(atom)), task
 
 
 def shows(picture: P, question: FactQuestion) -> bool:
     """Whether a picture shows what the right answer is."""
     return any(atom.pddl() in picture.seen for atom in question.atoms)
+
+
+def yes_is_right(question: FactQuestion, picture: Picture, task: Task) -> bool:
+    """Whether yes is the right answer to a question about a picture.
+
+    Facts that follow by axioms need not be said of it, nor those that no action changes.
+    """
+    true = _extended(picture, task) if task.derived else picture.true_state
+    return question.true_in(true.__contains__)
+
+
+@lru_cache(maxsize=4096)
+def _extended(picture: Picture, task: Task) -> State:
+    static = frozenset(atom for atom in task.init if atom.predicate not in task.fluents)
+    stated = {atom for atom in picture.true_state if atom.predicate not in task.derived}
+    return task.extend(static | stated)
 
 
 def look_at(pictures: PictureSet[P], picture: P, look: int) -> Observation:
@@ -123,17 +142,21 @@ def look_at(pictures: PictureSet[P], picture: P, look: int) -> Observation:
 
 
 def _ask(
-    vlm: VLM, pictures: PictureSet[P], picture: P, look: int, questions: list[FactQuestion]
+    vlm: VLM,
+    pictures: PictureSet[P],
+    picture: P,
+    look: int,
+    asked: list[tuple[FactQuestion, Task]],
 ) -> Iterator[LabelledAnswer]:
     seen = look_at(pictures, picture, look)
-    true = picture.true_state
-    for question, answer in zip(questions, ask_seeing(vlm, seen, questions), strict=True):
+    answers = ask_seeing(vlm, seen, [question for question, _ in asked])
+    for (question, task), answer in zip(asked, answers, strict=True):
         for way in (Way.PRECONDITION, Way.EFFECT):
             yield LabelledAnswer(
                 way=way,
                 predicate=question.subject,
                 text=question.text,
-                truth=question.true_in(true.__contains__),
+                truth=yes_is_right(question, picture, task),
                 reply=answer.reply,
                 p_yes=answer.p_yes,
                 trial=picture.scene,

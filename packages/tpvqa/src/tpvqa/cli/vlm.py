@@ -97,10 +97,7 @@ def compare(
     if (pictures is None) == (not episodes):
         raise TpvqaError("Give one labelled set: --pictures shipped (or a folder), or --episodes")
     config = combined(layers)
-    prices = dict(map(_price, price or []))
-    unpriced = [name for name in prices if name not in vlms]
-    if unpriced:
-        raise TpvqaError(f"--price {unpriced[0]!r:.60} is of none of these VLMs")
+    prices = _prices(price or [], vlms)
     need_extras()
     own = (domain, problem, questions or [])
     if pictures is not None:
@@ -125,20 +122,27 @@ def compare(
         tell(f"wrote {out}/answers.csv, figures.csv, compare.png and compare.svg")
 
 
-def _price(text: str) -> tuple[str, float]:
+def _prices(texts: Sequence[str], vlms: Sequence[str]) -> dict[str, float]:
+    """Prices of a question by the VLMs' specifications in full."""
     from math import isfinite
 
     from tpvqa.errors import TpvqaError
     from tpvqa.vlm.making import in_full
 
-    vlm, equals, amount = text.rpartition("=")
-    try:
-        value = float(amount)
-    except ValueError:
-        value = -1.0
-    if not equals or not vlm or value < 0 or not isfinite(value):
-        raise TpvqaError(f"--price {text!r:.60}: write VLM=AMOUNT, e.g. openai:MODEL=0.0004")
-    return in_full(vlm), value
+    known, found = {vlm: in_full(vlm) for vlm in vlms}, {}
+    known |= {full: full for full in known.values()}
+    for text in texts:
+        vlm, equals, amount = text.rpartition("=")
+        try:
+            value = float(amount)
+        except ValueError:
+            value = -1.0
+        if not equals or not vlm or value < 0 or not isfinite(value):
+            raise TpvqaError(f"--price {text!r:.60}: write VLM=AMOUNT, e.g. openai:MODEL=0.0004")
+        if vlm not in known:
+            raise TpvqaError(f"--price {text!r:.60} is of none of these VLMs")
+        found[known[vlm]] = value
+    return found
 
 
 Looks = tuple[str, "list[LabelledLook]", "Task | None"]

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from tpvqa.bench.labelled_pictures import look_at, questions_about, shows
+from tpvqa.bench.labelled_pictures import look_at, questions_about, shows, yes_is_right
 from tpvqa.observation import Observation
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.worlds.pictures import PictureSet
@@ -69,11 +69,10 @@ def looks_at_pictures(
     asked = {name: questions_about(pictures, book) for name, book in books.items()}
 
     def of(picture: P) -> Iterator[Labelled]:
-        true = picture.true_state
         for name, questions in asked.items():
-            for each in questions:
+            for each, task in questions:
                 if hidden or shows(picture, each):
-                    truth = each.true_in(true.__contains__)
+                    truth = yes_is_right(each, picture, task)
                     yield Labelled(each, truth, each.atom.pddl(), name, picture.scene)
 
     found = [
