@@ -182,7 +182,8 @@ def _of_pictures(
     if not looks:
         raise TpvqaError(f"{where}: no picture of this set shows what there are questions about")
     first = next(iter(books.values()))
-    return f"pictures of {where}", looks, first[0].task if first else None
+    of = "the shipped pictures" if where == "shipped" else f"pictures of {where}"
+    return of, looks, first[0].task if first else None
 
 
 def _of_episodes(

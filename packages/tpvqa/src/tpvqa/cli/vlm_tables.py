@@ -99,7 +99,7 @@ def _table(first: str, *others: str) -> "Table":
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
-    table.add_column(cell(first))
+    table.add_column(cell(first), overflow="fold")
     for name in others:
         words = name in ("about", "wording", "for example")
         table.add_column(cell(name), justify="left" if words else "right")
