@@ -5,7 +5,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tpvqa.errors import CacheError
-from tpvqa.plugins import Kind, class_of, load_spec
+from tpvqa.plugins import Closing, Kind, class_of, load_spec
 from tpvqa.vlm.capabilities import (
     is_deterministic,
     is_noise_model,
@@ -45,22 +45,12 @@ def kept(
         CacheError: The file cannot be used, or has no answers of this VLM.
         TpvqaError: There is no such VLM.
     """
-    stands_for = class_of(load_spec(Kind.VLM, spec)) if inner is None else kind_of(inner)
-    if is_noise_model(stands_for):
-        raise CacheError(
-            f"{spec!r} is a noise model: it answers from the truth of a simulated world by its "
-            "seed, always the same and for nothing. Its answers are not recorded; leave the "
-            "file out"
-        )
-    file = AnswerFile(path, writing=use is not Use.REPLAY)
     try:
-        told = {f"{_OPTION}{name}": value for name, value in options.items()}
-        if use is Use.REPLAY or inner is None:
-            model = _recorded(file, spec, told)
-        else:
-            model = file.model(spec, parameters_of(inner) | told)
+        stands_for = class_of(load_spec(Kind.VLM, spec)) if inner is None else kind_of(inner)
+        file, model = _opened(spec, path, use, stands_for, inner, options)
     except BaseException:
-        file.close()
+        if owned and isinstance(inner, Closing):
+            inner.close()
         raise
     counting = not is_deterministic(stands_for) or keeps_state(inner)
     return (CountingVLM if counting else KeptVLM)(
@@ -73,6 +63,32 @@ def kept(
         trial=trial,
         owned=owned and use is not Use.REPLAY,
     )
+
+
+def _opened(
+    spec: str,
+    path: Path | str,
+    use: Use,
+    stands_for: type,
+    inner: VLM | None,
+    options: Mapping[str, str],
+) -> tuple[AnswerFile, int]:
+    """The file, and the number of VLM and parameters in it."""
+    if is_noise_model(stands_for):
+        raise CacheError(
+            f"{spec!r} is a noise model: it answers from the truth of a simulated world by its "
+            "seed, always the same and for nothing. Its answers are not recorded; leave the "
+            "file out"
+        )
+    file = AnswerFile(path, writing=use is not Use.REPLAY)
+    try:
+        told = {f"{_OPTION}{name}": value for name, value in options.items()}
+        if use is Use.REPLAY or inner is None:
+            return file, _recorded(file, spec, told)
+        return file, file.model(spec, parameters_of(inner) | told)
+    except BaseException:
+        file.close()
+        raise
 
 
 def _recorded(file: AnswerFile, spec: str, options: Mapping[str, str]) -> int:
