@@ -45,7 +45,9 @@ def test_a_trial_is_replayed_without_its_vlm(
     coin = (*TRIAL, "--vlm", "coin")
     first, _, _ = tpvqa("run", *coin, "--record", "a.db", "--out", "one")
     monkeypatch.setenv("NO_VLM", "1")
-    again, _, _ = tpvqa("run", *coin, "--replay", "a.db", "--out", "two")
+    again, _, err = tpvqa("run", *coin, "--replay", "a.db", "--out", "two")
+    assert "answers are from" in err
+    assert "0 were asked" in err
     assert (answers("two"), again) == (answers("one"), first)
     code, _, err = tpvqa("run", *coin[:-2], "--vlm", "embedded", "--replay", "a.db")
     assert (code, "no recorded answers of 'embedded'" in err) == (2, True)

@@ -65,7 +65,12 @@ def _options(spec: str, given: VLM | None) -> set[str]:
 
 
 def vlm_with_answers(
-    spec: str, config: TrialConfig, *, trial: bytes | None = None, remember: int | None = None
+    spec: str,
+    config: TrialConfig,
+    *,
+    trial: bytes | None = None,
+    remember: int | None = None,
+    every_option: bool = True,
 ) -> VLM:
     """A VLM that belongs to no trial, with its recorded answers where a file of them is named.
 
@@ -74,6 +79,7 @@ def vlm_with_answers(
         config: Names the file, and what the VLM is given.
         trial: Tells who asks from others; None where each asking is for itself.
         remember: Pictures that it may keep, where it keeps any.
+        every_option: Whether each of the config's options has to be one that it takes.
 
     Raises:
         TpvqaError: It cannot be made, or the file of recorded answers cannot be used.
@@ -81,7 +87,7 @@ def vlm_with_answers(
     spec, answers, options = in_full(spec), config.vlm.answers, config.plugin_options()
     context = options | ({} if remember is None else {"remember": remember})
     taken = _options(spec, None)
-    if "*" not in taken:
+    if every_option and "*" not in taken:
         see_taken(config.options, taken, context)
     if answers is None:
         return make_vlm(spec, context)[0]

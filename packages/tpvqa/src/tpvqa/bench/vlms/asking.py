@@ -1,8 +1,7 @@
 """Asking every VLM the same about the same looks."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from types import MappingProxyType
 from typing import Any
 
 from tpvqa.assembly.answering import vlm_with_answers
@@ -10,7 +9,7 @@ from tpvqa.bench.vlms.looks import Labelled, LabelledLook
 from tpvqa.config import TrialConfig
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Atom, Task
-from tpvqa.plugins import Closing, Kind, load_spec
+from tpvqa.plugins import Closing, Kind, load_spec, see_taken, takes
 from tpvqa.questions import Way
 from tpvqa.vlm import VLM, Answer, Reply
 from tpvqa.vlm.capabilities import is_deterministic, is_noise_model
@@ -21,7 +20,6 @@ OF_COMPARISONS = b"vlm compare"
 """The trial of answers that are recorded here."""
 PICTURES = 512
 """That a VLM may keep."""
-NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +120,7 @@ def ask_all(
         TpvqaError: A VLM cannot be made or asked.
     """
     specs = list(dict.fromkeys(map(in_full, specs)))
+    _see_options(specs, config)
     times = {spec: _times(spec, repeats) for spec in specs}
     rows: list[Row] = []
     done, total = 0, len(looks) * sum(times.values())
@@ -143,13 +142,22 @@ def ask_all(
     return rows
 
 
+def _see_options(specs: Sequence[str], config: TrialConfig) -> None:
+    """See that every option is one that some VLM takes."""
+    taken = set().union(*(takes(load_spec(Kind.VLM, spec)) for spec in specs))
+    if "*" not in taken:
+        see_taken(config.options, taken, config.options)
+
+
 def _times(spec: str, repeats: int) -> int:
     return 1 if is_deterministic(load_spec(Kind.VLM, spec)) else repeats
 
 
 def _made(spec: str, config: TrialConfig, truth: KnownTruth, task: Task | None) -> VLM:
     if not is_noise_model(load_spec(Kind.VLM, spec)):
-        return vlm_with_answers(spec, config, trial=OF_COMPARISONS, remember=PICTURES)
+        return vlm_with_answers(
+            spec, config, trial=OF_COMPARISONS, remember=PICTURES, every_option=False
+        )
     context = {"truth": truth, "seed": config.seed, "episode": config.episode, "task": task}
     return make_vlm(spec, config.plugin_options() | context)[0]
 

@@ -50,6 +50,10 @@ class KeptVLM(StandsIn):
         inner: The VLM; None for replaying.
         trial: Tells the trial that asks from others; None where each asking is for itself.
         owned: Whether the VLM is closed with this, too.
+
+    Attributes:
+        given: Questions that were answered from the file.
+        asked: Questions that the VLM was asked.
     """
 
     def __init__(
@@ -67,6 +71,7 @@ class KeptVLM(StandsIn):
         self.file, self.use, self.inner, self.stands_for = file, use, inner, stands_for
         self._model, self._name, self._owned = model, name, owned
         self._trial, self._fixed = trial, is_deterministic(stands_for)
+        self.given = self.asked = 0
         self._looks: dict[str, list[int]] = {}
         self._now: tuple[int, bytes] = (-1, b"")
         self._told: dict[str, Answer] = {}
@@ -108,10 +113,12 @@ class KeptVLM(StandsIn):
             whatever = self._fixed or self.use is Use.REPLAY
             found = self.file.find(asking, questions, unknown=whatever)
         missing = [each for each in questions if each.text not in found]
+        self.given += len(found)
         if not missing:
             return found
         if self.inner is None:
             raise self._unseen(observation, picture, draw, missing)
+        self.asked += len(missing)
         given = checked_answers(self.inner, self.inner.ask(observation, missing), missing)
         if self.use is Use.CACHE:
             return found | self._kept(asking, given)
