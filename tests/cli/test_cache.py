@@ -9,6 +9,7 @@ import pytest
 
 from tests.cli.conftest import Run
 from tests.conftest import Install
+from tests.vlm.chat_server import ChatServer
 from tpvqa.episodes.log import LOG
 from tpvqa.vlm.kept.upkeep import stats
 
@@ -156,3 +157,20 @@ def test_there_is_nothing_in_no_file(tpvqa: Run) -> None:
         assert code == 2
         assert "none.db" in err
     assert not Path("none.db").exists()
+
+
+def test_a_servers_answers_are_there_when_it_is_gone(
+    tpvqa: Run, shipped_picture: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_PROXY", "127.0.0.1")
+    monkeypatch.delenv("OPENAI_API_KEY", raising=False)
+    words = ("ask", shipped_picture, "Is the fridge open?", "--vlm", "openai:some", "--json")
+    with ChatServer(lambda pictures, question: 0.8) as server:
+        code, live, _ = tpvqa(*words, "--base-url", server.url, "--cache", "a.db")
+        assert code == 0
+        requests = len(server.requests)
+        assert tpvqa(*words, "--base-url", server.url, "--cache", "a.db")[1] == live
+        assert len(server.requests) == requests
+    assert json.loads(live)["answers"][0]["p_yes"] == pytest.approx(0.8, abs=0.01)
+    assert tpvqa(*words, "--replay", "a.db")[:2] == (0, live)
+    assert tpvqa(*words, "--cache", "a.db", "--base-url", server.url)[1] == live

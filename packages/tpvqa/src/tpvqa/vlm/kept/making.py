@@ -106,9 +106,10 @@ def _recorded(file: AnswerFile, spec: str, options: Mapping[str, str]) -> int:
     ]
     if not found:
         known = ", ".join(dict.fromkeys(name for _, name, _ in every)) or "nobody"
+        same = " with these options" if any(name == spec for _, name, _ in every) else ""
         raise CacheError(
-            f"{file.path}: there are no recorded answers of {spec!r} with these options, but of: "
-            f"{known}. Record some with --cache"
+            f"{file.path}: there are no recorded answers of {spec!r}{same}, but of: {known}. "
+            "Record some with --cache"
         )
     if len(found) > 1:
         sets = "; ".join(
