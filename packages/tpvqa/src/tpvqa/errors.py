@@ -11,6 +11,7 @@ TpvqaError
 ├── PlannerError           the planner itself could not be run (never "there is no plan")
 │   └── GroundingTimedOut  reading and grounding took longer than allowed
 ├── AnswerError            a VLM could not be asked at all
+├── CacheError             recorded answers cannot be read, or lack one that is asked for
 ├── WorldError             a world cannot do what it is asked to
 ├── PictureError           a picture cannot be read, is of another format, or is too large
 ├── PictureSetError        the set of pictures is incomplete or damaged
@@ -120,6 +121,10 @@ class QuestionsError(PlacedError):
 
 class AnswerError(TpvqaError):
     """A VLM could not be asked at all (no key, say). A bad answer is *unknown* instead."""
+
+
+class CacheError(TpvqaError):
+    """A file of recorded answers cannot be used, or lacks an answer that is asked for."""
 
 
 class ConfigError(PlacedError):

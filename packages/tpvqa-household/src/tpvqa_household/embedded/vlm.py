@@ -14,7 +14,7 @@ from tpvqa.errors import AnswerError, PictureError
 from tpvqa.observation import Frame, Observation
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
-from tpvqa.vlm.capabilities import NeedsPictures, SideBySide
+from tpvqa.vlm.capabilities import Deterministic, NeedsPictures, SideBySide
 from tpvqa_household.embedded.lexicon import Unknown
 from tpvqa_household.embedded.sessions import Floats, Sessions
 from tpvqa_household.embedded.weights import SHIPPED, Weights
@@ -25,7 +25,7 @@ _ANSWERS = 100_000
 """Answers that are kept."""
 
 
-class EmbeddedVLM(NeedsPictures, SideBySide):
+class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
     """Answers questions about the household with a small network on the CPU.
 
     Not a general VLM: it knows the household's objects in pictures like those it was trained on,
@@ -81,6 +81,15 @@ class EmbeddedVLM(NeedsPictures, SideBySide):
             AnswerError: The weights are missing or damaged.
         """
         return self._load()[0]
+
+    @property
+    def parameters(self) -> dict[str, str]:
+        """What its answers depend on: the network.
+
+        Raises:
+            AnswerError: The weights are missing or damaged.
+        """
+        return {"network": self.weights.fingerprint}
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
         """Answer every question, in order, in one run of the network a frame.

@@ -32,6 +32,12 @@ class Weights:
     side: int
     description: Mapping[str, Any]
 
+    @property
+    def fingerprint(self) -> str:
+        """Tells networks apart, with their words and temperature."""
+        told = json.dumps(dict(self.description), sort_keys=True)
+        return hashlib.sha256(told.encode()).hexdigest()[:16]
+
     @classmethod
     def read(cls, folder: Path = SHIPPED) -> "Weights":
         """Read the description and check the hashes.

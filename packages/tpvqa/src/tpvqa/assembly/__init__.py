@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from tpvqa import __version__
+from tpvqa.assembly.answering import answering
 from tpvqa.assembly.simulating import simulate
 from tpvqa.assembly.told import read_told, stated_bound
 from tpvqa.belief.calibration import Calibration
@@ -40,7 +41,7 @@ from tpvqa.text_files import kept_text
 from tpvqa.trial import trial
 from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
-from tpvqa.vlm.making import in_full, make_vlm
+from tpvqa.vlm.making import in_full
 from tpvqa.worlds import Restorable, World
 from tpvqa.worlds.capabilities import has_pictures, is_simulated, truth_of
 from tpvqa.worlds.making import make_world
@@ -185,7 +186,7 @@ class Trial:
         self.weighs_answers = "calibration" in by_monitor
         if not self.weighs_answers:
             self.calibration = None
-        made, by_vlm = make_vlm(self.vlm_spec, context) if vlm is None else (vlm, set[str]())
+        made, by_vlm = answering(self, vlm, context)
         if not has_pictures(world) and needs_pictures(made):
             raise TpvqaError(
                 f"The VLM {self.vlm_spec!r} looks at pictures, and the world {self.world_spec!r} "
@@ -193,7 +194,7 @@ class Trial:
             )
         if self._every_option:
             see_taken(options, by_world | by_monitor | by_vlm, context)
-        if vlm is None and isinstance(made, Closing):
+        if made is not vlm and isinstance(made, Closing):
             self._closing.append(made.close)
         self.parts = Parts(self.task, self.book, planner, world, made, person)
 

@@ -23,7 +23,11 @@ if TYPE_CHECKING:
 DECIDING = ("what decides", "monitor", "VLM", "calibration", "task")
 """Conditions without which what was believed of a goal says nothing here."""
 _TOLD_OTHERWISE = ("task", "seed", "episode", "monitor")
-_SPECS = (("vlm", "spec"), ("vlm", "base_url"), ("world", "spec"), ("start", "priors"))
+_SPECS = (
+    *(("vlm", name) for name in ("spec", "base_url", "cache", "record", "replay")),
+    ("world", "spec"),
+    ("start", "priors"),
+)
 
 
 def read_told(

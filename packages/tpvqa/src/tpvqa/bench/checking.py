@@ -11,6 +11,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, MissingExtraError, UnknownNameError
 from tpvqa.plugins import Kind, load_spec, takes
 from tpvqa.tasks import find_task
+from tpvqa.vlm.capabilities import is_noise_model
 from tpvqa.worlds.capabilities import is_simulated
 
 
@@ -31,6 +32,12 @@ def check(cells: Sequence[Cell], common: TrialConfig, own: Mapping[str, OwnTask]
         if task not in own:
             find_task(task)
     _names(cells, common)
+    noise = [is_noise_model(load_spec(Kind.VLM, cell.vlm)) for cell in cells]
+    if common.vlm.answers is not None and cells and all(noise):
+        raise BenchError(
+            f"--{common.vlm.answers[0]}: all these VLMs are noise models, which answer from the "
+            "truth by the seed, always the same. Their answers are not recorded; leave it out"
+        )
     tried: set[Hashable] = set()
     for cell in cells:
         seen = (cell.vlm, cell.world)

@@ -1,16 +1,18 @@
 """Answers beside the truth, from pictures whose facts are known."""
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
+from pathlib import Path
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.errors import CalibrationError
 from tpvqa.observation import Frame, Observation
-from tpvqa.pddl import Atom, Literal, load_task
+from tpvqa.pddl import Atom, Literal, State, Task, load_task
 from tpvqa.questions import FactQuestion, QuestionBook, Way
 from tpvqa.tasks import shipped_tasks
 from tpvqa.vlm import VLM
 from tpvqa.vlm.sight import ask_seeing
-from tpvqa.worlds.pictures import VIEW, PictureSet, media_type
+from tpvqa.worlds.pictures import VIEW, Picture, PictureSet, media_type
 from tpvqa.worlds.pictures.manifest import P
 
 
@@ -41,32 +43,52 @@ def ask_pictures(
         CalibrationError: The set knows no fact that there is a question about.
         TpvqaError: A picture cannot be read, or the VLM not be asked.
     """
-    domain = pictures.manifest.domain
-    books = list(_shipped(domain)) if books is None else books
-    questions = list(_questions(pictures, books))
-    if not questions:
-        names = ", ".join(book.task.name for book in books) or f"a shipped task of {domain!r}"
-        raise CalibrationError(
-            f"{pictures.folder}: no fact of this set is asked about in {names}. Name a set of that "
-            "domain, your own --domain, --problem and --questions, or calibrate from episodes"
-        )
+    questions = questions_about(pictures, books)
     rows: list[LabelledAnswer] = []
     for look, picture in enumerate(pictures.manifest.pictures):
-        asked = [each for each in questions if hidden or _shows(picture, each)]
+        asked = [each for each in questions if hidden or shows(picture, each[0])]
         rows += _ask(vlm, pictures, picture, look, asked)
         done()
     return rows
 
 
-def _shipped(domain: str) -> Iterator[QuestionBook]:
-    """The questions of the shipped tasks of a domain."""
-    for files in shipped_tasks():
-        task = load_task(files.domain, files.problem)
-        if task.domain_name == domain:
-            yield QuestionBook.load(files.questions, task)
+def questions_about(
+    pictures: PictureSet[P], books: Sequence[QuestionBook] | None = None
+) -> list[tuple[FactQuestion, Task]]:
+    """Every question about the facts of a set, once, each with a task that it is of.
+
+    Args:
+        pictures: The set.
+        books: The questions; by default those of the shipped tasks of the set's domain.
+
+    Raises:
+        CalibrationError: The set knows no fact that there is a question about.
+    """
+    domain = pictures.manifest.domain
+    books = shipped_books(domain) if books is None else books
+    found = list(_questions(pictures, books))
+    if not found:
+        names = ", ".join(book.task.name for book in books) or f"a shipped task of {domain!r}"
+        raise CalibrationError(
+            f"{pictures.folder}: no fact of this set is asked about in {names}. Name a set of that "
+            "domain, your own --domain, --problem and --questions, or take episodes"
+        )
+    return found
 
 
-def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterator[FactQuestion]:
+def shipped_books(domain: str, questions: Path | None = None) -> list[QuestionBook]:
+    """The questions of the shipped tasks of a domain; in other words, where a file gives them."""
+    tasks = [(files, load_task(files.domain, files.problem)) for files in shipped_tasks()]
+    return [
+        QuestionBook.load(questions or files.questions, task)
+        for files, task in tasks
+        if task.domain_name == domain
+    ]
+
+
+def _questions(
+    pictures: PictureSet[P], books: Sequence[QuestionBook]
+) -> Iterator[tuple[FactQuestion, Task]]:
     """Every question about the set's facts, once."""
     facts = [Atom.parse(text) for text in pictures.facts]
     texts: set[str] = set()
@@ -79,16 +101,36 @@ def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterat
             text = book.fact(Literal(atom)).text
             if text not in texts:
                 texts.add(text)
-                yield book.fact(Literal(atom))
+                yield book.fact(Literal(atom)), task
 
 
-def _shows(picture: P, question: FactQuestion) -> bool:
+def shows(picture: P, question: FactQuestion) -> bool:
+    """Whether a picture shows what the right answer is."""
     return any(atom.pddl() in picture.seen for atom in question.atoms)
 
 
-def _ask(
-    vlm: VLM, pictures: PictureSet[P], picture: P, look: int, questions: list[FactQuestion]
-) -> Iterator[LabelledAnswer]:
+def yes_is_right(question: FactQuestion, picture: Picture, task: Task) -> bool:
+    """Whether yes is the right answer to a question about a picture.
+
+    Facts that follow by axioms need not be said of it, nor those that no action changes.
+    """
+    true = _extended(picture, task) if task.derived else picture.true_state
+    return question.true_in(true.__contains__)
+
+
+@lru_cache(maxsize=4096)
+def _extended(picture: Picture, task: Task) -> State:
+    static = frozenset(atom for atom in task.init if atom.predicate not in task.fluents)
+    stated = {atom for atom in picture.true_state if atom.predicate not in task.derived}
+    return task.extend(static | stated)
+
+
+def look_at(pictures: PictureSet[P], picture: P, look: int) -> Observation:
+    """A look at a picture of a set.
+
+    Raises:
+        TpvqaError: It cannot be read.
+    """
     frame = Frame(
         id=picture.file.rpartition(".")[0],
         view=VIEW,
@@ -96,16 +138,25 @@ def _ask(
         media_type=media_type(picture.file),
         source=picture.file,
     )
-    true = picture.true_state
-    for question, answer in zip(
-        questions, ask_seeing(vlm, Observation(look, 0.0, {VIEW: frame}), questions), strict=True
-    ):
+    return Observation(look, 0.0, {VIEW: frame})
+
+
+def _ask(
+    vlm: VLM,
+    pictures: PictureSet[P],
+    picture: P,
+    look: int,
+    asked: list[tuple[FactQuestion, Task]],
+) -> Iterator[LabelledAnswer]:
+    seen = look_at(pictures, picture, look)
+    answers = ask_seeing(vlm, seen, [question for question, _ in asked])
+    for (question, task), answer in zip(asked, answers, strict=True):
         for way in (Way.PRECONDITION, Way.EFFECT):
             yield LabelledAnswer(
                 way=way,
                 predicate=question.subject,
                 text=question.text,
-                truth=question.true_in(true.__contains__),
+                truth=yes_is_right(question, picture, task),
                 reply=answer.reply,
                 p_yes=answer.p_yes,
                 trial=picture.scene,

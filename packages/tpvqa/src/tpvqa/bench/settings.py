@@ -16,8 +16,12 @@ from tpvqa.text_files import read_text
 OF_CELLS = (("world", "spec"), ("vlm", "spec"), ("monitor", "spec"))
 """What every cell says for itself."""
 TOLD_OTHERWISE = ("task", "seed", "episode", "simulation", "limits")
-DECIDES_NOTHING = (("vlm", "base_url"), ("monitor", "calibration"), ("monitor", "experience"))
-"""Where a server stands; and files, of which what they say counts."""
+DECIDES_NOTHING = (
+    *(("vlm", name) for name in ("base_url", "cache", "record", "replay")),
+    *(("monitor", name) for name in ("calibration", "experience")),
+)
+"""Where a server stands, whether its answers are recorded; and files, of which what they say
+counts."""
 
 
 def common_settings(common: TrialConfig) -> dict[str, Any]:

@@ -43,6 +43,8 @@ from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 PICTURES = 512
 """Encoded pictures that are kept: all of the shipped set."""
+ANSWERS = ("cache", "record", "replay")
+"""Settings of a VLM that name a file of recorded answers."""
 MOST_FACTS = 300_000
 """In the joint states of a shared action model, at about 1 KB each on the shipped tasks."""
 OF_A_TRIAL = frozenset(
@@ -137,13 +139,16 @@ class Stage:
         risk: RiskBound | None = None,
     ) -> Trial:
         """A trial of the task, ready to run; made of what all its trials share."""
-        assert config.vlm.spec is not None
+        spec = config.vlm.spec
+        assert spec is not None
+        if config.vlm.answers is not None and is_noise_model(load_spec(Kind.VLM, spec)):
+            config = config.but(vlm=dict.fromkeys(ANSWERS))  # there is nothing to record of it
         options = json.dumps(config.plugin_options(), sort_keys=True, default=str)
         return Trial(
             config.but(task=self._named),
             task=self.task,
             planner=_planner(config.planner.spec),
-            vlm=_shared_vlm(config.vlm.spec, options),
+            vlm=None if config.vlm.replay is not None else _shared_vlm(spec, options),
             book=self.book,
             rules=self.rules,
             model=self.model,

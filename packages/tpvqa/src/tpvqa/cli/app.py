@@ -10,7 +10,19 @@ from typing import Annotated, Any
 
 import typer
 
-from tpvqa.cli import bench, calibrate, check, label, plan, questions, risk, run, serve_vlm
+from tpvqa.cli import (
+    bench,
+    cache,
+    calibrate,
+    check,
+    label,
+    plan,
+    questions,
+    risk,
+    run,
+    serve_vlm,
+    vlm,
+)
 from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.cli.saying import tell
 from tpvqa.errors import TpvqaError, WriteError, cut
@@ -71,6 +83,8 @@ calibrate.register(app)
 risk.register(app)
 serve_vlm.register(app)
 bench.register(app)
+cache.register(app)
+vlm.register(app)
 
 
 def _print_anything() -> None:

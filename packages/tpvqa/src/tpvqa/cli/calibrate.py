@@ -11,7 +11,7 @@ import typer
 
 from tpvqa.cli.calibration_table import draw, plain, print_calibration
 from tpvqa.cli.notices import about_own_files
-from tpvqa.cli.options import trial_options
+from tpvqa.cli.options import ANSWERING, trial_options
 from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer, combined
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tpvqa.belief import LabelledAnswer
     from tpvqa.bench.labelled_episodes import Labelled
     from tpvqa.cli.progress import CountBar
+    from tpvqa.config import TrialConfig
     from tpvqa.questions import QuestionBook
 
 _EXIT = "Exit codes: 0 written, 2 bad input, 6 could not be written, 130 interrupted."
@@ -138,7 +139,8 @@ def calibrate(
     from tpvqa.errors import TpvqaError
     from tpvqa.vlm.making import in_full
 
-    if trials is None and any(layer.values for layer in layers if layer is not _SHORT):
+    given_keys = {key for layer in layers if layer is not _SHORT for key in layer.values}
+    if trials is None and given_keys - (set(ANSWERING) if pictures is not None else set()):
         raise TpvqaError("How trials are run is for --trials N; leave it out otherwise.")
     given = [bool(episodes), pictures is not None, trials is not None]
     if sum(given) != 1:
@@ -161,7 +163,8 @@ def calibrate(
         if experience is not None:
             experience_from(episodes).save(experience)
     elif pictures is not None:
-        name, rows = _from_pictures(vlm or default_vlm(), pictures, own, hidden=hidden)
+        config = combined(layers)
+        name, rows = _from_pictures(vlm or default_vlm(), config, pictures, own, hidden=hidden)
     else:
         assert trials is not None
         name = in_full(vlm or default_vlm(pictures=not problems))
@@ -219,21 +222,35 @@ def _from_episodes(folders: Sequence[Path], vlm: str | None) -> "Labelled":
 
 
 def _from_pictures(
-    vlm: str, where: str, own: tuple[Path | None, Path | None, Path | None], *, hidden: bool
+    vlm: str,
+    config: "TrialConfig",
+    where: str,
+    own: tuple[Path | None, Path | None, Path | None],
+    *,
+    hidden: bool,
 ) -> tuple[str, "list[LabelledAnswer]"]:
+    from tpvqa.assembly.answering import vlm_with_answers
     from tpvqa.bench.labelled_pictures import ask_pictures
-    from tpvqa.vlm.making import make_vlm
+    from tpvqa.plugins import Closing
     from tpvqa.worlds.pictures import load_set
 
-    opened = load_set(_shipped_set() if where == "shipped" else Path(where))
+    opened = load_set(shipped_set() if where == "shipped" else Path(where))
     books = _own_book(*own)
-    asked, _ = make_vlm(vlm, {})
-    with _counting("pictures", len(opened.manifest.pictures)) as done:
-        return asked.name, ask_pictures(asked, opened, books, hidden=hidden, done=done)
+    asked = vlm_with_answers(vlm, config)
+    try:
+        with _counting("pictures", len(opened.manifest.pictures)) as done:
+            return asked.name, ask_pictures(asked, opened, books, hidden=hidden, done=done)
+    finally:
+        if isinstance(asked, Closing):
+            asked.close()
 
 
-def _shipped_set() -> Path:
-    """The pictures that come with the shipped tasks."""
+def shipped_set() -> Path:
+    """The pictures that come with the shipped tasks.
+
+    Raises:
+        CalibrationError: There are none, or several sets.
+    """
     from tpvqa.distributions import HOUSEHOLD, how_to_install
     from tpvqa.errors import CalibrationError
     from tpvqa.tasks import shipped_tasks

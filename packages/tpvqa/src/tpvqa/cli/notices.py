@@ -42,6 +42,19 @@ def about_vlm(config: "TrialConfig", vlm: str) -> list[str]:
     ]
 
 
+def about_answers(vlm: object) -> list[str]:
+    """How many answers of a trial came from the file of recorded ones."""
+    from tpvqa.vlm.capabilities import StandsIn
+
+    if not isinstance(vlm, StandsIn):
+        return []
+    from tpvqa.vlm.kept import KeptVLM
+
+    if not isinstance(vlm, KeptVLM):
+        return []
+    return [f"{vlm.given} answers are from {vlm.file.path}, {vlm.asked} were asked"]
+
+
 def about_words(book: "QuestionBook") -> list[str]:
     """What to know of a task's questions; the fallbacks are counted, not listed."""
     if len(book.fallbacks) < 2:

@@ -14,6 +14,11 @@ from tpvqa.errors import TpvqaError
 from tpvqa.plugins import Kind, names
 
 _TYPES = {"int | None": int, "float | None": float, "str | None": str}
+ANSWERING: tuple[Key, ...] = (
+    *(("vlm", name) for name in ("base_url", "cache", "record", "replay")),
+    ("options",),
+)
+"""Settings of who answers that commands without a trial have, too."""
 CONFIG = "config_file"
 _INSTALLED: Mapping[Key, Kind] = {("monitor", "spec"): Kind.MONITOR}
 """Settings whose help names everything that is installed."""

@@ -2,15 +2,16 @@
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn
 
 import typer
 
-from tpvqa.cli.options import task_config
+from tpvqa.cli.options import ANSWERING, task_config, trial_options
 from tpvqa.cli.plan import CRASHED, TIMED_OUT, UNSOLVABLE, Domain, OwnProblem, Problem, Task
 from tpvqa.cli.saying import cell, plain, tell
+from tpvqa.config.layers import Layer, settings
 
 if TYPE_CHECKING:
     from tpvqa.config import TaskConfig
@@ -113,29 +114,29 @@ def questions(
         _print_lines(book, steps)
 
 
+@trial_options(*(each.key for each in settings() if each.key not in ANSWERING), file=False)
 def ask(
     image: Annotated[Path, typer.Argument(help="A picture.")],
     question: Annotated[list[str], typer.Argument(help="Questions with the answer yes or no.")],
     *,
+    layers: Sequence[Layer],
     vlm: Annotated[
         str | None, typer.Option(help="embedded (the default), openai:MODEL or a plug-in.")
-    ] = None,
-    base_url: Annotated[
-        str | None, typer.Option(help="Address of an OpenAI-compatible server, with its path.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Ask about a picture: prints each answer and P(yes)."""
+    from tpvqa.assembly.answering import vlm_with_answers
+    from tpvqa.config.layers import combined
     from tpvqa.defaults import default_vlm
     from tpvqa.pddl import Atom
     from tpvqa.plugins import Closing
     from tpvqa.questions import FactQuestion, Way
-    from tpvqa.vlm.making import make_vlm
     from tpvqa.vlm.pictures import observe_file
     from tpvqa.vlm.sight import ask_seeing
 
     observation = observe_file(image)
-    model, _ = make_vlm(vlm or default_vlm(), {"base_url": base_url})
+    model = vlm_with_answers(vlm or default_vlm(), combined(layers))
     # A VLM that looks at pictures goes by the words alone.
     asked = [FactQuestion(text, Way.PRECONDITION, Atom("asked")) for text in question]
     try:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tpvqa.cli.no_effect import without_effect
-from tpvqa.cli.notices import about_calibration, about_start, about_vlm, about_words
+from tpvqa.cli.notices import about_answers, about_calibration, about_start, about_vlm, about_words
 from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_options
 from tpvqa.cli.plan import Problem, Task
 from tpvqa.cli.saying import tell
@@ -106,6 +106,8 @@ def run(
         finally:
             writer.close()
         lost = _keep_experience(trial, ended)
+        for notice in about_answers(trial.vlm):
+            tell(f"note: {notice}", error=True)
     _finish(ended, folder, lost, as_json=as_json)
 
 

@@ -121,6 +121,32 @@ class VLMConfig(_Part):
     base_url: Annotated[str | None, AfterValidator(_address)] = setting(
         "--base-url", "Address of an OpenAI-like server."
     )
+    cache: str | None = setting(
+        "--cache",
+        "File of recorded answers: what is there is given, the rest is asked and written.",
+        file=True,
+    )
+    record: str | None = setting(
+        "--record", "The same, but everything is asked anew and written.", file=True
+    )
+    replay: str | None = setting(
+        "--replay", "The same, but the VLM is not needed: what is not there is refused.", file=True
+    )
+
+    @property
+    def answers(self) -> tuple[Literal["cache", "record", "replay"], str] | None:
+        """How recorded answers are used, and their file; None where they are not."""
+        if self.cache is not None:
+            return "cache", self.cache
+        if self.record is not None:
+            return "record", self.record
+        return None if self.replay is None else ("replay", self.replay)
+
+    @model_validator(mode="after")
+    def _one_use(self) -> Self:
+        if sum(each is not None for each in (self.cache, self.record, self.replay)) > 1:
+            raise ValueError("give one of --cache, --record and --replay")
+        return self
 
 
 class MonitorConfig(_Part):

@@ -26,6 +26,7 @@ from tpvqa.planning.without import plan_without
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending
 from tpvqa.vlm import VLM, Answer, Reply
+from tpvqa.vlm.checking import checked_answers
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.worlds import Execution, Report, Restorable, World
 from tpvqa.worlds.capabilities import Telling
@@ -242,19 +243,4 @@ def _named(frames: Mapping[str, Frame], look: int) -> dict[str, Frame]:
 
 def _answers(vlm: VLM, seen: Observation | None, questions: Sequence[Question]) -> list[Answer]:
     """One answer to each question, in order."""
-    answers = called(vlm, "ask", list, seen, questions)
-    if len(answers) != len(questions) or not all(isinstance(each, Answer) for each in answers):
-        kinds = ", ".join(sorted({type(each).__name__ for each in answers})) or "nothing"
-        raise PluginError(
-            f"{vlm.name} has to give {len(questions)} Answers to {len(questions)} questions, "
-            f"and gave {len(answers)} ({kinds})"
-        )
-    for question, answer in zip(questions, answers, strict=True):
-        if answer.question != question:
-            raise PluginError(
-                f"{vlm.name} has to answer each question in its place, and gave to "
-                f"{question.text!r} an answer to {getattr(answer.question, 'text', None)!r}"
-            )
-        if not isinstance(answer.reply, Reply):
-            raise PluginError(f"{vlm.name} has to give a Reply, and gave {answer.reply!r:.80}")
-    return answers
+    return checked_answers(vlm, called(vlm, "ask", list, seen, questions), questions)

@@ -7,6 +7,7 @@ from typing import Any, TypeVar, cast
 from pydantic import ValidationError
 
 from tpvqa.errors import EpisodeError, PluginError, TpvqaError
+from tpvqa.vlm.capabilities import kind_of
 from tpvqa.worlds import Restorable, World
 
 T = TypeVar("T")
@@ -84,7 +85,8 @@ MALFORMED = (ValidationError, AttributeError, KeyError, TypeError, ValueError)
 
 
 def _where(part: object, method: str) -> str:
-    return f"{type(part).__module__}.{type(part).__qualname__}.{method}"
+    kind = kind_of(part)
+    return f"{kind.__module__}.{kind.__qualname__}.{method}"
 
 
 def _short(value: object) -> str:

@@ -27,6 +27,7 @@ _KINDS = {
 }
 _WORDS = (("world", "simulator"), ("monitor", "majority"))
 _OPTIONS = ("options",)
+_ANSWERS = tuple(("vlm", name) for name in ("cache", "record", "replay"))
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 _WORD = re.compile(r"[a-z_]{1,40}")
 _SMALL = 10**6
@@ -49,6 +50,8 @@ def config_of(
     """
     config = started.config.but(vlm={"spec": started.vlm}, world={"spec": started.world})
     given = _given(named)
+    if any(key in given for key in _ANSWERS):  # one of them goes before all that the log names
+        config = config.but(vlm=dict.fromkeys(name for _, name in _ANSWERS))
     missing: list[tuple[str, str]] = []
     for setting in settings():
         key = setting.key

@@ -3,6 +3,9 @@
 A class says it, not an object: that a VLM is a noise model is known before one is made.
 """
 
+from collections.abc import Mapping
+from typing import Protocol, runtime_checkable
+
 from tpvqa.plugins import class_of
 
 
@@ -20,6 +23,29 @@ class FactsOnly:
 
 class SideBySide:
     """It may be asked from several threads at once, and gains by that."""
+
+
+class Deterministic:
+    """The same question about the same pictures always gets the same answer."""
+
+
+@runtime_checkable
+class Parametrised(Protocol):
+    """Its answers depend on more than its specification says: a prompt, sizes, weights."""
+
+    @property
+    def parameters(self) -> Mapping[str, str]:
+        """What else they depend on, by name; known without asking anything."""
+
+
+class StandsIn:
+    """It answers in the place of another VLM, and is whatever that one is.
+
+    Attributes:
+        stands_for: The class of the other one.
+    """
+
+    stands_for: type
 
 
 class SaidInFull:
@@ -40,21 +66,38 @@ class SaidInFull:
         raise NotImplementedError
 
 
+def kind_of(vlm: object) -> type:
+    """The class of a VLM, or of the one that it stands for; a class itself."""
+    return vlm.stands_for if isinstance(vlm, StandsIn) else class_of(vlm)
+
+
 def is_noise_model(vlm: object) -> bool:
     """Whether a VLM, or a class of VLMs, is a noise model."""
-    return issubclass(class_of(vlm), NoiseModel)
+    return issubclass(kind_of(vlm), NoiseModel)
 
 
 def needs_pictures(vlm: object) -> bool:
     """Whether a VLM, or a class of VLMs, needs pictures."""
-    return issubclass(class_of(vlm), NeedsPictures)
+    return issubclass(kind_of(vlm), NeedsPictures)
 
 
 def answers_facts_only(vlm: object) -> bool:
     """Whether a VLM, or a class of VLMs, answers nothing about whole actions."""
-    return issubclass(class_of(vlm), FactsOnly)
+    return issubclass(kind_of(vlm), FactsOnly)
 
 
 def may_be_asked_side_by_side(vlm: object) -> bool:
     """Whether a VLM, or a class of VLMs, may be asked from several threads at once."""
-    return issubclass(class_of(vlm), SideBySide)
+    return issubclass(kind_of(vlm), SideBySide)
+
+
+def is_deterministic(vlm: object) -> bool:
+    """Whether a VLM, or a class of VLMs, never answers the same otherwise."""
+    return issubclass(kind_of(vlm), Deterministic)
+
+
+def parameters_of(vlm: object) -> dict[str, str]:
+    """What the answers of a VLM depend on besides its specification; nothing where it says none."""
+    if not isinstance(vlm, Parametrised):
+        return {}
+    return {str(name): str(value) for name, value in vlm.parameters.items()}

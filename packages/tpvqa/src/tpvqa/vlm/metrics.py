@@ -117,3 +117,15 @@ def calibration_error(
         if inside.any():
             total += inside.mean() * abs(p_yes[inside].mean() - truth[inside].mean())
     return float(total)
+
+
+NEAREST = 1e-4
+"""To 0 or 1 of a probability in the log loss: one wrong certainty would decide it."""
+
+
+def log_loss(p_yes: NDArray[np.float64], truth: NDArray[np.bool_]) -> float | None:
+    """Mean negative log-likelihood of the truth, in nats; None where there is none."""
+    if not len(truth):
+        return None
+    p = np.clip(p_yes, NEAREST, 1 - NEAREST)
+    return float(-np.log(np.where(truth, p, 1 - p)).mean())

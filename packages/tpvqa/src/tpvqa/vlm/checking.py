@@ -1,0 +1,31 @@
+"""Whether a VLM, which may be anybody's, gave what it has to give."""
+
+from collections.abc import Sequence
+
+from tpvqa.errors import PluginError
+from tpvqa.questions.question import Question
+from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.protocol import VLM
+
+
+def checked_answers(vlm: VLM, answers: list[Answer], questions: Sequence[Question]) -> list[Answer]:
+    """The same answers, one to each question in order.
+
+    Raises:
+        PluginError: They are something else.
+    """
+    if len(answers) != len(questions) or not all(isinstance(each, Answer) for each in answers):
+        kinds = ", ".join(sorted({type(each).__name__ for each in answers})) or "nothing"
+        raise PluginError(
+            f"{vlm.name} has to give {len(questions)} Answers to {len(questions)} questions, "
+            f"and gave {len(answers)} ({kinds})"
+        )
+    for question, answer in zip(questions, answers, strict=True):
+        if answer.question != question:
+            raise PluginError(
+                f"{vlm.name} has to answer each question in its place, and gave to "
+                f"{question.text!r} an answer to {getattr(answer.question, 'text', None)!r}"
+            )
+        if not isinstance(answer.reply, Reply):
+            raise PluginError(f"{vlm.name} has to give a Reply, and gave {answer.reply!r:.80}")
+    return answers
