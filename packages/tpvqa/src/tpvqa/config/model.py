@@ -11,6 +11,8 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from tpvqa.addresses import checked_address
 
+DEVICE = r"^(auto|cpu|mps|cuda(:[0-9]{1,2})?)$"
+"""What a device is called."""
 LEAST_ACTIONS = 60
 """The limit of actions where none is given, unless `PLANS` times the first plan is more."""
 PLANS = 6
@@ -114,13 +116,22 @@ class VLMConfig(_Part):
 
     spec: str | None = setting(
         "--vlm",
-        "embedded (the default where there are pictures), openai:MODEL, or a noise model: "
+        "embedded (the default where there are pictures), openai:MODEL, hf:MODEL, or a noise model: "
         "oracle[:ACCURACY[:RHO[:PERSISTENT]]] (the default where there are none), "
         "recorded:MODEL[:HALF][:fresh], flawed:KIND[:…].",
     )
     base_url: Annotated[str | None, AfterValidator(_address)] = setting(
         "--base-url", "Address of an OpenAI-like server."
     )
+    device: Annotated[str | None, Field(pattern=DEVICE)] = setting(
+        "--device", "hf: auto (a GPU where there is one; the default), cpu, cuda, cuda:N or mps."
+    )
+    dtype: Literal["auto", "float32", "bfloat16", "float16"] | None = setting(
+        "--dtype",
+        "hf: auto (float32 on a CPU, else as the model was saved; the default), float32, bfloat16 "
+        "or float16.",
+    )
+    batch: int | None = setting("--batch", "hf: questions at once. Default: 16.", ge=1)
 
 
 class MonitorConfig(_Part):
@@ -363,5 +374,8 @@ class TrialConfig(_Part):
             "simulator": self.world.simulator,
             "pictures": self.world.pictures,
             "base_url": self.vlm.base_url,
+            "device": self.vlm.device,
+            "dtype": self.vlm.dtype,
+            "batch": self.vlm.batch,
         }
         return self.options | {key: value for key, value in named.items() if value is not None}

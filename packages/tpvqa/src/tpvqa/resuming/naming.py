@@ -25,7 +25,7 @@ _KINDS = {
     ("monitor", "spec"): Kind.MONITOR,
     ("planner", "spec"): Kind.PLANNER,
 }
-_WORDS = (("world", "simulator"), ("monitor", "majority"))
+_WORDS = (("world", "simulator"), ("monitor", "majority"), ("vlm", "device"))
 _OPTIONS = ("options",)
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 _WORD = re.compile(r"[a-z_]{1,40}")
