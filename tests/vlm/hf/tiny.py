@@ -325,9 +325,11 @@ def save(family: str, folder: Path, *, seed: int = 0, outspoken: bool = False) -
                 weights.normal_(0, 0.25)
         if outspoken:
             head = model.get_output_embeddings().weight
-            yes, no = (processor.tokenizer.convert_tokens_to_ids(w) for w in ("yes", "no"))
-            head[yes] *= 12
-            head[no] = -head[yes]
+            number = processor.tokenizer.convert_tokens_to_ids
+            head *= 0.1
+            direction = torch.randn_like(head[0]) * 4
+            for word, times in (("yes", 1.0), ("No", 0.9), ("▁no", -1.0), ("▁Yes", -0.9)):
+                head[number(word)] = direction * times
     model.save_pretrained(folder)
     if getattr(processor, "video_processor", None) is NO_VIDEOS:
         processor.tokenizer.save_pretrained(folder)

@@ -102,24 +102,40 @@ def ask(
     question: Annotated[list[str], typer.Argument(help="Questions with the answer yes or no.")],
     *,
     vlm: Annotated[
-        str | None, typer.Option(help="embedded (the default), openai:MODEL or a plug-in.")
+        str | None,
+        typer.Option(help="embedded (the default), openai:MODEL, hf:MODEL or a plug-in."),
     ] = None,
     base_url: Annotated[
         str | None, typer.Option(help="Address of an OpenAI-compatible server, with its path.")
     ] = None,
+    device: Annotated[
+        str | None, typer.Option(help="hf: auto (the default), cpu, cuda, cuda:N or mps.")
+    ] = None,
+    dtype: Annotated[
+        str | None, typer.Option(help="hf: auto (the default), float32, bfloat16 or float16.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Ask about a picture: prints each answer and P(yes)."""
+    from tpvqa.config.layers import Layer, combined
     from tpvqa.defaults import default_vlm
     from tpvqa.pddl import Atom
-    from tpvqa.plugins import Closing
+    from tpvqa.plugins import Closing, see_taken
     from tpvqa.questions import FactQuestion, Way
     from tpvqa.vlm.making import make_vlm
     from tpvqa.vlm.pictures import observe_file
     from tpvqa.vlm.sight import ask_seeing
 
     observation = observe_file(image)
-    model, _ = make_vlm(vlm or default_vlm(), {"base_url": base_url})
+    settings = {
+        ("vlm", name): value
+        for name, value in (("base_url", base_url), ("device", device), ("dtype", dtype))
+        if value is not None
+    }
+    places = {key: f"--{key[1].replace('_', '-')}" for key in settings}
+    options = combined([Layer(settings, places)]).plugin_options()
+    model, taken = make_vlm(vlm or default_vlm(), options)
+    see_taken(options, taken, options)
     # A VLM that looks at pictures goes by the words alone.
     asked = [FactQuestion(text, Way.PRECONDITION, Atom("asked")) for text in question]
     try:

@@ -44,7 +44,11 @@ class Blip:
         ).pixel_values.to(loaded.device, model.dtype)
         seen = model.vision_model(pixel_values=pixels).last_hidden_state[shown]
         words = loaded.processor.tokenizer(
-            [each.text for each in asked], padding=True, truncation=True, return_tensors="pt"
+            [each.text for each in asked],
+            padding=True,
+            padding_side="right",
+            truncation=True,
+            return_tensors="pt",
         ).to(loaded.device)
         question = model.text_encoder(
             input_ids=words.input_ids,
@@ -54,13 +58,17 @@ class Blip:
                 seen.shape[:-1], dtype=torch.long, device=loaded.device
             ),
         ).last_hidden_state
-        sides = [self._log_of(answer, question, words.attention_mask) for answer in self._answers]
-        return torch.stack(sides, -1)
+        # By length, as the decoder of transformers 5.23 heeds no mask of what it answers.
+        lengths = words.attention_mask.sum(-1)
+        told = question.new_empty(len(asked), len(ANSWERS), dtype=torch.float32)
+        for length in torch.unique(lengths).tolist():
+            rows = (lengths == length).nonzero().squeeze(-1)
+            sides = [self._log_of(answer, question[rows, :length]) for answer in self._answers]
+            told = told.index_copy(0, rows, torch.stack(sides, -1))
+        return told
 
-    def _log_of(
-        self, answer: Sequence[int], question: "torch.Tensor", mask: "torch.Tensor"
-    ) -> "torch.Tensor":
-        """The logarithm of the probability of an answer to each question."""
+    def _log_of(self, answer: Sequence[int], question: "torch.Tensor") -> "torch.Tensor":
+        """The logarithm of the probability of an answer to each question, none of them padded."""
         import torch
 
         model, device = self._loaded.model, self._loaded.device
@@ -70,7 +78,6 @@ class Blip:
         logits = model.text_decoder(
             input_ids=before,
             encoder_hidden_states=question,
-            encoder_attention_mask=mask,
             use_cache=False,
         ).logits
         told = logits.float().log_softmax(-1).gather(-1, said[..., None])

@@ -109,11 +109,12 @@ class Chat:
 
     def _inputs(self, asked: Sequence[Asked]) -> Any:
         loaded = self._loaded
-        options = {"padding": True, "padding_side": "right", "return_tensors": "pt"}
+        options = {"padding": True, "padding_side": "right"}
         if self._untold is not None:
             inputs = loaded.processor(
                 images=[list(each.pictures) for each in asked],
                 text=[self._untold_prompt(each) for each in asked],
+                return_tensors="pt",
                 **options,
             )
             inputs.pop("labels", None)
@@ -123,6 +124,7 @@ class Chat:
                 add_generation_prompt=True,
                 tokenize=True,
                 return_dict=True,
+                return_tensors="pt",
                 processor_kwargs=options,
             )
         return inputs.to(loaded.device, loaded.model.dtype)
