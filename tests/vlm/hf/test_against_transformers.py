@@ -18,7 +18,12 @@ from tpvqa.vlm.hf.family import Asked
 from tpvqa.vlm.hf.loading import family_of, load
 from tpvqa.vlm.hf.vlm import HuggingFaceVLM
 
-TEXTS = ("Is the left lamp lit?", "Are both the lamps dark?", "Is a lamp lit?", "Is the right dark?")
+TEXTS = (
+    "Is the left lamp lit?",
+    "Are both the lamps dark?",
+    "Is a lamp lit?",
+    "Is the right dark?",
+)
 YES, NO = ("yes", "Yes", "▁yes", "▁Yes"), ("no", "No", "▁no", "▁No")
 TOLD = "Answer with one word, yes or no."
 Pair = tuple[float, float]
@@ -122,7 +127,7 @@ def test_answers_are_those_of_the_plain_call(family: str, saved: Saved) -> None:
             yes, no = plain(family, folder, [image], answer.question.text)
             if yes + no > 0.5:
                 assert answer.p_yes == pytest.approx(yes / (yes + no), rel=1e-3)
-                assert answer.leftover == pytest.approx(1 - yes - no, abs=1e-4)
+                assert answer.leftover == pytest.approx(1 - yes - no, abs=2e-4)
                 assert answer.source == "logprobs"
                 assert answer.reply is (Reply.YES if yes > no else Reply.NO)
             replies.add(answer.reply)
@@ -135,7 +140,7 @@ def test_a_chat_model_sees_several_views_at_once(family: str, saved: Saved) -> N
     views = [picture(), picture(left=False, right=True)]
     (answer,) = HuggingFaceVLM(str(folder)).ask(observation(*views), questions(TEXTS[0]))
     yes, no = plain(family, folder, views, TEXTS[0])
-    assert answer.leftover == pytest.approx(1 - yes - no, abs=1e-4)
+    assert answer.leftover == pytest.approx(1 - yes - no, abs=2e-4)
     if yes + no > 0.5:
         assert answer.p_yes == pytest.approx(yes / (yes + no), rel=1e-3)
 
@@ -159,7 +164,7 @@ def test_company_changes_no_answer(family: str, saved: Saved) -> None:
     by_twos = HuggingFaceVLM(str(folder), batch=2).ask(seen, questions(*TEXTS[::-1]))[::-1]
     for one, other in zip(together, by_twos, strict=True):
         assert one.reply is other.reply
-        assert one.leftover == pytest.approx(other.leftover, abs=1e-4)
+        assert one.leftover == pytest.approx(other.leftover, abs=2e-4)
 
 
 def test_the_same_question_about_the_same_picture_has_the_same_answer(saved: Saved) -> None:

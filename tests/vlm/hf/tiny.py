@@ -22,11 +22,50 @@ from transformers.models.vilt.image_processing_pil_vilt import ViltImageProcesso
 from tpvqa.vlm.hf.processors import NO_VIDEOS, without_videos
 
 Made = tuple[Any, Any]
-WORDS = (
-    "is are the a left right both lamp lamps lit dark ? . , answer with one word user assistant "
-    "these 2 pictures show same moment from several views en yes Yes ▁yes ▁Yes no No ▁no ▁No maybe "
-    "picture grey \n"
-).split(" ")
+WORDS = [
+    "is",
+    "are",
+    "the",
+    "a",
+    "left",
+    "right",
+    "both",
+    "lamp",
+    "lamps",
+    "lit",
+    "dark",
+    "?",
+    ".",
+    ",",
+    "answer",
+    "with",
+    "one",
+    "word",
+    "user",
+    "assistant",
+    "these",
+    "2",
+    "pictures",
+    "show",
+    "same",
+    "moment",
+    "from",
+    "several",
+    "views",
+    "en",
+    "yes",
+    "Yes",
+    "▁yes",
+    "▁Yes",
+    "no",
+    "No",
+    "▁no",
+    "▁No",
+    "maybe",
+    "picture",
+    "grey",
+    "\n",
+]
 SPECIAL = ("<pad>", "<unk>", "<s>", "</s>")
 TEMPLATE = (
     "{% for message in messages %}{{ message['role'] }} {% for part in message['content'] %}"
@@ -174,9 +213,7 @@ def qwen2_5_vl() -> Made:
 
 
 def _idefics(kind: str, images: Any, *videos: Any) -> Made:
-    words = tokenizer(
-        "<fake_token_around_image>", "<image>", "<global-img>", "<end_of_utterance>"
-    )
+    words = tokenizer("<fake_token_around_image>", "<image>", "<global-img>", "<end_of_utterance>")
     config = getattr(transformers, f"{kind}Config")(
         text_config={"model_type": "llama", **text(len(words))},
         vision_config=vision(patch_size=7),
@@ -214,9 +251,7 @@ def llava() -> Made:
         tie_word_embeddings=False,
     )
     processor = transformers.LlavaProcessor(
-        CLIPImageProcessorPil(
-            size={"shortest_edge": 28}, crop_size={"height": 28, "width": 28}
-        ),
+        CLIPImageProcessorPil(size={"shortest_edge": 28}, crop_size={"height": 28, "width": 28}),
         words,
         patch_size=14,
         vision_feature_select_strategy="default",
@@ -315,7 +350,7 @@ def save(family: str, folder: Path, *, seed: int = 0, outspoken: bool = False) -
         family: One of `ALL`.
         folder: Where.
         seed: Of its weights.
-        outspoken: Whether a chat model nearly always begins with yes or no.
+        outspoken: Whether it nearly always says yes or no; not for BLIP.
     """
     torch.manual_seed(seed)
     model, processor = ALL[family]()
@@ -323,11 +358,13 @@ def save(family: str, folder: Path, *, seed: int = 0, outspoken: bool = False) -
         for weights in model.parameters():  # as they are made, everything is nearly alike
             if weights.ndim > 1:
                 weights.normal_(0, 0.25)
-        if outspoken:
+        if outspoken and family == "vilt":
+            model.classifier[-1].bias[2] = -9
+        elif outspoken:
             head = model.get_output_embeddings().weight
             number = processor.tokenizer.convert_tokens_to_ids
-            head *= 0.1
-            direction = torch.randn_like(head[0]) * 4
+            head *= 0.05
+            direction = torch.randn_like(head[0]) * 25
             for word, times in (("yes", 1.0), ("No", 0.9), ("▁no", -1.0), ("▁Yes", -0.9)):
                 head[number(word)] = direction * times
     model.save_pretrained(folder)

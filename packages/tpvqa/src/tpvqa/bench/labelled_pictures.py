@@ -41,6 +41,27 @@ def ask_pictures(
         CalibrationError: The set knows no fact that there is a question about.
         TpvqaError: A picture cannot be read, or the VLM not be asked.
     """
+    questions = questions_about(pictures, books)
+    rows: list[LabelledAnswer] = []
+    for look, picture in enumerate(pictures.manifest.pictures):
+        asked = [each for each in questions if hidden or shows(picture, each)]
+        rows += _ask(vlm, pictures, picture, look, asked)
+        done()
+    return rows
+
+
+def questions_about(
+    pictures: PictureSet[P], books: Sequence[QuestionBook] | None = None
+) -> list[FactQuestion]:
+    """Every question about the facts of a set, once.
+
+    Args:
+        pictures: The set.
+        books: The questions; by default those of the shipped tasks of the set's domain.
+
+    Raises:
+        CalibrationError: The set knows no fact that there is a question about.
+    """
     domain = pictures.manifest.domain
     books = list(_shipped(domain)) if books is None else books
     questions = list(_questions(pictures, books))
@@ -48,14 +69,9 @@ def ask_pictures(
         names = ", ".join(book.task.name for book in books) or f"a shipped task of {domain!r}"
         raise CalibrationError(
             f"{pictures.folder}: no fact of this set is asked about in {names}. Name a set of that "
-            "domain, your own --domain, --problem and --questions, or calibrate from episodes"
+            "domain, your own --domain, --problem and --questions, or take episodes"
         )
-    rows: list[LabelledAnswer] = []
-    for look, picture in enumerate(pictures.manifest.pictures):
-        asked = [each for each in questions if hidden or _shows(picture, each)]
-        rows += _ask(vlm, pictures, picture, look, asked)
-        done()
-    return rows
+    return questions
 
 
 def _shipped(domain: str) -> Iterator[QuestionBook]:
@@ -82,7 +98,8 @@ def _questions(pictures: PictureSet[P], books: Sequence[QuestionBook]) -> Iterat
                 yield book.fact(Literal(atom))
 
 
-def _shows(picture: P, question: FactQuestion) -> bool:
+def shows(picture: P, question: FactQuestion) -> bool:
+    """Whether a picture tells the answer to a question."""
     return any(atom.pddl() in picture.seen for atom in question.atoms)
 
 

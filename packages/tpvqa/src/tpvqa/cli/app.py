@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from tpvqa.cli import bench, calibrate, label, plan, questions, risk, run
+from tpvqa.cli import bench, calibrate, label, plan, questions, risk, run, train
 from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.cli.saying import tell
 from tpvqa.errors import TpvqaError, WriteError, cut
@@ -68,6 +68,7 @@ run.register(app)
 label.register(app)
 calibrate.register(app)
 risk.register(app)
+train.register(app)
 bench.register(app)
 
 

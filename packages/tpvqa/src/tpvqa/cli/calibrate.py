@@ -225,14 +225,14 @@ def _from_pictures(
     from tpvqa.vlm.making import make_vlm
     from tpvqa.worlds.pictures import load_set
 
-    opened = load_set(_shipped_set() if where == "shipped" else Path(where))
-    books = _own_book(*own)
+    opened = load_set(shipped_set() if where == "shipped" else Path(where))
+    books = own_book(*own)
     asked, _ = make_vlm(vlm, {})
     with _counting("pictures", len(opened.manifest.pictures)) as done:
         return asked.name, ask_pictures(asked, opened, books, hidden=hidden, done=done)
 
 
-def _shipped_set() -> Path:
+def shipped_set() -> Path:
     """The pictures that come with the shipped tasks."""
     from tpvqa.distributions import HOUSEHOLD, how_to_install
     from tpvqa.errors import CalibrationError
@@ -250,9 +250,10 @@ def _shipped_set() -> Path:
     return found[0]
 
 
-def _own_book(
+def own_book(
     domain: Path | None, problem: Path | None, questions: Path | None
 ) -> "list[QuestionBook] | None":
+    """The questions of one's own domain; None where none is named."""
     from tpvqa.pddl import load_task
     from tpvqa.questions import QuestionBook
     from tpvqa.tasks import QUESTIONS, beside

@@ -40,7 +40,9 @@ class Chat:
         self._tokenizer = loaded.processor.tokenizer
         self._keeps = "logits_to_keep" in inspect.signature(loaded.model.forward).parameters
         if loaded.model.config.is_encoder_decoder:
-            raise AnswerError(f"{loaded.name}: models that encode the question apart are not known.")
+            raise AnswerError(
+                f"{loaded.name}: models that encode the question apart are not known."
+            )
         self._untold = _UNTOLD.get(loaded.model.config.model_type)
         if self._untold is None and not _has_template(loaded.processor):
             raise AnswerError(
@@ -138,10 +140,14 @@ class Chat:
         content: list[dict[str, Any]] = [
             {"type": "image", "image": picture} for picture in asked.pictures
         ]
-        content.append({"type": "text", "text": prompt(asked.text, self._instruction, len(asked.pictures))})
+        content.append(
+            {"type": "text", "text": prompt(asked.text, self._instruction, len(asked.pictures))}
+        )
         return [{"role": "user", "content": content}]
 
 
 def _has_template(processor: Any) -> bool:
     tokenizer = processor.tokenizer
-    return bool(getattr(processor, "chat_template", None) or getattr(tokenizer, "chat_template", None))
+    return bool(
+        getattr(processor, "chat_template", None) or getattr(tokenizer, "chat_template", None)
+    )

@@ -5,9 +5,7 @@ from contextlib import contextmanager
 
 from tpvqa.errors import AnswerError
 
-_REMEDY = (
-    "Take a smaller model, --dtype bfloat16, fewer questions at once (--batch 1), or another --device"
-)
+_REMEDY = "Take a smaller model, --dtype bfloat16, fewer questions at once (--batch 1), or another --device"
 
 
 @contextmanager

@@ -107,9 +107,10 @@ def _class_of(name: str, config: Any) -> Any:
             raise AnswerError(
                 f"{name} is a {config.architectures[0]}, which answers no questions. Take one that "
                 f"was fine-tuned for it (a {kind}), e.g. "
-                + {"vilt": "hf:dandelin/vilt-b32-finetuned-vqa", "blip": "hf:Salesforce/blip-vqa-base"}[
-                    config.model_type
-                ]
+                + {
+                    "vilt": "hf:dandelin/vilt-b32-finetuned-vqa",
+                    "blip": "hf:Salesforce/blip-vqa-base",
+                }[config.model_type]
             )
         return getattr(transformers, kind)
     if type(config) not in transformers.MODEL_FOR_IMAGE_TEXT_TO_TEXT_MAPPING:

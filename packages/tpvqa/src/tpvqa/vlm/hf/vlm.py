@@ -11,7 +11,7 @@ from tpvqa.errors import AnswerError, PictureError, PluginError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pictures import decoded
 from tpvqa.questions.question import Question
-from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.answer import Answer
 from tpvqa.vlm.capabilities import NeedsPictures
 from tpvqa.vlm.chat_completions import Reading
 from tpvqa.vlm.hf.device import AUTO
@@ -161,7 +161,9 @@ class HuggingFaceVLM(NeedsPictures):
                 [
                     reading
                     for at in range(0, len(texts), self._batch)
-                    for reading in read(family, [Asked(seen, t) for t in texts[at : at + self._batch]])
+                    for reading in read(
+                        family, [Asked(seen, t) for t in texts[at : at + self._batch]]
+                    )
                 ]
                 for seen in shown
             ]
