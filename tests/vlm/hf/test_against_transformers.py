@@ -22,7 +22,7 @@ TEXTS = (
     "Is the left lamp lit?",
     "Are both the lamps dark?",
     "Is a lamp lit?",
-    "Is the right dark?",
+    "Is the right lit?",
 )
 YES, NO = ("yes", "Yes", "▁yes", "▁Yes"), ("no", "No", "▁no", "▁No")
 TOLD = "Answer with one word, yes or no."

@@ -20,52 +20,13 @@ from transformers.models.smolvlm.image_processing_pil_smolvlm import SmolVLMImag
 from transformers.models.vilt.image_processing_pil_vilt import ViltImageProcessorPil
 
 from tpvqa.vlm.hf.processors import NO_VIDEOS, without_videos
+from tpvqa.vlm.hf.quiet import quiet
 
 Made = tuple[Any, Any]
-WORDS = [
-    "is",
-    "are",
-    "the",
-    "a",
-    "left",
-    "right",
-    "both",
-    "lamp",
-    "lamps",
-    "lit",
-    "dark",
-    "?",
-    ".",
-    ",",
-    "answer",
-    "with",
-    "one",
-    "word",
-    "user",
-    "assistant",
-    "these",
-    "2",
-    "pictures",
-    "show",
-    "same",
-    "moment",
-    "from",
-    "several",
-    "views",
-    "en",
-    "yes",
-    "Yes",
-    "▁yes",
-    "▁Yes",
-    "no",
-    "No",
-    "▁no",
-    "▁No",
-    "maybe",
-    "picture",
-    "grey",
-    "\n",
-]
+_SAID = """is are the a left right both lamp lamps lit dark on it ? . , answer with one word user
+assistant these 2 pictures show same moment from several views en yes Yes ▁yes ▁Yes no No ▁no ▁No
+maybe picture grey"""
+WORDS = tuple(_SAID.split())
 SPECIAL = ("<pad>", "<unk>", "<s>", "</s>")
 TEMPLATE = (
     "{% for message in messages %}{{ message['role'] }} {% for part in message['content'] %}"
@@ -367,16 +328,17 @@ def save(family: str, folder: Path, *, seed: int = 0, outspoken: bool = False) -
             direction = torch.randn_like(head[0]) * 25
             for word, times in (("yes", 1.0), ("No", 0.9), ("▁no", -1.0), ("▁Yes", -0.9)):
                 head[number(word)] = direction * times
-    model.save_pretrained(folder)
-    if getattr(processor, "video_processor", None) is NO_VIDEOS:
-        processor.tokenizer.save_pretrained(folder)
-        processor.image_processor.save_pretrained(folder)
-        described = {
-            "processor_class": type(processor).__name__,
-            **{k: 4 for k in ("image_seq_length", "image_seq_len") if hasattr(processor, k)},
-        }
-        (folder / "processor_config.json").write_text(json.dumps(described))
-        (folder / "chat_template.jinja").write_text(processor.chat_template)
-    else:
-        processor.save_pretrained(folder)
+    with quiet():
+        model.save_pretrained(folder)
+        if getattr(processor, "video_processor", None) is NO_VIDEOS:
+            processor.tokenizer.save_pretrained(folder)
+            processor.image_processor.save_pretrained(folder)
+            described = {
+                "processor_class": type(processor).__name__,
+                **{k: 4 for k in ("image_seq_length", "image_seq_len") if hasattr(processor, k)},
+            }
+            (folder / "processor_config.json").write_text(json.dumps(described))
+            (folder / "chat_template.jinja").write_text(processor.chat_template)
+        else:
+            processor.save_pretrained(folder)
     return folder

@@ -116,8 +116,8 @@ class VLMConfig(_Part):
 
     spec: str | None = setting(
         "--vlm",
-        "embedded (the default where there are pictures), openai:MODEL, hf:MODEL, or a noise model: "
-        "oracle[:ACCURACY[:RHO[:PERSISTENT]]] (the default where there are none), "
+        "embedded (the default where there are pictures), openai:MODEL, hf:MODEL, or a noise "
+        "model: oracle[:ACCURACY[:RHO[:PERSISTENT]]] (the default where there are none), "
         "recorded:MODEL[:HALF][:fresh], flawed:KIND[:…].",
     )
     base_url: Annotated[str | None, AfterValidator(_address)] = setting(

@@ -17,6 +17,7 @@ from tpvqa.vlm.hf.device import AUTO
 from tpvqa.vlm.hf.failures import told_plainly
 from tpvqa.vlm.hf.family import Asked, Family
 from tpvqa.vlm.hf.loading import family_of, load, see_installed
+from tpvqa.vlm.hf.quiet import quiet
 from tpvqa.vlm.hf.source import source_of
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ RATE = 2e-4
 EVERY = 30.0
 """Seconds between checkpoints."""
 _ROOM = "Make room, or name another folder with --out"
+_RISING = 0.05
 _KEPT = 256
 """Decoded pictures that are kept."""
 
@@ -103,7 +105,8 @@ class LoraTrainer:
             lora_dropout=0.0,
             target_modules="all-linear",
         )
-        adapted = get_peft_model(loaded.model, config)
+        with quiet():
+            adapted = get_peft_model(loaded.model, config)
         adapted.eval()
         return family_of(loaded), adapted
 
@@ -113,7 +116,8 @@ class LoraTrainer:
         base = self._source.base
         config.base_model_name_or_path = str(Path(base).resolve()) if self._source.on_disk else base
         try:
-            self._adapted.save_pretrained(str(folder), safe_serialization=True)
+            with quiet():
+                self._adapted.save_pretrained(str(folder), safe_serialization=True)
             (folder / "README.md").unlink(missing_ok=True)  # a form with nothing filled in
         except OSError as error:
             raise WriteError.of(folder, error, _ROOM) from error
@@ -131,8 +135,8 @@ class _Fitting:
         self._family, self.adapted = made
         self._examples, self._settings = examples, settings
         self._weights = {n: p for n, p in self.adapted.named_parameters() if p.requires_grad}
-        rate = RATE if settings.rate is None else settings.rate
-        self._optimizer = torch.optim.AdamW(self._weights.values(), lr=rate, weight_decay=0.0)
+        self._rate = RATE if settings.rate is None else settings.rate
+        self._optimizer = torch.optim.AdamW(self._weights.values(), weight_decay=0.0)
         self._per_epoch = -(-len(examples) // settings.batch)
         self.steps, self.done = settings.epochs * self._per_epoch, 0
         self._pictures: dict[str, Image.Image] = {}
@@ -141,7 +145,10 @@ class _Fitting:
         """Learn from the next few examples."""
         import torch
 
+        torch.manual_seed(self._settings.seed + self.done)  # some architectures draw, as ViLT does
         batch = self._batch()
+        for group in self._optimizer.param_groups:
+            group["lr"] = self._rate * self._share()
         self._optimizer.zero_grad()
         logs = self._family.log_masses([self._asked(each) for each in batch])
         truth = torch.tensor([0 if each.truth else 1 for each in batch], device=logs.device)
@@ -155,6 +162,10 @@ class _Fitting:
         torch.nn.utils.clip_grad_norm_(self._weights.values(), 1.0)
         self._optimizer.step()
         self.done += 1
+
+    def _share(self) -> float:
+        """Of the learning rate: it rises over the first twentieth and then falls to nothing."""
+        return min((self.done + 1) / (_RISING * self.steps), 1 - self.done / self.steps)
 
     def _batch(self) -> list[Example]:
         epoch, at = divmod(self.done, self._per_epoch)

@@ -1,1 +1,1 @@
-"""Local models of the transformers library as the VLM: ViLT, BLIP, and chat models with pictures."""
+"""Local models of the transformers library: ViLT, BLIP, and chat models that take pictures."""

@@ -5,7 +5,10 @@ from contextlib import contextmanager
 
 from tpvqa.errors import AnswerError
 
-_REMEDY = "Take a smaller model, --dtype bfloat16, fewer questions at once (--batch 1), or another --device"
+_REMEDY = (
+    "Take a smaller model, --dtype bfloat16, fewer questions at once (--batch 1), or another "
+    "--device"
+)
 
 
 @contextmanager

@@ -1,8 +1,6 @@
 """From a name to a model that can be asked. No code of a model's makers is ever run."""
 
 import importlib.util
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from tpvqa.errors import AnswerError, MissingExtraError
@@ -12,10 +10,17 @@ from tpvqa.vlm.hf.device import device_of, dtype_of
 from tpvqa.vlm.hf.failures import told_plainly
 from tpvqa.vlm.hf.family import Family, Loaded
 from tpvqa.vlm.hf.processors import processor_of
+from tpvqa.vlm.hf.quiet import quiet
 from tpvqa.vlm.hf.source import Source, source_of
 from tpvqa.vlm.hf.vilt import Vilt
 
 PACKAGES = ("torch", "transformers", "peft")
+
+_ANSWERING = {
+    "vilt": ("ViltForQuestionAnswering", "hf:dandelin/vilt-b32-finetuned-vqa"),
+    "blip": ("BlipForQuestionAnswering", "hf:Salesforce/blip-vqa-base"),
+}
+"""Architectures with a class for questions, and a model of each."""
 
 
 def see_installed(purpose: str) -> None:
@@ -43,7 +48,7 @@ def load(model: str, *, device: str, dtype: str, trained: bool = True) -> Loaded
     """
     name, source = f"hf:{model}", source_of(model)
     where = device_of(device)
-    with _quiet(), told_plainly(name, "loaded"):
+    with quiet(), told_plainly(name, "loaded"):
         try:
             config = _config(name, source)
             kind = _class_of(name, config)
@@ -100,17 +105,13 @@ def _class_of(name: str, config: Any) -> Any:
     import transformers
     from transformers import AutoModelForImageTextToText
 
-    classes = {"vilt": "ViltForQuestionAnswering", "blip": "BlipForQuestionAnswering"}
-    kind = classes.get(config.model_type)
-    if kind is not None:
+    known = _ANSWERING.get(config.model_type)
+    if known is not None:
+        kind, example = known
         if config.architectures and kind not in config.architectures:
             raise AnswerError(
                 f"{name} is a {config.architectures[0]}, which answers no questions. Take one that "
-                f"was fine-tuned for it (a {kind}), e.g. "
-                + {
-                    "vilt": "hf:dandelin/vilt-b32-finetuned-vqa",
-                    "blip": "hf:Salesforce/blip-vqa-base",
-                }[config.model_type]
+                f"was fine-tuned for it (a {kind}), e.g. {example}."
             )
         return getattr(transformers, kind)
     if type(config) not in transformers.MODEL_FOR_IMAGE_TEXT_TO_TEXT_MAPPING:
@@ -138,19 +139,3 @@ def _not_had(name: str, source: Source, error: Exception) -> str:
         "there a network, and is the name right? Without a network, name a folder that holds the "
         f"model. ({said})"
     )
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Without the bars and warnings of transformers, which are for who writes programs with it."""
-    from transformers.utils import logging
-
-    level, bars = logging.get_verbosity(), logging.is_progress_bar_enabled()
-    logging.set_verbosity(logging.CRITICAL)
-    logging.disable_progress_bar()
-    try:
-        yield
-    finally:
-        logging.set_verbosity(level)
-        if bars:
-            logging.enable_progress_bar()

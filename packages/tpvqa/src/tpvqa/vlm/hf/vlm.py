@@ -18,6 +18,7 @@ from tpvqa.vlm.hf.device import AUTO
 from tpvqa.vlm.hf.failures import told_plainly
 from tpvqa.vlm.hf.family import Asked, Family
 from tpvqa.vlm.hf.loading import family_of, load, see_installed
+from tpvqa.vlm.hf.quiet import quiet
 from tpvqa.vlm.hf.reading import read, together
 from tpvqa.vlm.pictures import grey_frame
 
@@ -156,7 +157,7 @@ class HuggingFaceVLM(NeedsPictures):
         """Ask the model."""
         pictures = tuple(_pixels(frame) for frame in frames)
         shown = [pictures] if family.several else [(picture,) for picture in pictures]
-        with told_plainly(self.name, "asked"):
+        with quiet(), told_plainly(self.name, "asked"):
             views = [
                 [
                     reading
@@ -168,6 +169,14 @@ class HuggingFaceVLM(NeedsPictures):
                 for seen in shown
             ]
         return {text: together(of_text) for text, *of_text in zip(texts, *views, strict=True)}
+
+    def _view(self, family: Family, asked: Sequence[Asked]) -> list[Reading]:
+        """Ask as much at once as may be."""
+        return [
+            reading
+            for at in range(0, len(asked), self._batch)
+            for reading in read(family, asked[at : at + self._batch])
+        ]
 
 
 def _pixels(frame: Frame) -> "Image.Image":
