@@ -20,7 +20,15 @@ __all__ = ["tpvqa"]
 def episode(tpvqa: Run, tmp_path: Path, model: Path) -> Path:
     """A trial in a world of pictures; its log says what truly came of every action."""
     lamps = make_set(tmp_path / "lamps")
-    words = ("run", DOMAIN, PROBLEM, "--questions", QUESTIONS, "--world", f"pictures:{lamps}")
+    words: tuple[object, ...] = (
+        "run",
+        DOMAIN,
+        PROBLEM,
+        "--questions",
+        QUESTIONS,
+        "--world",
+        f"pictures:{lamps}",
+    )
     words += ("--vlm", f"hf:{model}", "--seed", "5", "--monitor", "tpvqa", "--max-actions", "12")
     code, _, error = tpvqa(*words, "--out", "episode")
     assert code in (0, 1), error

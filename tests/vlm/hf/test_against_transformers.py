@@ -51,7 +51,7 @@ def of_blip(folder: Path, image: Image.Image, text: str) -> Pair:
     for word in ("yes", "no"):
         number = processor.tokenizer.convert_tokens_to_ids(word)
         start = model.config.text_config.bos_token_id
-        seen = {}
+        seen: dict[str, Any] = {}
         hook = model.text_decoder.register_forward_hook(
             lambda _module, _inputs, output, seen=seen: seen.update(logits=output.logits)
         )

@@ -36,7 +36,15 @@ def test_a_seeded_trial_runs_and_is_the_same_again(
     family: str, saved: Saved, lamps: Path, tpvqa: Run, tmp_path: Path
 ) -> None:
     model = saved(family, outspoken=family != "blip")
-    words = ("run", DOMAIN, PROBLEM, "--questions", QUESTIONS, "--world", f"pictures:{lamps}")
+    words: tuple[object, ...] = (
+        "run",
+        DOMAIN,
+        PROBLEM,
+        "--questions",
+        QUESTIONS,
+        "--world",
+        f"pictures:{lamps}",
+    )
     words += ("--vlm", f"hf:{model}", "--device", "cpu", "--seed", "3", "--max-actions", "5")
     words += ("--monitor", "tpvqa", "--max-repeats", "2")
     logs = []

@@ -117,7 +117,7 @@ def ask(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Ask about a picture: prints each answer and P(yes)."""
-    from tpvqa.config.layers import Layer, combined
+    from tpvqa.config.layers import Key, Layer, combined
     from tpvqa.defaults import default_vlm
     from tpvqa.pddl import Atom
     from tpvqa.plugins import Closing, see_taken
@@ -127,7 +127,7 @@ def ask(
     from tpvqa.vlm.sight import ask_seeing
 
     observation = observe_file(image)
-    settings = {
+    settings: dict[Key, str] = {
         ("vlm", name): value
         for name, value in (("base_url", base_url), ("device", device), ("dtype", dtype))
         if value is not None

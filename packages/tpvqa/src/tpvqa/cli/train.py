@@ -87,7 +87,7 @@ def train(
     an adapter is written (LoRA), to be taken as --vlm hf:FOLDER.
     """
     from tpvqa.cli.progress import CountBar
-    from tpvqa.config.layers import Layer, combined
+    from tpvqa.config.layers import Key, Layer, combined
     from tpvqa.errors import TrainingError
     from tpvqa.training.making import make_trainer
     from tpvqa.training.protocol import TrainingSettings
@@ -105,7 +105,9 @@ def train(
     out = Path(out)
     see_free(out)
     named = {"device": device, "dtype": dtype}
-    values = {("vlm", name): value for name, value in named.items() if value is not None}
+    values: dict[Key, str] = {
+        ("vlm", name): value for name, value in named.items() if value is not None
+    }
     options = combined([Layer(values, {key: f"--{key[1]}" for key in values})]).plugin_options()
     trainer = make_trainer(vlm, options)
     with CountBar("episodes") as bar:

@@ -158,7 +158,7 @@ class _Fitting:
                 f"after {self.done} steps the loss is no number any more. Take a smaller --rate, "
                 "or --dtype float32"
             )
-        loss.backward()  # type: ignore[no-untyped-call]
+        loss.backward()
         torch.nn.utils.clip_grad_norm_(self._weights.values(), 1.0)
         self._optimizer.step()
         self.done += 1

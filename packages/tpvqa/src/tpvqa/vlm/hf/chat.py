@@ -132,7 +132,7 @@ class Chat:
         return inputs.to(loaded.device, loaded.model.dtype)
 
     def _untold_prompt(self, asked: Asked) -> str:
-        token = self._loaded.processor.image_token
+        token: str = self._loaded.processor.image_token
         return token * len(asked.pictures) + (self._untold or "").format(question=asked.text)
 
     def _conversation(self, asked: Asked) -> list[dict[str, Any]]:
