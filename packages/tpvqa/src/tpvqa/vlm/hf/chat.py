@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from tpvqa.errors import AnswerError
 from tpvqa.vlm.chat_completions import INSTRUCTION, Reading, prompt, weighed
 from tpvqa.vlm.hf.family import Asked, Loaded
+from tpvqa.vlm.hf.prefix import SHARING, last_logits
 from tpvqa.vlm.reply_shape import read_words
 from tpvqa.vlm.yes_no import Token, meaning
 
@@ -43,6 +44,7 @@ class Chat:
             raise AnswerError(
                 f"{loaded.name}: models that encode the question apart are not known."
             )
+        self._shares = loaded.model.config.model_type in SHARING
         self._untold = _UNTOLD.get(loaded.model.config.model_type)
         if self._untold is None and not _has_template(loaded.processor):
             raise AnswerError(
@@ -67,15 +69,26 @@ class Chat:
         import torch
 
         inputs = self._inputs(asked)
+        last = None
+        if self._shares and not torch.is_grad_enabled() and _of_same_pictures(asked):
+            last = last_logits(self._loaded.model, inputs)
+        if last is None:
+            last = self._plainly(inputs)
+        logs = last.float().log_softmax(-1)
+        return torch.stack([logs[:, self._words[w]].logsumexp(-1) for w in ("yes", "no")], -1)
+
+    def _plainly(self, inputs: Mapping[str, "torch.Tensor"]) -> "torch.Tensor":
+        """Logits after the last token of each prompt, each with its pictures."""
+        import torch
+
         ends = inputs["attention_mask"].sum(-1) - 1
         kept, place = torch.unique(ends, return_inverse=True)
         if self._keeps:
             logits = self._loaded.model(**inputs, use_cache=False, logits_to_keep=kept).logits
         else:
             logits, place = self._loaded.model(**inputs, use_cache=False).logits, ends
-        last = logits[torch.arange(len(asked), device=logits.device), place]
-        logs = last.float().log_softmax(-1)
-        return torch.stack([logs[:, self._words[w]].logsumexp(-1) for w in ("yes", "no")], -1)
+        last: torch.Tensor = logits[torch.arange(len(ends), device=logits.device), place]
+        return last
 
     def at_length(self, asked: Asked) -> Reading:
         """Let it speak on, and look for its answer there, as in a server's reply."""
@@ -151,3 +164,8 @@ def _has_template(processor: Any) -> bool:
     return bool(
         getattr(processor, "chat_template", None) or getattr(tokenizer, "chat_template", None)
     )
+
+
+def _of_same_pictures(asked: Sequence[Asked]) -> bool:
+    first = [id(picture) for picture in asked[0].pictures]
+    return len(asked) > 1 and all([id(p) for p in each.pictures] == first for each in asked)
