@@ -185,10 +185,15 @@ def test_there_is_no_such_device(asked: Any, device: str, saved: Saved) -> None:
 def test_the_model_of_an_adapter_is_gone(asked: Any, tmp_path: Path) -> None:
     folder = tmp_path / "adapter"
     folder.mkdir()
-    (folder / "adapter_config.json").write_text('{"base_model_name_or_path": "/not/there/now"}')
+    told = {"base_model_name_or_path": "/not/there/now", "peft_type": "LORA"}
+    (folder / "adapter_config.json").write_text(json.dumps(told))
     assert "adapter_model.safetensors" in asked(folder)
     (folder / "adapter_model.safetensors").write_bytes(b"")
     assert "is not there. Put it back" in asked(folder)
+    importing = {"megatron_config": {"a": 1}, "megatron_core": "this"}
+    for other in ({"peft_type": "IA3"}, importing):
+        (folder / "adapter_config.json").write_text(json.dumps(told | other))
+        assert "only plain LoRA adapters are read" in asked(folder)
 
 
 _LITTLE_MEMORY = """
@@ -218,7 +223,7 @@ def test_memory_does_not_suffice(tmp_path: Path, saved: Saved) -> None:
         [sys.executable, "-c", _LITTLE_MEMORY, *words, "--device", "cpu"],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,
         check=False,
     )
     assert done.returncode == 2, done.stderr

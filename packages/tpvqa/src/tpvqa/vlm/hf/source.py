@@ -78,13 +78,15 @@ def _base_of(folder: Path) -> str:
         raise AnswerError(f"hf:{folder}: the adapter's weights ({ADAPTER_WEIGHTS}) are missing.")
     try:
         with (folder / ADAPTER).open("rb") as file:
-            base = json.loads(file.read(_LARGEST))["base_model_name_or_path"]
+            told = json.loads(file.read(_LARGEST))
+        base, kind = told["base_model_name_or_path"], told.get("peft_type")
+        # A name of a module would make peft import it.
+        if kind != "LORA" or told.get("megatron_config"):
+            raise ValueError("only plain LoRA adapters are read")
         if not isinstance(base, str) or not base:
             raise ValueError("no model is named in it")
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise AnswerError(
-            f"hf:{folder}: {ADAPTER} does not say which model it is for ({error})."
-        ) from None
+        raise AnswerError(f"hf:{folder}: {ADAPTER} cannot be used ({error}).") from None
     for path in (folder / base, Path(base)):
         if path.is_dir():
             _see_model(path)
