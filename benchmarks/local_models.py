@@ -12,6 +12,7 @@ import time
 import torch
 import transformers
 from PIL import Image
+from transformers.models.blip.image_processing_pil_blip import BlipImageProcessorPil
 from transformers.models.idefics3.image_processing_pil_idefics3 import Idefics3ImageProcessorPil
 from transformers.models.vilt.image_processing_pil_vilt import ViltImageProcessorPil
 
@@ -51,7 +52,7 @@ def blip() -> Family:
     words = tiny.bert()
     config = transformers.BlipConfig(vision_config={"image_size": 384})
     config.text_config.bos_token_id = words.convert_tokens_to_ids("[DEC]")
-    images = tiny.BlipImageProcessorPil(size={"height": 384, "width": 384})
+    images = BlipImageProcessorPil(size={"height": 384, "width": 384})
     model = transformers.BlipForQuestionAnswering(config).eval()
     return family(model, transformers.BlipProcessor(images, words))
 
