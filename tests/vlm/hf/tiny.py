@@ -325,7 +325,7 @@ def save(family: str, folder: Path, *, seed: int = 0, outspoken: bool = False) -
             head = model.get_output_embeddings().weight
             number = processor.tokenizer.convert_tokens_to_ids
             head *= 0.05
-            direction = torch.randn_like(head[0]) * 25
+            direction = torch.randn_like(head[0]) * 60
             for word, times in (("yes", 1.0), ("No", 0.9), ("▁no", -1.0), ("▁Yes", -0.9)):
                 head[number(word)] = direction * times
     with quiet():
