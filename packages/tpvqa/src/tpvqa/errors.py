@@ -24,6 +24,7 @@ TpvqaError
 │   └── ContradictionError there is none: facts that are wished for cannot hold together
 ├── BenchError             a bench cannot be run, read or written
 ├── CalibrationError       a calibration cannot be learnt, read or written
+├── TrainingError          a VLM cannot be trained, or not from what is given
 ├── UnknownNameError       no plug-in or task of that name
 ├── PluginError            a plug-in cannot be imported, does not take its arguments, or broke
 └── MissingExtraError      an optional package is needed
@@ -226,6 +227,10 @@ class BenchError(TpvqaError):
 
 class CalibrationError(TpvqaError):
     """A calibration cannot be learnt from the data given, or its file cannot be read or written."""
+
+
+class TrainingError(TpvqaError):
+    """A VLM cannot be trained, or not from the labelled pictures that are given."""
 
 
 class UnknownNameError(TpvqaError):

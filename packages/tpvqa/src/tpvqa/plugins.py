@@ -3,6 +3,7 @@
 A package offers one by an entry point in the group of its kind, `tpvqa.planners`, `tpvqa.vlms`,
 `tpvqa.worlds` or `tpvqa.monitors`. Nothing is imported before it is asked for by name.
 
+`tpvqa.trainers` has, under the name of a VLM, the class that trains it (see `tpvqa.training`).
 Three more groups hold functions, which `load` finds and their readers call: `tpvqa.tasks` (families
 of tasks, see `tpvqa.tasks`), `tpvqa.calibrations` (of a VLM, by the name of its specification, see
 `tpvqa.belief.shipped`) and `tpvqa.commands` (of the command line, see `tpvqa.cli.plugged`).
@@ -100,6 +101,7 @@ class Kind(StrEnum):
     FAMILY = "family of tasks"
     CALIBRATION = "calibration"
     COMMANDS = "set of commands"
+    TRAINER = "trainer"
 
     @property
     def group(self) -> str:

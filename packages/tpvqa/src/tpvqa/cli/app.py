@@ -21,6 +21,7 @@ from tpvqa.cli import (
     risk,
     run,
     serve_vlm,
+    train,
     vlm,
 )
 from tpvqa.cli.plugged import PluggedGroup
@@ -82,6 +83,7 @@ label.register(app)
 calibrate.register(app)
 risk.register(app)
 serve_vlm.register(app)
+train.register(app)
 bench.register(app)
 cache.register(app)
 vlm.register(app)

@@ -235,7 +235,7 @@ def _from_pictures(
     from tpvqa.worlds.pictures import load_set
 
     opened = load_set(shipped_set() if where == "shipped" else Path(where))
-    books = _own_book(*own)
+    books = own_book(*own)
     asked = vlm_with_answers(vlm, config)
     try:
         with _counting("pictures", len(opened.manifest.pictures)) as done:
@@ -267,9 +267,10 @@ def shipped_set() -> Path:
     return found[0]
 
 
-def _own_book(
+def own_book(
     domain: Path | None, problem: Path | None, questions: Path | None
 ) -> "list[QuestionBook] | None":
+    """The questions of one's own domain; None where none is named."""
     from tpvqa.pddl import load_task
     from tpvqa.questions import QuestionBook
     from tpvqa.tasks import QUESTIONS, beside

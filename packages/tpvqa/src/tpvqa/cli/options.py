@@ -14,8 +14,9 @@ from tpvqa.errors import TpvqaError
 from tpvqa.plugins import Kind, names
 
 _TYPES = {"int | None": int, "float | None": float, "str | None": str}
+_VLMS = ("base_url", "device", "dtype", "batch", "cache", "record", "replay")
 ANSWERING: tuple[Key, ...] = (
-    *(("vlm", name) for name in ("base_url", "cache", "record", "replay")),
+    *(("vlm", name) for name in _VLMS),
     ("options",),
 )
 """Settings of who answers that commands without a trial have, too."""

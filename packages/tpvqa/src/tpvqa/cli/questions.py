@@ -121,7 +121,8 @@ def ask(
     *,
     layers: Sequence[Layer],
     vlm: Annotated[
-        str | None, typer.Option(help="embedded (the default), openai:MODEL or a plug-in.")
+        str | None,
+        typer.Option(help="embedded (the default), openai:MODEL, hf:MODEL or a plug-in."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:

@@ -20,7 +20,7 @@ Key = tuple[str, ...]
 """Where a setting stands in the configuration: ("limits", "actions")."""
 NAMEABLE: tuple[Key, ...] = (
     *(("world", name) for name in ("spec", "pictures", "simulator")),
-    *(("vlm", name) for name in ("spec", "base_url", "cache", "record", "replay")),
+    *(("vlm", name) for name in ("spec", "base_url", "device", "cache", "record", "replay")),
     *(("monitor", name) for name in ("spec", "majority", "experience")),
     ("planner", "spec"),
     ("options",),

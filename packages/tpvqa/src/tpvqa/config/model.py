@@ -7,53 +7,16 @@ that, `tpvqa config` prints it, `started` stores it, and `resume` and the bench 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from tpvqa.addresses import checked_address
+from tpvqa.config.parts import Part, VLMConfig, setting
 
 LEAST_ACTIONS = 60
 """The limit of actions where none is given, unless `PLANS` times the first plan is more."""
 PLANS = 6
 
 
-def setting(
-    option: str,
-    says: str,
-    default: Any = None,
-    *,
-    file: bool = False,
-    text: bool = False,
-    **limits: Any,
-) -> Any:
-    """A field of the configuration.
-
-    Args:
-        option: What the command line calls it.
-        says: What it is, in one line.
-        default: Its value where none is given.
-        file: Whether it names a file or a folder.
-        text: Whether the command line takes any text for it, as not only numbers count.
-        **limits: Of pydantic's `Field`: ge, le, gt.
-    """
-    told: dict[str, Any] = {"option": option, "file": file, "text": text}
-    return Field(default, description=says, json_schema_extra=told, **limits)
-
-
-def _address(value: str | None) -> str | None:
-    return None if value is None else checked_address(value)
-
-
-class _Part(BaseModel):
-    model_config = ConfigDict(
-        extra="forbid",
-        frozen=True,
-        allow_inf_nan=False,
-        populate_by_name=True,
-        hide_input_in_errors=True,
-    )
-
-
-class TaskConfig(_Part):
+class TaskConfig(Part):
     """Which task: a shipped one, or files of one's own."""
 
     name: str | None = setting("TASK", "A shipped task (see `tpvqa tasks`).")
@@ -78,7 +41,7 @@ class TaskConfig(_Part):
         return self
 
 
-class StartConfig(_Part):
+class StartConfig(Part):
     """What is known before anything was done."""
 
     what: Literal["known", "unknown"] = setting(
@@ -92,7 +55,7 @@ class StartConfig(_Part):
     )
 
 
-class WorldConfig(_Part):
+class WorldConfig(Part):
     """Where the robot acts and looks."""
 
     spec: str | None = setting(
@@ -109,47 +72,7 @@ class WorldConfig(_Part):
     )
 
 
-class VLMConfig(_Part):
-    """Who answers."""
-
-    spec: str | None = setting(
-        "--vlm",
-        "embedded (the default where there are pictures), openai:MODEL, or a noise model: "
-        "oracle[:ACCURACY[:RHO[:PERSISTENT]]] (the default where there are none), "
-        "recorded:MODEL[:HALF][:fresh], flawed:KIND[:…].",
-    )
-    base_url: Annotated[str | None, AfterValidator(_address)] = setting(
-        "--base-url", "Address of an OpenAI-like server."
-    )
-    cache: str | None = setting(
-        "--cache",
-        "File of recorded answers: what is there is given, the rest is asked and written.",
-        file=True,
-    )
-    record: str | None = setting(
-        "--record", "The same, but everything is asked anew and written.", file=True
-    )
-    replay: str | None = setting(
-        "--replay", "The same, but the VLM is not needed: what is not there is refused.", file=True
-    )
-
-    @property
-    def answers(self) -> tuple[Literal["cache", "record", "replay"], str] | None:
-        """How recorded answers are used, and their file; None where they are not."""
-        if self.cache is not None:
-            return "cache", self.cache
-        if self.record is not None:
-            return "record", self.record
-        return None if self.replay is None else ("replay", self.replay)
-
-    @model_validator(mode="after")
-    def _one_use(self) -> Self:
-        if sum(each is not None for each in (self.cache, self.record, self.replay)) > 1:
-            raise ValueError("give one of --cache, --record and --replay")
-        return self
-
-
-class MonitorConfig(_Part):
+class MonitorConfig(Part):
     """Who decides."""
 
     spec: str | None = setting(
@@ -205,7 +128,7 @@ class MonitorConfig(_Part):
         return self
 
 
-class PlannerConfig(_Part):
+class PlannerConfig(Part):
     """Who plans."""
 
     spec: str = setting(
@@ -228,7 +151,7 @@ Times = Annotated[str, Field(pattern=r"^[1-9][0-9]{0,5}x$")]
 """So many times the length of the first plan: `50x`."""
 
 
-class Limits(_Part):
+class Limits(Part):
     """When a trial is ended without success."""
 
     repeats: Limit = setting(
@@ -253,7 +176,7 @@ class Limits(_Part):
         return self.actions
 
 
-class SimulationConfig(_Part):
+class SimulationConfig(Part):
     """What goes wrong in a simulated world."""
 
     failure: float = setting("--failure", "P(an action fails).", 0.25, ge=0, le=1)
@@ -314,7 +237,7 @@ def _named_start(value: Any) -> Any:
 Named = BeforeValidator(_named)
 
 
-class TrialConfig(_Part):
+class TrialConfig(Part):
     """What a trial is. A name alone stands for a part: `TrialConfig(monitor="tpvqa")`.
 
     Raises:
@@ -389,5 +312,8 @@ class TrialConfig(_Part):
             "simulator": self.world.simulator,
             "pictures": self.world.pictures,
             "base_url": self.vlm.base_url,
+            "device": self.vlm.device,
+            "dtype": self.vlm.dtype,
+            "batch": self.vlm.batch,
         }
         return self.options | {key: value for key, value in named.items() if value is not None}

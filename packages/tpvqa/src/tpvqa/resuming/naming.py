@@ -25,7 +25,7 @@ _KINDS = {
     ("monitor", "spec"): Kind.MONITOR,
     ("planner", "spec"): Kind.PLANNER,
 }
-_WORDS = (("world", "simulator"), ("monitor", "majority"))
+_WORDS = (("world", "simulator"), ("monitor", "majority"), ("vlm", "device"))
 _OPTIONS = ("options",)
 _ANSWERS = tuple(("vlm", name) for name in ("cache", "record", "replay"))
 NOTHING: Mapping[str, Any] = MappingProxyType({})

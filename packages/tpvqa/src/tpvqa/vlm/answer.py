@@ -23,7 +23,8 @@ class Answer:
         question: What was asked.
         reply: The answer.
         p_yes: P(yes | yes or no), between 0 and 1; None where the VLM gives none.
-        source: How `p_yes` or the reply was obtained: "network", "logprobs", "word", "oracle".
+        source: How `p_yes` or the reply was obtained: "network", "logprobs", "classes",
+            "likelihood", "word", "oracle".
         text: The VLM's raw words, or why there is no answer.
         p_cannot_see: Probability that the picture does not show it, where the VLM tells.
         leftover: Probability mass on neither yes nor no (logprobs), where known.

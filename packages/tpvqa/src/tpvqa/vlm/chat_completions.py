@@ -87,11 +87,16 @@ def messages(frames: Sequence[Frame], question: str, instruction: str) -> list[d
     content: list[dict[str, Any]] = [
         {"type": "image_url", "image_url": {"url": data_url(frame)}} for frame in frames
     ]
-    text = f"{question} {instruction}".strip()
-    if len(frames) > 1:
-        text = f"These {len(frames)} pictures show the same moment from several views. {text}"
-    content.append({"type": "text", "text": text})
+    content.append({"type": "text", "text": prompt(question, instruction, len(frames))})
     return [{"role": "user", "content": content}]
+
+
+def prompt(question: str, instruction: str, pictures: int) -> str:
+    """What is said beside so many pictures of one look."""
+    text = f"{question} {instruction}".strip()
+    if pictures > 1:
+        text = f"These {pictures} pictures show the same moment from several views. {text}"
+    return text
 
 
 def data_url(frame: Frame) -> str:
@@ -195,10 +200,10 @@ def _read_choice(choice: _Choice, question: str | None) -> Reading:
     if word is Reply.UNKNOWN:
         cut = cut and (still_thinking(said) or read_words(said, question) is not Reply.UNKNOWN)
         return Reading(word, text=said, cut_short=cut)
-    return _weighed(word, said, _tokens(choice.logprobs))
+    return weighed(word, said, _tokens(choice.logprobs))
 
 
-def _weighed(word: Reply, said: str, tokens: Sequence[Token]) -> Reading:
+def weighed(word: Reply, said: str, tokens: Sequence[Token]) -> Reading:
     """A clear word, with the probabilities of its tokens; *unknown* where these say otherwise."""
     token = answer_token(tokens)
     if token is None:

@@ -1,0 +1,99 @@
+"""What a setting is; and the settings of who answers."""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+from tpvqa.addresses import checked_address
+
+DEVICE = r"^(auto|cpu|mps|cuda(:[0-9]{1,2})?)$"
+"""What a device is called."""
+
+
+def setting(
+    option: str,
+    says: str,
+    default: Any = None,
+    *,
+    file: bool = False,
+    text: bool = False,
+    **limits: Any,
+) -> Any:
+    """A field of the configuration.
+
+    Args:
+        option: What the command line calls it.
+        says: What it is, in one line.
+        default: Its value where none is given.
+        file: Whether it names a file or a folder.
+        text: Whether the command line takes any text for it, as not only numbers count.
+        **limits: Of pydantic's `Field`: ge, le, gt.
+    """
+    told: dict[str, Any] = {"option": option, "file": file, "text": text}
+    return Field(default, description=says, json_schema_extra=told, **limits)
+
+
+def _address(value: str | None) -> str | None:
+    return None if value is None else checked_address(value)
+
+
+class Part(BaseModel):
+    """Some settings that belong together."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        populate_by_name=True,
+        hide_input_in_errors=True,
+    )
+
+
+class VLMConfig(Part):
+    """Who answers."""
+
+    spec: str | None = setting(
+        "--vlm",
+        "embedded (the default where there are pictures), openai:MODEL, hf:MODEL, or a noise "
+        "model: oracle[:ACCURACY[:RHO[:PERSISTENT]]] (the default where there are none), "
+        "recorded:MODEL[:HALF][:fresh], flawed:KIND[:…].",
+    )
+    base_url: Annotated[str | None, AfterValidator(_address)] = setting(
+        "--base-url", "Address of an OpenAI-like server."
+    )
+    cache: str | None = setting(
+        "--cache",
+        "File of recorded answers: what is there is given, the rest is asked and written.",
+        file=True,
+    )
+    record: str | None = setting(
+        "--record", "The same, but everything is asked anew and written.", file=True
+    )
+    replay: str | None = setting(
+        "--replay", "The same, but the VLM is not needed: what is not there is refused.", file=True
+    )
+
+    device: Annotated[str | None, Field(pattern=DEVICE)] = setting(
+        "--device", "hf: auto (a GPU where there is one; the default), cpu, cuda, cuda:N or mps."
+    )
+    dtype: Literal["auto", "float32", "bfloat16", "float16"] | None = setting(
+        "--dtype",
+        "hf: auto (float32 on a CPU, else as the model was saved; the default), float32, bfloat16 "
+        "or float16.",
+    )
+    batch: int | None = setting("--batch", "hf: questions at once. Default: 16.", ge=1)
+
+    @property
+    def answers(self) -> tuple[Literal["cache", "record", "replay"], str] | None:
+        """How recorded answers are used, and their file; None where they are not."""
+        if self.cache is not None:
+            return "cache", self.cache
+        if self.record is not None:
+            return "record", self.record
+        return None if self.replay is None else ("replay", self.replay)
+
+    @model_validator(mode="after")
+    def _one_use(self) -> Self:
+        if sum(each is not None for each in (self.cache, self.record, self.replay)) > 1:
+            raise ValueError("give one of --cache, --record and --replay")
+        return self

@@ -1,0 +1,223 @@
+"""A whole training: figures before, learning, figures after, and what was learnt in its place."""
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, Protocol
+
+from tpvqa.errors import TrainingError, WriteError
+from tpvqa.files import write_whole
+from tpvqa.plugins import Closing
+from tpvqa.training.example import Example, consistent
+from tpvqa.training.protocol import Trainer, TrainingSettings
+from tpvqa.training.scoring import Scores, answers_to, scores
+from tpvqa.training.splitting import split
+from tpvqa.vlm.making import make_vlm
+
+REPORT = "training.json"
+_IDENTITY = "identity.json"
+_LEARNT = "learnt"
+_BEFORE = "before.json"
+_ROOM = "Make room, or name another folder with --out"
+
+
+class Progress(Protocol):
+    """A bar that counts one thing after the other."""
+
+    def count(self, what: str) -> None:
+        """Count something else from here on."""
+
+    def __call__(self, done: int, total: int) -> None:
+        """Show how far it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What came of a training.
+
+    Attributes:
+        vlm: What was trained.
+        out: Where what was learnt lies.
+        learnt_from: Questions and pictures that it learnt from.
+        held_back: Questions and pictures that it was judged by.
+        before: Figures on what was held back, before.
+        after: The same, after.
+    """
+
+    vlm: str
+    out: Path
+    learnt_from: tuple[int, int]
+    held_back: tuple[int, int]
+    before: Scores
+    after: Scores
+
+    def plain(self) -> dict[str, Any]:
+        """As JSON has it."""
+        counts = {
+            name: dict(zip(("questions", "pictures"), told, strict=True))
+            for name, told in (("learnt_from", self.learnt_from), ("held_back", self.held_back))
+        }
+        return {
+            "vlm": self.vlm,
+            "out": str(self.out),
+            **counts,
+            "before": self.before.plain(),
+            "after": self.after.plain(),
+        }
+
+
+def train(
+    spec: str,
+    trainer: Trainer,
+    examples: Sequence[Example],
+    out: Path,
+    *,
+    settings: TrainingSettings,
+    held_back: float,
+    context: Mapping[str, Any],
+    progress: Progress,
+    going_on: Callable[[Path], None] = lambda _: None,
+) -> Report:
+    """Train a VLM, and judge it by pictures that it did not learn from.
+
+    What is under way lies in a folder beside `out`, of the same name with `.part`; the same call
+    goes on with it. `out` is there only when all is done.
+
+    Args:
+        spec: The VLM.
+        trainer: Who trains it.
+        examples: Labelled questions about pictures.
+        out: The folder to write; must not be there.
+        settings: How to train.
+        held_back: Share of the pictures that is held back.
+        context: What a VLM may ask for by naming it: device, dtype.
+        progress: Told how far it is.
+        going_on: Called with the folder where an earlier call was stopped.
+
+    Raises:
+        TrainingError: `out` is there already, there are too few pictures, or the folder of what is
+            under way is of another training.
+        WriteError: Something cannot be written.
+        TpvqaError: The VLM cannot be asked or trained.
+    """
+    see_free(out)
+    known = consistent(examples)
+    learnt, held = split(known, held_back, seed=settings.seed)
+    if len({each.truth for each in learnt}) < 2:
+        raise TrainingError(
+            "All questions that could be learnt from have the same answer. Label pictures where "
+            "it is yes, and where it is no"
+        )
+    part = out.with_name(f"{out.name}.part")
+    identity = _identity(spec, settings, held_back, known, context)
+    if _begin(part, identity):
+        going_on(part)
+    before = _before(spec, held, part, settings.seed, context, progress)
+    progress.count("training steps")
+    trainer.fit(learnt, part, settings=settings, progress=progress)
+    folder = part / _LEARNT
+    shutil.rmtree(folder, ignore_errors=True)
+    trained = trainer.save(folder)
+    after = _asked(trained, held, settings.seed, context, progress, "questions after")
+    report = Report(spec, out, _counts(learnt), _counts(held), before, after)
+    told = {**report.plain(), "settings": settings.plain(), "held_back_share": held_back}
+    _write(folder / REPORT, told)
+    try:
+        os.rename(folder, out)
+    except OSError as error:
+        raise WriteError.of(out, error, _ROOM) from error
+    shutil.rmtree(part, ignore_errors=True)
+    return report
+
+
+def see_free(out: Path) -> None:
+    """See that nothing lies where the result will.
+
+    Raises:
+        TrainingError: Something does, or its folder is not there.
+    """
+    if out.exists() or out.is_symlink():
+        raise TrainingError(f"{out} is there already. Remove it, or name another folder with --out")
+    if not out.parent.is_dir():
+        raise TrainingError(f"{out.parent}: there is no such folder. Make it, or name another")
+
+
+def _begin(part: Path, identity: str) -> bool:
+    """Make the folder of what is under way; whether it was there."""
+    path = part / _IDENTITY
+    try:
+        if part.is_dir() and path.is_file():
+            if path.read_text(encoding="utf-8") != identity:
+                raise TrainingError(
+                    f"{part} holds a training that was begun with other pictures or settings. Go "
+                    "on with these, or remove that folder"
+                )
+            return True
+        part.mkdir(exist_ok=True)
+    except OSError as error:
+        raise WriteError.of(part, error, _ROOM) from error
+    write_whole(path, identity.encode(), remedy=_ROOM)
+    return False
+
+
+def _identity(
+    spec: str,
+    settings: TrainingSettings,
+    held_back: float,
+    examples: Sequence[Example],
+    context: Mapping[str, Any],
+) -> str:
+    learnt = sha256()
+    for each in examples:
+        learnt.update(json.dumps([each.picture, each.text, each.truth]).encode())
+    told = {"version": 1, "vlm": spec, "held_back": held_back, "examples": learnt.hexdigest()}
+    return json.dumps(told | settings.plain() | dict(context), sort_keys=True)
+
+
+def _before(
+    spec: str,
+    held: Sequence[Example],
+    part: Path,
+    seed: int,
+    context: Mapping[str, Any],
+    progress: Progress,
+) -> Scores:
+    """The figures before; kept, as the same call is made again after a stop."""
+    path = part / _BEFORE
+    if path.is_file():
+        from tpvqa.training.scoring import Figure
+
+        told = json.loads(path.read_text(encoding="utf-8"))
+        return Scores(**{name: Figure(**figure) for name, figure in told.items()})
+    before = _asked(spec, held, seed, context, progress, "questions before")
+    _write(path, before.plain())
+    return before
+
+
+def _asked(
+    spec: str,
+    held: Sequence[Example],
+    seed: int,
+    context: Mapping[str, Any],
+    progress: Progress,
+    what: str,
+) -> Scores:
+    progress.count(what)
+    vlm, _ = make_vlm(spec, context)
+    try:
+        return scores(held, answers_to(vlm, held, done=progress), seed=seed)
+    finally:
+        if isinstance(vlm, Closing):
+            vlm.close()
+
+
+def _counts(examples: Sequence[Example]) -> tuple[int, int]:
+    return len(examples), len({each.picture for each in examples})
+
+
+def _write(path: Path, told: Mapping[str, Any]) -> None:
+    write_whole(path, json.dumps(told, indent=1).encode(), remedy=_ROOM)

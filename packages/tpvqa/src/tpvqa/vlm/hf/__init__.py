@@ -1,0 +1,1 @@
+"""Local models of the transformers library: ViLT, BLIP, and chat models that take pictures."""
