@@ -1,0 +1,115 @@
+"""The child's side: requests come in on standard input, replies and heartbeats go out.
+
+As in `tpvqa.pddl.worker.__main__`, a thread watches beside the engine: when the package's process
+is gone, or the engine and whatever it started take too much memory, all of them end.
+"""
+
+import contextlib
+import json
+import os
+import select
+import signal
+import sys
+import tempfile
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+_HEARTBEAT = 0.2  # seconds
+_PR_SET_PDEATHSIG = 1
+
+
+class Serving:
+    """Answers requests until standard input ends.
+
+    Args:
+        answer: What answers one.
+    """
+
+    def __init__(self, answer: Callable[[dict[str, Any]], dict[str, Any]]):
+        self._answer = answer
+        self._replies = os.dup(1)
+        self._writing = threading.Lock()
+        self._request: dict[str, Any] | None = None
+
+    def run(self) -> None:
+        """Read and answer; does not return."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        if "--die-with-parent" in sys.argv:
+            import ctypes
+
+            ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        os.dup2(nowhere, 1)  # engines print
+        requests = os.dup(0)
+        os.dup2(nowhere, 0)
+        threading.Thread(target=self._watch, args=(requests,), daemon=True).start()
+        rest = b""
+        while True:
+            data = os.read(requests, 1 << 20)
+            if not data:
+                _end_all()
+            *lines, rest = (rest + data).split(b"\n")
+            for line in lines:
+                self._request = request = json.loads(line)
+                reply = self._answered(request)
+                self._request = None
+                self._send({"id": request["id"], **reply})
+
+    def _answered(self, request: dict[str, Any]) -> dict[str, Any]:
+        folder = request.get("folder") or "/"
+        os.chdir(folder)  # engines leave files where they stand
+        tempfile.tempdir = folder
+        os.environ["TMPDIR"] = folder
+        try:
+            return self._answer(request)
+        except MemoryError:
+            return {"kind": "memory"}
+        except Exception as error:  # noqa: BLE001  engines raise anything
+            said = " ".join(f"{type(error).__name__}: {error}".split())[:500]
+            return {"kind": "crash", "reason": said}
+        finally:
+            os.chdir("/")
+
+    def _watch(self, requests: int) -> None:
+        poll = select.poll()
+        poll.register(requests, 0)  # nothing but the end of the pipe
+        while True:
+            if poll.poll(_HEARTBEAT * 1000):
+                _end_all()
+            request = self._request
+            if request is None:
+                continue
+            self._write(b"{}\n")
+            limit = request.get("memory")
+            if limit is not None and memory_of_group() > limit << 20:
+                self._send({"id": request["id"], "kind": "memory"})
+                _end_all()
+
+    def _send(self, reply: dict[str, Any]) -> None:
+        self._write(json.dumps(reply).encode() + b"\n")
+
+    def _write(self, line: bytes) -> None:
+        view = memoryview(line)
+        try:
+            with self._writing:
+                while view:
+                    view = view[os.write(self._replies, view) :]
+        except BrokenPipeError:
+            _end_all()
+
+
+def memory_of_group() -> int:
+    """Bytes of memory that this process and all that it started hold."""
+    group, total = os.getpgrp(), 0
+    for folder in Path("/proc").iterdir():
+        if folder.name.isdigit():
+            with contextlib.suppress(OSError, ProcessLookupError):
+                if int((folder / "stat").read_text().rsplit(")", 1)[1].split()[2]) == group:
+                    total += int((folder / "statm").read_text().split()[1])
+    return total * os.sysconf("SC_PAGESIZE")
+
+
+def _end_all() -> None:
+    os.killpg(0, signal.SIGKILL)
