@@ -7,13 +7,13 @@ from tpvqa.errors import MissingExtraError, PlannerError, PluginError
 from tpvqa.pddl import State, Task
 from tpvqa.pddl.description import MEMORY
 from tpvqa.pddl.time_limit import limit_of
-from tpvqa.planning.engines.process import ask_engine, end_engines
+from tpvqa.pddl.outside.asking import ask_engine, end_engines
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.propositional import propositional
 from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
 from tpvqa.plugins import PlainArguments
 
-_MODULE = "clingo_solving"
+_MODULE = "tpvqa.planning.engines.clingo_solving"
 
 
 class ClingoPlanner(PlainArguments):

@@ -8,7 +8,7 @@ from tpvqa.errors import MissingExtraError, PlannerError, PluginError, suggestio
 from tpvqa.pddl import State, Task
 from tpvqa.pddl.description import MEMORY
 from tpvqa.pddl.time_limit import limit_of
-from tpvqa.planning.engines.process import ask_engine, end_engines
+from tpvqa.pddl.outside.asking import ask_engine, end_engines
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.propositional import propositional
 from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
@@ -37,7 +37,7 @@ NUMERIC = ("enhsp", "tamer", "aries")
 TEMPORAL = ("aries", "tamer")
 """Engines among them that plan with durative actions."""
 
-_MODULE = "unified_solving"
+_MODULE = "tpvqa.planning.engines.unified_solving"
 
 
 class UnifiedEngine(PlainArguments):

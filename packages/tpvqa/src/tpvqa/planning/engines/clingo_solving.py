@@ -6,7 +6,7 @@ from typing import Any
 
 import clingo
 
-from tpvqa.planning.engines.serving import Serving
+from tpvqa.pddl.outside.serving import Serving
 
 # What both added and deleted is, holds. A derived atom follows anew from every state.
 _ENCODING = """

@@ -8,7 +8,7 @@ from unified_planning.engines import OptimalityGuarantee, PlanGenerationResultSt
 from unified_planning.environment import get_environment
 from unified_planning.plans import PlanKind
 
-from tpvqa.planning.engines.serving import Serving
+from tpvqa.pddl.outside.serving import Serving
 
 _COMPILERS = (
     ("DISJUNCTIVE_CONDITIONS", up.CompilationKind.DISJUNCTIVE_CONDITIONS_REMOVING),

@@ -15,8 +15,8 @@ _GRACE = 0.5  # seconds that an engine gets to say itself that the time is over
 
 @cache
 def pool_of(module: str) -> WorkerPool:
-    """The processes that run a module of this folder."""
-    return lasting_pool(keep=2, limit=16, module=f"tpvqa.planning.engines.{module}")
+    """The processes that run a module."""
+    return lasting_pool(keep=2, limit=16, module=module)
 
 
 def ask_engine(
@@ -25,7 +25,7 @@ def ask_engine(
     """Have a request answered in a process of its own; one that dies is replaced, once.
 
     Args:
-        module: A module of this folder that serves requests.
+        module: What serves requests, a module of ours.
         request: What is asked.
         seconds: The time limit; None for none.
         memory: What the process, and all that it starts, may hold in MiB; None for no limit.
@@ -68,5 +68,3 @@ def ask_engine(
 def end_engines(module: str) -> None:
     """End the idle processes of a module. New requests start others."""
     pool_of(module).close()
-
-
