@@ -1,5 +1,6 @@
 """Fast Downward as the planner: replans on kept grounding, in worker processes."""
 
+import re
 import time
 from typing import Any
 
@@ -13,7 +14,7 @@ from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.plugins import PlainArguments
 
-SEARCHES = ("optimal", "lama")
+SEARCHES = ("optimal", "lama", "anytime")
 """What can be asked for beside the default."""
 
 _FF = "let(h,ff(),lazy_greedy([h],preferred=[h]))"
@@ -24,6 +25,14 @@ _FF_AND_LANDMARKS = (
     "cost_type=one),let(h,eval_modify_costs(ff(),cost_type=plusone),"
     "lazy_greedy([h,s],preferred=[h,s],reopen_closed=false)))"
 )
+# LAMA's later searches: weighted A*, each for less cost than the plan that is there. The last one
+# leaves out nothing that is cheaper, so where it ends by itself there is no cheaper plan.
+_BETTER = tuple(
+    f"let(h,ff(),lazy_wastar([h],preferred=[h],w={weight},bound={{bound}}))"
+    for weight in (5, 3, 2, 1)
+)
+IMPROVING = 5.0
+"""Seconds that "anytime" gives to better plans, where it is not told otherwise."""
 _LMCUT = "astar(lmcut())"
 _HMAX = "astar(hmax())"
 
@@ -46,11 +55,14 @@ class FastDownward(PlainArguments):
     Args:
         search: "optimal" for a plan of least cost (A* with LM-cut, or with hmax where the task has
             axioms or conditional effects); "lama" for lazy greedy search with FF and landmarks,
-            which finds plans in some large tasks where the default finds none. By default lazy
-            greedy search with FF where every action costs 1, else as "lama".
+            which finds plans in some large tasks where FF alone finds none; "anytime" for plans
+            that get better until `improving` is over or none is. By default lazy greedy search with
+            FF where every action costs 1, and as "lama" where that finds nothing in its share of
+            the time (0.4 of it, 30 s at most); else as "lama" at once.
         timeout: Seconds for a call; None for no limit.
         memory: The limit of the search's memory in MiB; None for none.
         grounding_memory: The same of grounding's, see also `load_task`.
+        improving: Seconds that "anytime" gives to better plans once it has one.
 
     Raises:
         PluginError: There is no such search.
@@ -67,6 +79,7 @@ class FastDownward(PlainArguments):
         timeout: float | None = 60.0,
         memory: int | None = MEMORY,
         grounding_memory: int | None = MEMORY,
+        improving: float = IMPROVING,
     ):
         if search is not None and search not in SEARCHES:
             raise PluginError(
@@ -74,20 +87,31 @@ class FastDownward(PlainArguments):
                 f"fast-downward, or {' or '.join(f'fast-downward:{each}' for each in SEARCHES)}."
             )
         self.search, self.timeout, self.memory = search, timeout, memory
-        self.grounding_memory = grounding_memory
+        self.grounding_memory, self.improving = grounding_memory, improving
 
     @classmethod
     def from_spec(cls, arguments: str = "") -> "FastDownward":
-        """Make it from `fast-downward`, `fast-downward:optimal` or `fast-downward:lama`.
+        """Make it from `fast-downward`, `fast-downward:optimal`, `fast-downward:lama`,
+        `fast-downward:anytime` or `fast-downward:anytime:SECONDS`.
 
         Raises:
             PluginError: There is no such search.
         """
-        return cls(search=arguments or None)
+        search, _, seconds = arguments.partition(":")
+        if not seconds:
+            return cls(search=search or None)
+        if search != "anytime" or re.fullmatch(r"\d{1,6}(\.\d+)?|\.\d+", seconds) is None:
+            raise PluginError(
+                f"'fast-downward:{arguments}' is not understood. Only fast-downward:anytime takes "
+                "seconds: write fast-downward:anytime:2.5, say."
+            )
+        return cls(search=search, improving=float(seconds))
 
     @property
     def name(self) -> str:
         """The specification it can be made from again."""
+        if self.search == "anytime" and self.improving != IMPROVING:
+            return f"fast-downward:anytime:{self.improving:g}"
         return "fast-downward" if self.search is None else f"fast-downward:{self.search}"
 
     def plan(
@@ -131,7 +155,7 @@ class FastDownward(PlainArguments):
         request = {
             "do": "plan",
             "state": to_lists(state),
-            "searches": _searches(self.search, task),
+            "searches": _searches(self.search, task, self.improving),
             "seconds": seconds,
             "memory": self.memory,
             "grounding_memory": self.grounding_memory,
@@ -176,13 +200,18 @@ class FastDownward(PlainArguments):
         WORKERS.close()
 
 
-def _searches(search: str | None, task: Task) -> dict[str, str]:
-    """Searches for tasks that have neither axioms nor conditional effects, and for others."""
+def _searches(search: str | None, task: Task, improving: float) -> dict[str, Any]:
+    """Searches for tasks that have neither axioms nor conditional effects, and for others.
+
+    See `tpvqa.pddl.worker.seeking` for what else stands there.
+    """
     if search == "optimal":
         return {"simple": _LMCUT, "other": _HMAX}  # LM-cut knows neither
     unit_cost = all(schema.cost == 1 for schema in task.schemas)
-    chosen = _FF if search is None and unit_cost else _FF_AND_LANDMARKS
-    return {"simple": chosen, "other": chosen}
+    if search == "lama" or not unit_cost and search is None:
+        return {"simple": _FF_AND_LANDMARKS, "other": _FF_AND_LANDMARKS}
+    quick = {"simple": _FF, "other": _FF, "quick": True, "then": _FF_AND_LANDMARKS}
+    return quick if search is None else {**quick, "better": _BETTER, "improve": improving}
 
 
 def _leaving_less(leaving: dict[str, Any], replay: Validation) -> dict[str, Any] | None:

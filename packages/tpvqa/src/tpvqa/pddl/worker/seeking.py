@@ -1,0 +1,81 @@
+"""Several searches of one task, one after the other: another one where the first finds nothing in its
+share of the time, or ever better ones until the time is over."""
+
+import time
+from collections.abc import Iterable
+from typing import Any
+
+from tpvqa.pddl.worker.grounding import AtomKey, SASTemplate
+from tpvqa.pddl.worker.search import Searcher, SearchOutcome
+
+_SHARE = 0.4
+"""Of the time that is left, what the first search gets where another one may follow."""
+_LONGEST = 30.0  # seconds that it gets at most
+
+
+def sought(
+    searcher: Searcher,
+    template: SASTemplate,
+    state: Iterable[AtomKey],
+    search: str,
+    searches: dict[str, Any],
+    *,
+    seconds: float | None,
+    memory: int | None,
+) -> SearchOutcome:
+    """Seek a plan.
+
+    Args:
+        searcher: What runs the searches.
+        template: The SAS+ task.
+        state: Its initial state.
+        search: The first search.
+        searches: Of what may stand here besides, "quick": whether the first search is one that the
+            next process may read the task for; "then": the search that follows where the first
+            finds nothing; "better": searches with a `{bound}`, each for a plan of less cost than
+            the last, for so many seconds at most as "improve" says.
+        seconds: The time limit; None for none.
+        memory: The limit of a search's memory in MiB.
+    """
+    state = tuple(state)
+    end = None if seconds is None else time.monotonic() + seconds
+    then = searches.get("then")
+    first = seconds
+    if then is not None:
+        first = _LONGEST if seconds is None else min(_LONGEST, _SHARE * seconds)
+    outcome = searcher.run(
+        template,
+        state,
+        search,
+        seconds=first,
+        memory=memory,
+        ahead=bool(searches.get("quick")),
+    )
+    if then is not None and outcome.kind in ("timeout", "memory", "incomplete"):
+        left = None if end is None else max(0.0, end - time.monotonic())
+        outcome = searcher.run(template, state, then, seconds=left, memory=memory)
+    if outcome.kind == "plan":
+        until = time.monotonic() + float(searches.get("improve", 0))
+        until = until if end is None else min(end, until)
+        for better in searches.get("better", ()):
+            outcome = _improved(outcome, searcher, template, state, better, until, memory)
+    return outcome
+
+
+def _improved(
+    best: SearchOutcome,
+    searcher: Searcher,
+    template: SASTemplate,
+    state: tuple[AtomKey, ...],
+    search: str,
+    until: float,
+    memory: int | None,
+) -> SearchOutcome:
+    """The best plan after a search for better ones has found no more, or its time is over."""
+    while (left := until - time.monotonic()) > 0 and best.cost > 0:
+        bounded = search.format(bound=best.cost)
+        found = searcher.run(template, state, bounded, seconds=left, memory=memory)
+        if found.kind != "plan" or found.cost >= best.cost:
+            return best
+        best = found
+    return best
