@@ -136,9 +136,7 @@ def task_from_text(
 
 
 def _program(path: Path, timeout: float | None, memory: int | None) -> Task:
-    domain, problem = pddl_of(
-        _text(path, "program"), path=path, timeout=timeout, memory=memory
-    )
+    domain, problem = pddl_of(_text(path, "program"), path=path, timeout=timeout, memory=memory)
     try:
         return task_from_text(
             domain, problem, domain_path=path, problem_path=path, timeout=timeout, memory=memory

@@ -6,8 +6,8 @@ from importlib.util import find_spec
 from tpvqa.errors import MissingExtraError, PlannerError, PluginError
 from tpvqa.pddl import State, Task
 from tpvqa.pddl.description import MEMORY
-from tpvqa.pddl.time_limit import limit_of
 from tpvqa.pddl.outside.asking import ask_engine, end_engines
+from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.propositional import propositional
 from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
@@ -76,9 +76,7 @@ class ClingoPlanner(PlainArguments):
             reason = "the goal is out of reach even where nothing is ever undone"
             return Unsolvable(reason, self.name, time.perf_counter() - start)
         left = None if limit is None else max(0.0, limit - (time.perf_counter() - start))
-        reply = ask_engine(
-            _MODULE, {"task": ground.numbered()}, seconds=left, memory=self.memory
-        )
+        reply = ask_engine(_MODULE, {"task": ground.numbered()}, seconds=left, memory=self.memory)
         if reply["kind"] == "unsolvable":
             reply["reason"] = (
                 f"no {reply['horizon'] + 1} actions follow one another without coming to a state "

@@ -36,6 +36,8 @@ IMPROVING = 5.0
 _LMCUT = "astar(lmcut())"
 _HMAX = "astar(hmax())"
 
+_TIMED = re.compile(r"anytime:([0-9]{1,6}(?:\.[0-9]{1,6})?)")
+
 _EFFORTS = 2
 """The number of the last effort of `tpvqa.pddl.worker.relevance`."""
 _BLAMED = 12
@@ -57,8 +59,8 @@ class FastDownward(PlainArguments):
             axioms or conditional effects); "lama" for lazy greedy search with FF and landmarks,
             which finds plans in some large tasks where FF alone finds none; "anytime" for plans
             that get better until `improving` is over or none is. By default lazy greedy search with
-            FF where every action costs 1, and as "lama" where that finds nothing in its share of
-            the time (0.4 of it, 30 s at most); else as "lama" at once.
+            FF where every action costs 1, and where that finds nothing in its share of the time (a
+            tenth) as "lama" for half of what is left, then FF again; else as "lama" at once.
         timeout: Seconds for a call; None for no limit.
         memory: The limit of the search's memory in MiB; None for none.
         grounding_memory: The same of grounding's, see also `load_task`.
@@ -84,7 +86,8 @@ class FastDownward(PlainArguments):
         if search is not None and search not in SEARCHES:
             raise PluginError(
                 f"'fast-downward:{search}' is not understood{suggestion(search, SEARCHES)} Write "
-                f"fast-downward, or {' or '.join(f'fast-downward:{each}' for each in SEARCHES)}."
+                f"fast-downward, or {' or '.join(f'fast-downward:{each}' for each in SEARCHES)} "
+                "(or fast-downward:anytime:SECONDS)."
             )
         self.search, self.timeout, self.memory = search, timeout, memory
         self.grounding_memory, self.improving = grounding_memory, improving
@@ -97,15 +100,10 @@ class FastDownward(PlainArguments):
         Raises:
             PluginError: There is no such search.
         """
-        search, _, seconds = arguments.partition(":")
-        if not seconds:
-            return cls(search=search or None)
-        if search != "anytime" or re.fullmatch(r"\d{1,6}(\.\d+)?|\.\d+", seconds) is None:
-            raise PluginError(
-                f"'fast-downward:{arguments}' is not understood. Only fast-downward:anytime takes "
-                "seconds: write fast-downward:anytime:2.5, say."
-            )
-        return cls(search=search, improving=float(seconds))
+        timed = _TIMED.fullmatch(arguments)
+        if timed is None:
+            return cls(search=arguments or None)
+        return cls(search="anytime", improving=float(timed[1]))
 
     @property
     def name(self) -> str:
@@ -208,7 +206,7 @@ def _searches(search: str | None, task: Task, improving: float) -> dict[str, Any
     if search == "optimal":
         return {"simple": _LMCUT, "other": _HMAX}  # LM-cut knows neither
     unit_cost = all(schema.cost == 1 for schema in task.schemas)
-    if search == "lama" or not unit_cost and search is None:
+    if search == "lama" or (not unit_cost and search is None):
         return {"simple": _FF_AND_LANDMARKS, "other": _FF_AND_LANDMARKS}
     quick = {"simple": _FF, "other": _FF, "quick": True, "then": _FF_AND_LANDMARKS}
     return quick if search is None else {**quick, "better": _BETTER, "improve": improving}

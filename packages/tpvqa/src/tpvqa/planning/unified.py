@@ -1,4 +1,4 @@
-"""The door for unified-planning: a user's `Problem` becomes a `Task`, our plan a `SequentialPlan`."""
+"""The door for unified-planning: its `Problem` becomes a `Task`, our plan its `SequentialPlan`."""
 
 from typing import TYPE_CHECKING, Any
 

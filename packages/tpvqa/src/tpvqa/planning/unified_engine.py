@@ -1,41 +1,18 @@
 """Every engine of unified-planning as the planner: `up:NAME`."""
 
 import time
-from collections.abc import Mapping
 from importlib.util import find_spec
 
 from tpvqa.errors import MissingExtraError, PlannerError, PluginError, suggestion_or_list
 from tpvqa.pddl import State, Task
 from tpvqa.pddl.description import MEMORY
-from tpvqa.pddl.time_limit import limit_of
 from tpvqa.pddl.outside.asking import ask_engine, end_engines
+from tpvqa.pddl.outside.engines import PACKAGES, is_there
+from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.propositional import propositional
 from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
 from tpvqa.plugins import PlainArguments
-
-PACKAGES: Mapping[str, str] = {
-    "aries": "up-aries",
-    "enhsp": "up-enhsp",
-    "enhsp-opt": "up-enhsp",
-    "enhsp-any": "up-enhsp",
-    "fast-downward": "up-fast-downward",
-    "fast-downward-opt": "up-fast-downward",
-    "fmap": "up-fmap",
-    "lpg": "up-lpg",
-    "lpg-anytime": "up-lpg",
-    "pyperplan": "up-pyperplan",
-    "pyperplan-opt": "up-pyperplan",
-    "symk": "up-symk",
-    "symk-opt": "up-symk",
-    "tamer": "up-tamer",
-}
-"""The packages that bring the engines that unified-planning knows of."""
-
-NUMERIC = ("enhsp", "tamer", "aries")
-"""Engines among them that plan with numeric fluents."""
-TEMPORAL = ("aries", "tamer")
-"""Engines among them that plan with durative actions."""
 
 _MODULE = "tpvqa.planning.engines.unified_solving"
 
@@ -61,9 +38,7 @@ class UnifiedEngine(PlainArguments):
         PluginError: The engine is not installed, or there is none of that name.
     """
 
-    def __init__(
-        self, engine: str, *, timeout: float | None = 60.0, memory: int | None = MEMORY
-    ):
+    def __init__(self, engine: str, *, timeout: float | None = 60.0, memory: int | None = MEMORY):
         if find_spec("unified_planning") is None:
             raise MissingExtraError("unified-planning", "up", f"The planner 'up:{engine}'")
         _check(engine)
@@ -128,19 +103,11 @@ class UnifiedEngine(PlainArguments):
         end_engines(_MODULE)
 
 
-def how_to_get(engine: str) -> str:
-    """What to install for an engine, or that it is there, in a few words."""
-    package = PACKAGES[engine]
-    if find_spec("unified_planning") and find_spec(package.replace("-", "_")):
-        return f"up:{engine}, which is installed"
-    return f"up:{engine} (pip install {package})"
-
-
 def _check(engine: str) -> None:
     """See that an engine is there; unified-planning itself is asked about those it may know."""
     package = PACKAGES.get(engine)
     if package is not None:
-        if find_spec(package.replace("-", "_")) is None:
+        if not is_there(engine):
             raise PluginError(
                 f"The engine {engine!r} of unified-planning is not installed. "
                 f"Install it: pip install {package}"

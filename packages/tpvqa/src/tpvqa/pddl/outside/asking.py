@@ -44,9 +44,7 @@ def ask_engine(
     for _ in range(2):
         try:
             with (
-                tempfile.TemporaryDirectory(
-                    prefix="tpvqa-", ignore_cleanup_errors=True
-                ) as folder,
+                tempfile.TemporaryDirectory(prefix="tpvqa-", ignore_cleanup_errors=True) as folder,
                 pool_of(module).lend(module, end=end) as worker,
             ):
                 left = None if seconds is None else max(0.0, start + seconds - time.monotonic())

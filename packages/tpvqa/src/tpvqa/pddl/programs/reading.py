@@ -253,9 +253,7 @@ class _Reader:
             raise self._wrong(f"{_said(term)} is no fluent or action", word, about)
         if not term[2]:
             raise self._wrong(f"{_said(term)} must not be negative here", word, about)
-        return Atom(
-            self._name([term[0], [], True]), tuple(self._name(each) for each in term[1])
-        )
+        return Atom(self._name([term[0], [], True]), tuple(self._name(each) for each in term[1]))
 
     def _name(self, term: Any) -> str:
         """A term as one word: block(1) is block_n1."""

@@ -53,9 +53,11 @@ class _Writer:
 
     def _names(self, word: str, name: str, count: int) -> list[str]:
         own = self._program.variables.get((word, name), ())
-        return [f"?{each}" for each in own] if len(own) == count else [
-            f"?x{number + 1}" for number in range(count)
-        ]
+        return (
+            [f"?{each}" for each in own]
+            if len(own) == count
+            else [f"?x{number + 1}" for number in range(count)]
+        )
 
     def _parameters(self, names: Sequence[str], uses: Iterable[Arguments]) -> tuple[str, list[str]]:
         columns = list(zip(*uses, strict=True)) or [()] * len(names)
@@ -69,7 +71,9 @@ class _Writer:
         for action in program.actions:
             by_name[action.predicate].append(action)
         actions = [self._action(each, by_name[each]) for each in sorted(by_name)]
-        axioms = [self._axiom(each) for each in sorted({head.predicate for head, _ in program.rules})]
+        axioms = [
+            self._axiom(each) for each in sorted({head.predicate for head, _ in program.rules})
+        ]
         predicates = [self._predicate(each) for each in sorted(self._uses)]
         guards = self._guards.facts
         for guard, uses in sorted(guards.items()):
@@ -94,7 +98,11 @@ class _Writer:
             ")",
         ]
         facts = [atom.pddl() for atom in sorted(program.init)]
-        facts += [Atom(guard, uses).pddl() for guard, all_ in sorted(guards.items()) for uses in sorted(all_)]
+        facts += [
+            Atom(guard, uses).pddl()
+            for guard, all_ in sorted(guards.items())
+            for uses in sorted(all_)
+        ]
         if program.costs:
             facts.append("(= (total-cost) 0)")
             facts += [
@@ -177,7 +185,9 @@ class _Writer:
         )
 
     def _axiom(self, name: str) -> str:
-        rules = sorted((head, sorted(under)) for head, under in self._program.rules if head.predicate == name)
+        rules = sorted(
+            (head, sorted(under)) for head, under in self._program.rules if head.predicate == name
+        )
         names = [f"?x{n + 1}" for n in range(len(rules[0][0].arguments))]
         said, _ = self._parameters(names, [head.arguments for head, _ in rules])
         ways = []

@@ -53,7 +53,9 @@ def ahead_of(before: bytes, after: bytes, defaults: Sequence[int]) -> Ahead:
     own = len(defaults)
     layers = [int(each) for each in re.findall(rb"begin_variable\n.*\n(-?\d+)\n", before)]
     end = before.rindex(b"end_variable\n") + len(b"end_variable\n")
-    head = before[:end].replace(f"\n{own}\nbegin_variable".encode(), f"\n{own + 1}\nbegin_variable".encode(), 1)
+    head = before[:end].replace(
+        f"\n{own}\nbegin_variable".encode(), f"\n{own + 1}\nbegin_variable".encode(), 1
+    )
     variable = f"begin_variable\nvar{own}\n-1\n2\nAtom not-begun()\nAtom begun()\nend_variable\n"
     state = "\n".join(map(str, [*defaults, 0])) + "\n"
     cut = after.rindex(b"end_operator\n") + len(b"end_operator\n")

@@ -92,7 +92,7 @@ class _Child:
 
     def fits(self, search: str, memory: int | None, ahead: Ahead | None) -> bool:
         """Whether it still waits, for such a search, and has read nothing else."""
-        if self.ahead is not None and self.ahead is not ahead:
+        if self.ahead not in (None, ahead):
             return False
         return (search, memory) == (self.search, self.memory) and self._process.poll() is None
 
@@ -238,10 +238,11 @@ class Searcher:
     ) -> SearchOutcome:
         child = self._take(search, memory, ahead)
         try:
-            if child.ahead is None:
+            if ahead is None:
                 child.feed(template.fill(state), end)
-            else:
-                child.feed(child.ahead.rest(template.values(state)), end)
+            else:  # the same text, whether read ahead or not, so that plans do not depend on it
+                begun = b"" if child.ahead is ahead else ahead.first
+                child.feed(begun + ahead.rest(template.values(state)), end)
             return child.outcome() if child.wait(end) else SearchOutcome("timeout")
         finally:
             child.close()

@@ -8,9 +8,9 @@ from typing import Any
 from tpvqa.pddl.worker.grounding import AtomKey, SASTemplate
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
-_SHARE = 0.4
-"""Of the time that is left, what the first search gets where another one may follow."""
-_LONGEST = 30.0  # seconds that it gets at most
+_SHARES = ((0.1, 3.0), (0.5, 60.0))
+"""Of the time that is left, what the first search and the one that follows it get, and the seconds
+that they get where the time is not limited. What is over then is the first one's again."""
 
 
 def sought(
@@ -32,28 +32,35 @@ def sought(
         search: The first search.
         searches: Of what may stand here besides, "quick": whether the first search is one that the
             next process may read the task for; "then": the search that follows where the first
-            finds nothing; "better": searches with a `{bound}`, each for a plan of less cost than
+            finds nothing in its share of the time; "better": searches with a `{bound}`, each for a plan of less cost than
             the last, for so many seconds at most as "improve" says.
         seconds: The time limit; None for none.
         memory: The limit of a search's memory in MiB.
     """
     state = tuple(state)
     end = None if seconds is None else time.monotonic() + seconds
-    then = searches.get("then")
-    first = seconds
-    if then is not None:
-        first = _LONGEST if seconds is None else min(_LONGEST, _SHARE * seconds)
-    outcome = searcher.run(
-        template,
-        state,
-        search,
-        seconds=first,
-        memory=memory,
-        ahead=bool(searches.get("quick")),
+    then, quick = searches.get("then"), bool(searches.get("quick"))
+    stages = (
+        [(search, 1.0, None)]
+        if then is None
+        else [
+            (search, *_SHARES[0]),
+            (then, *_SHARES[1]),
+            (search, 1.0, None),
+        ]
     )
-    if then is not None and outcome.kind in ("timeout", "memory", "incomplete"):
-        left = None if end is None else max(0.0, end - time.monotonic())
-        outcome = searcher.run(template, state, then, seconds=left, memory=memory)
+    for chosen, share, longest in stages:
+        left = longest if end is None else share * max(0.0, end - time.monotonic())
+        outcome = searcher.run(
+            template,
+            state,
+            chosen,
+            seconds=left,
+            memory=memory,
+            ahead=quick and chosen == search,
+        )
+        if outcome.kind not in ("timeout", "memory", "incomplete"):
+            break
     if outcome.kind == "plan":
         until = time.monotonic() + float(searches.get("improve", 0))
         until = until if end is None else min(end, until)

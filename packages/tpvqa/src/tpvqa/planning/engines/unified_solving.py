@@ -31,7 +31,9 @@ def engines() -> list[str]:
     """The engines that are installed and plan in one go."""
     factory = get_environment().factory
     return [
-        name for name in factory.engines if "[" not in name and factory.engine(name).is_oneshot_planner()
+        name
+        for name in factory.engines
+        if "[" not in name and factory.engine(name).is_oneshot_planner()
     ]
 
 
@@ -60,7 +62,9 @@ def problem_of(task: dict[str, Any]) -> Any:
         for condition, atom, holds in effects:
             if not holds and repr(condition) + str(atom) in adding:
                 continue  # what is both added and deleted holds
-            action.add_effect(fluents[atom], holds, up.TRUE() if condition == ["and"] else said(condition))
+            action.add_effect(
+                fluents[atom], holds, up.TRUE() if condition == ["and"] else said(condition)
+            )
         problem.add_action(action)
     problem.add_goal(said(task["goal"]))
     return problem
