@@ -1,4 +1,4 @@
-"""The engines that unified-planning knows of: which package brings each, and what they plan with."""
+"""The engines that unified-planning knows of: the package of each, and what they plan with."""
 
 from collections.abc import Mapping
 from importlib.util import find_spec

@@ -91,10 +91,8 @@ def _heads(part: Any) -> list[list[Any]]:
 
 def _model(control: clingo.Control) -> list[Any]:
     control.configuration.solve.models = "2"  # type: ignore[union-attr]
-    found: list[list[clingo.Symbol]] = []
     with control.solve(yield_=True) as handle:
-        for model in handle:
-            found.append(list(model.symbols(atoms=True)))
+        found = [list(model.symbols(atoms=True)) for model in handle]
     if not found:
         raise _Refused("the program has no answer set: its constraints contradict its rules")
     if len(found) > 1:

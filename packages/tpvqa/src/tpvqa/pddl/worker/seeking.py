@@ -1,5 +1,5 @@
-"""Several searches of one task, one after the other: another one where the first finds nothing in its
-share of the time, or ever better ones until the time is over."""
+"""Several searches of one task: another where the first finds nothing in its share of the time, or
+ever better ones until the time is over."""
 
 import time
 from collections.abc import Iterable
@@ -32,8 +32,8 @@ def sought(
         search: The first search.
         searches: Of what may stand here besides, "quick": whether the first search is one that the
             next process may read the task for; "then": the search that follows where the first
-            finds nothing in its share of the time; "better": searches with a `{bound}`, each for a plan of less cost than
-            the last, for so many seconds at most as "improve" says.
+            finds nothing in its share of the time; "better": searches with a `{bound}`, each for a
+            plan of less cost than the last, for so many seconds at most as "improve" says.
         seconds: The time limit; None for none.
         memory: The limit of a search's memory in MiB.
     """
