@@ -18,12 +18,6 @@ from tpvqa.planning.making import make_planner
 
 pytest.importorskip("clingo")
 
-BLOCKS = """(define (problem four) (:domain blocksworld)
-(:objects a b c d - block)
-(:init (arm_empty) (on_table a) (on b a) (clear b) (on_table c) (clear c) (on_table d) (clear d))
-(:goal (and (on a b) (on b c))))
-"""
-
 
 @pytest.fixture(scope="module")
 def clingo() -> Planner:
@@ -56,12 +50,10 @@ def test_shipped_tasks_as_an_optimal_search(name: str, clingo: Planner, optimal:
 
 @pytest.fixture(scope="module")
 def blocks() -> Task:
-    from tpvqa.tasks import find_task
-
-    return task_from_text(find_task("build_tower").domain.read_text(), BLOCKS)
+    return load_task("build_tower")
 
 
-@settings(max_examples=6, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=4, deadline=None, suppress_health_check=list(HealthCheck))
 @given(seed=st.integers(0, 10_000))
 def test_blocksworld_as_an_optimal_search(
     seed: int, blocks: Task, clingo: Planner, optimal: Planner

@@ -33,7 +33,7 @@ def test_replanning_from_any_state(spec: str) -> None:
     task, planner = load_task("clean_dishes"), make_planner(spec)
     optimal = FastDownward(search="optimal")
     assert planner.name == spec
-    for state in random_states(task, seed=4, count=5):
+    for state in random_states(task, seed=4, count=3):
         ours, other = planner.plan(task, state, timeout=60), optimal.plan(task, state)
         assert type(ours) is type(other)
         if isinstance(ours, Plan) and isinstance(other, Plan):
@@ -138,5 +138,5 @@ def test_a_problem_goes_in_and_a_sequential_plan_comes_out() -> None:
         "move(shop, home)",
     ]
     shortcuts = pytest.importorskip("unified_planning.shortcuts")
-    with shortcuts.SequentialPlanValidator() as validator:
+    with shortcuts.PlanValidator(name="sequential_plan_validator") as validator:
         assert validator.validate(problem, sequential)
