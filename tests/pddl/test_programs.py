@@ -1,16 +1,18 @@
 """Logic programs as tasks."""
 
+import contextlib
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.planning.judges import val_accepts
-from tpvqa.errors import GroundingTimedOut, PDDLError, PlannerError
+from tpvqa.errors import GroundingTimedOut, PDDLError, PlannerError, TpvqaError
 from tpvqa.pddl import Atom, Task, load_task, validate
 from tpvqa.pddl.programs.lifting import Guards, patterns
 from tpvqa.planning import Plan, Unsolvable
@@ -217,6 +219,27 @@ def test_patterns_give_every_instance_what_it_had(
                 (literal.atom.predicate, values.get(thing, thing), literal.positive)
             )
     assert again == {arguments: set(own) for arguments, own in given_items.items()}
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.data())
+def test_a_damaged_program_is_read_or_refused(data: st.DataObject) -> None:
+    """Lines left out or doubled, letters changed: a task, or an error that says what is wrong."""
+    lines = (PROGRAMS / "clean_dishes.lp").read_text().splitlines()
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(lines) - 1))
+        line = lines[at]
+        cut = data.draw(st.integers(0, len(line)))
+        put = data.draw(
+            st.sampled_from(["", ".", "(", ")", ",", "-", "X", "not ", "{", "1", "#", "é", "%*"])
+        )
+        lines[at] = data.draw(
+            st.sampled_from(["", line + line, line[:cut] + put + line[cut + 1 :]])
+        )
+    with contextlib.suppress(TpvqaError), tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "own.lp").write_text("\n".join(lines))
+        task = load_task(Path(folder) / "own.lp", timeout=10)
+        assert task.ground_actions() or task.goal
 
 
 def test_a_whole_trial_of_a_program_with_the_questions_of_the_task(tmp_path: Path) -> None:

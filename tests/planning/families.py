@@ -1,5 +1,6 @@
 """Generated problems that a search with FF alone finds no plan for, or late."""
 
+from itertools import pairwise
 from random import Random
 
 OPENSTACKS = """(define (domain openstacks) (:requirements :adl :typing :action-costs)
@@ -37,7 +38,7 @@ def openstacks(orders: int, *, seed: int = 0) -> str:
     names = [f"o{n}" for n in range(orders)]
     products = [f"p{n}" for n in range(orders)]
     counts = [f"n{n}" for n in range(orders + 1)]
-    facts = [f"(next {a} {b})" for a, b in zip(counts, counts[1:], strict=False)]
+    facts = [f"(next {a} {b})" for a, b in pairwise(counts)]
     for product in products:
         wanting = random.sample(names, min(orders, random.randint(1, 3)))
         facts += [f"(includes {order} {product})" for order in wanting]
