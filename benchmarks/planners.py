@@ -46,7 +46,7 @@ def said(result: PlanningResult) -> str:
 
 def engines(names: list[str], timeout: float) -> list[dict[str, Any]]:
     """A row for each planner and task."""
-    rows = []
+    rows: list[dict[str, Any]] = []
     for spec in names:
         for name in TASKS:
             try:

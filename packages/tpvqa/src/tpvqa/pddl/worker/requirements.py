@@ -71,7 +71,8 @@ def _about(requirement: str) -> str:
     feature = _FEATURES.get(requirement)
     if feature is None:
         near = suggestion(requirement, (*_KNOWN, *_FEATURES))
-        return f"the requirement {shown(requirement)} is not known{near}".rstrip(".")
+        known = ", ".join(sorted(_KNOWN))
+        return f"the requirement {shown(requirement)} is not known{near} Known: {known}"
     costs = feature == "numbers"
     return (
         f"the requirement {requirement} is about {_MEANS[feature]}, {_who(feature)}"
