@@ -20,16 +20,20 @@ SEARCHES = ("optimal", "lama", "anytime")
 _FF = "let(h,ff(),lazy_greedy([h],preferred=[h]))"
 # LAMA's first search (Richter and Westphal 2010), but that FF counts costs, too. Landmarks count
 # steps: where both counted costs, it found no plan in time for some tasks.
-_FF_AND_LANDMARKS = (
+_BOTH = (
     "let(s,eval_modify_costs(landmark_sum(lm_reasonable_orders_hps(lm_rhw()),pref=false),"
-    "cost_type=one),let(h,eval_modify_costs(ff(),cost_type=plusone),"
-    "lazy_greedy([h,s],preferred=[h,s],reopen_closed=false)))"
+    "cost_type=one),let(h,eval_modify_costs(ff(),cost_type=plusone),%s))"
 )
-# LAMA's later searches: weighted A*, each for less cost than the plan that is there. The last one
-# leaves out nothing that is cheaper, so where it ends by itself there is no cheaper plan.
-_BETTER = tuple(
-    f"let(h,ff(),lazy_wastar([h],preferred=[h],w={weight},bound={{bound}}))"
-    for weight in (5, 3, 2, 1)
+_GREEDY = "lazy_greedy([h,s],preferred=[h,s],reopen_closed=%s)"
+_FF_AND_LANDMARKS = _BOTH % (_GREEDY % "false")
+# Its later searches: each for less cost than the plan that is there. As they come back to states
+# that are reached at less cost, one that ends by itself proves that there is no cheaper plan.
+_BETTER = (
+    _BOTH % (_GREEDY % "true,bound={bound}"),
+    *(
+        _BOTH % f"lazy_wastar([h,s],preferred=[h,s],w={weight},bound={{bound}})"
+        for weight in (5, 3, 2, 1)
+    ),
 )
 IMPROVING = 5.0
 """Seconds that "anytime" gives to better plans, where it is not told otherwise."""

@@ -64,8 +64,8 @@ def sought(
     if outcome.kind == "plan":
         until = time.monotonic() + float(searches.get("improve", 0))
         until = until if end is None else min(end, until)
-        for better in searches.get("better", ()):
-            outcome = _improved(outcome, searcher, template, state, better, until, memory)
+        better = searches.get("better", ())
+        outcome = _improved(outcome, searcher, template, state, better, until, memory)
     return outcome
 
 
@@ -74,15 +74,19 @@ def _improved(
     searcher: Searcher,
     template: SASTemplate,
     state: tuple[AtomKey, ...],
-    search: str,
+    searches: Iterable[str],
     until: float,
     memory: int | None,
 ) -> SearchOutcome:
-    """The best plan after a search for better ones has found no more, or its time is over."""
-    while (left := until - time.monotonic()) > 0 and best.cost > 0:
-        bounded = search.format(bound=best.cost)
-        found = searcher.run(template, state, bounded, seconds=left, memory=memory)
-        if found.kind != "plan" or found.cost >= best.cost:
-            return best
-        best = found
+    """The best plan after searches for better ones: all of them, until one proves that there is
+    none, or until the time is over."""
+    for search in searches:
+        while (left := until - time.monotonic()) > 0 and best.cost > 0:
+            bounded = search.format(bound=best.cost)
+            found = searcher.run(template, state, bounded, seconds=left, memory=memory)
+            if found.kind == "unsolvable":
+                return best
+            if found.kind != "plan" or found.cost >= best.cost:
+                break
+            best = found
     return best
