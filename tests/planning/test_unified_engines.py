@@ -1,9 +1,14 @@
 """Engines of unified-planning as planners: one that proves its plans shortest, one with numbers."""
 
+import contextlib
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -101,6 +106,46 @@ def test_an_engine_that_is_killed_twice_has_crashed() -> None:
     call.join(30)
     assert isinstance(found[0], Crashed)
     assert "killed by signal 9" in found[0].reason
+
+
+def test_nothing_is_left_of_an_engine_whose_caller_is_killed(tmp_path: Path) -> None:
+    script = (
+        "from tpvqa.pddl import load_task; from tpvqa.planning.making import make_planner\n"
+        "make_planner('up:aries').plan(load_task('build_tower'), timeout=60)"
+    )
+    caller = subprocess.Popen([sys.executable, "-c", script])
+    found: list[int] = []
+    end = time.monotonic() + 40
+    while not found and time.monotonic() < end:  # until the engine has started its own server
+        found = [
+            pid for pid, words in _running() if "up-aries" in words and _above(pid, caller.pid)
+        ]
+        time.sleep(0.1)
+    caller.kill()
+    caller.wait()
+    assert found
+    end = time.monotonic() + 10
+    while any(Path(f"/proc/{pid}").exists() for pid in found) and time.monotonic() < end:
+        time.sleep(0.1)
+    assert not [pid for pid in found if Path(f"/proc/{pid}").exists()]
+
+
+def _running() -> Iterator[tuple[int, str]]:
+    for folder in Path("/proc").iterdir():
+        if folder.name.isdigit():
+            with contextlib.suppress(OSError):
+                yield int(folder.name), (folder / "cmdline").read_text().replace("\0", " ")
+
+
+def _above(pid: int, ancestor: int) -> bool:
+    while pid > 1:
+        if pid == ancestor:
+            return True
+        try:
+            pid = int(Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[1])
+        except OSError:
+            return False
+    return False
 
 
 def test_missing_engines_name_their_package(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,7 +1,7 @@
 """The child's side: requests come in on standard input, replies and heartbeats go out.
 
-As in `tpvqa.pddl.worker.__main__`, a thread watches beside the engine: when the package's process
-is gone, or the engine and whatever it started take too much memory, all of them end.
+A process watches beside the engine: when the package's process is gone, the engine and whatever it
+started end, at once, whatever they do. A thread sees that they do not take too much memory.
 """
 
 import contextlib
@@ -9,15 +9,14 @@ import json
 import os
 import select
 import signal
-import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 _HEARTBEAT = 0.2  # seconds
-_PR_SET_PDEATHSIG = 1
 
 
 class Serving:
@@ -31,20 +30,21 @@ class Serving:
         self._answer = answer
         self._replies = os.dup(1)
         self._writing = threading.Lock()
+        self._watcher = 0
         self._request: dict[str, Any] | None = None
 
     def run(self) -> None:
         """Read and answer; does not return."""
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        if "--die-with-parent" in sys.argv:
-            import ctypes
-
-            ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
         nowhere = os.open(os.devnull, os.O_RDWR)
         os.dup2(nowhere, 1)  # engines print
         requests = os.dup(0)
         os.dup2(nowhere, 0)
-        threading.Thread(target=self._watch, args=(requests,), daemon=True).start()
+        self._watcher = os.fork()
+        if not self._watcher:
+            os.close(self._replies)
+            _wait_for_end(requests)
+        threading.Thread(target=self._watch, daemon=True).start()
         rest = b""
         while True:
             data = os.read(requests, 1 << 20)
@@ -72,18 +72,15 @@ class Serving:
         finally:
             os.chdir("/")
 
-    def _watch(self, requests: int) -> None:
-        poll = select.poll()
-        poll.register(requests, 0)  # nothing but the end of the pipe
+    def _watch(self) -> None:
         while True:
-            if poll.poll(_HEARTBEAT * 1000):
-                _end_all()
+            time.sleep(_HEARTBEAT)
             request = self._request
             if request is None:
                 continue
             self._write(b"{}\n")
             limit = request.get("memory")
-            if limit is not None and memory_of_group() > limit << 20:
+            if limit is not None and memory_of_group(self._watcher) > limit << 20:
                 self._send({"id": request["id"], "kind": "memory"})
                 _end_all()
 
@@ -100,15 +97,24 @@ class Serving:
             _end_all()
 
 
-def memory_of_group() -> int:
-    """Bytes of memory that this process and all that it started hold."""
+def memory_of_group(without: int) -> int:
+    """Bytes of memory that this process and all that it started hold, one process left out."""
     group, total = os.getpgrp(), 0
     for folder in Path("/proc").iterdir():
-        if folder.name.isdigit():
+        if folder.name.isdigit() and int(folder.name) != without:
             with contextlib.suppress(OSError, ProcessLookupError):
                 if int((folder / "stat").read_text().rsplit(")", 1)[1].split()[2]) == group:
                     total += int((folder / "statm").read_text().split()[1])
     return total * os.sysconf("SC_PAGESIZE")
+
+
+def _wait_for_end(requests: int) -> None:
+    """Wait until nobody can send a request any more; then end the whole group."""
+    poll = select.poll()
+    poll.register(requests, 0)  # nothing but the end of the pipe
+    while not poll.poll():
+        pass
+    _end_all()
 
 
 def _end_all() -> None:
