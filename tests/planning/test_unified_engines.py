@@ -125,9 +125,17 @@ def test_nothing_is_left_of_an_engine_whose_caller_is_killed(tmp_path: Path) -> 
     caller.wait()
     assert found
     end = time.monotonic() + 10
-    while any(Path(f"/proc/{pid}").exists() for pid in found) and time.monotonic() < end:
+    while any(map(_runs, found)) and time.monotonic() < end:
         time.sleep(0.1)
-    assert not [pid for pid in found if Path(f"/proc/{pid}").exists()]
+    assert not [pid for pid in found if _runs(pid)]
+
+
+def _runs(pid: int) -> bool:
+    """Whether a process is there, and not only its exit code."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def _running() -> Iterator[tuple[int, str]]:
