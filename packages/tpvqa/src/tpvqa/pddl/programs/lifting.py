@@ -15,6 +15,13 @@ Item = tuple[tuple[Literal, ...], Literal | None]
 
 Arguments = tuple[str, ...]
 
+PATTERNS = 500
+"""Of more things that only some instances have no action is made."""
+
+
+class IrregularError(Exception):
+    """The instances of an action have too little in common."""
+
 
 @dataclass
 class Guards:
@@ -27,7 +34,7 @@ class Guards:
         stem: str,
         names: Sequence[str],
         inside: frozenset[Arguments],
-        outside: frozenset[Arguments],
+        outside: frozenset[Arguments] | None,
     ) -> str:
         """PDDL that holds for the arguments inside and not for those outside; empty for all.
 
@@ -35,28 +42,38 @@ class Guards:
             stem: How a static fact may be called.
             names: The variables.
             inside: Arguments.
-            outside: The other arguments that there are.
+            outside: The other arguments that there are; None for too many to be listed.
         """
-        if not outside:
-            return ""
-        for place, name in enumerate(names):
-            values = {each[place] for each in inside}
-            others = {each[place] for each in outside}
-            if values.isdisjoint(others):
-                if len(others) < len(values) and len(others) <= 4:
-                    return _all(f"(not (= {name} {value}))" for value in sorted(others))
-                if len(values) <= 4:
-                    same = [f"(= {name} {value})" for value in sorted(values)]
-                    return same[0] if len(same) == 1 else f"(or {' '.join(same)})"
-        for one, name in enumerate(names):
-            for other in range(one + 1, len(names)):
-                if all((each[one] == each[other]) != (each in inside) for each in inside | outside):
-                    return f"(not (= {name} {names[other]}))"
-                if all((each[one] == each[other]) == (each in inside) for each in inside | outside):
-                    return f"(= {name} {names[other]})"
-        predicate = f"{stem}_{sum(each.startswith(stem) for each in self.facts) + 1}"
+        said = None if outside is None else _equality(names, inside, outside)
+        if said is not None:
+            return said
+        predicate = f"{stem}-{sum(each.startswith(stem) for each in self.facts) + 1}"
         self.facts[predicate] = inside
         return f"({' '.join([predicate, *names])})"
+
+
+def _equality(
+    names: Sequence[str], inside: frozenset[Arguments], outside: frozenset[Arguments]
+) -> str | None:
+    """A guard that is said by equalities, where there is one."""
+    if not outside:
+        return ""
+    for place, name in enumerate(names):
+        values = {each[place] for each in inside}
+        others = {each[place] for each in outside}
+        if values.isdisjoint(others):
+            if len(others) < len(values) and len(others) <= 4:
+                return _all(f"(not (= {name} {value}))" for value in sorted(others))
+            if len(values) <= 4:
+                same = [f"(= {name} {value})" for value in sorted(values)]
+                return same[0] if len(same) == 1 else f"(or {' '.join(same)})"
+    for one, name in enumerate(names):
+        for other in range(one + 1, len(names)):
+            if all((each[one] == each[other]) != (each in inside) for each in inside | outside):
+                return f"(not (= {name} {names[other]}))"
+            if all((each[one] == each[other]) == (each in inside) for each in inside | outside):
+                return f"(= {name} {names[other]})"
+    return None
 
 
 def patterns(
@@ -71,6 +88,7 @@ def patterns(
     all_of = {arguments: frozenset(each) for arguments, each in items.items()}
     left = {arguments: set(each) for arguments, each in all_of.items()}
     found: list[tuple[Item, frozenset[Arguments]]] = []
+    # The most general instances first, so that what holds of all is not said of ?a = ?b alone.
     for arguments in sorted(left, key=lambda each: (-len(set(each)), each)):
         while left[arguments]:
             item = min(left[arguments], key=repr)
@@ -82,6 +100,8 @@ def patterns(
             for each in having:
                 left[each].discard(_put(pattern, names, each))
             found.append((pattern, having))
+            if len(found) > PATTERNS:
+                raise IrregularError
     return found
 
 

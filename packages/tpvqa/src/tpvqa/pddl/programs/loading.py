@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+from tpvqa.errors import PDDLError
+from tpvqa.pddl.programs.lifting import PATTERNS, IrregularError
 from tpvqa.pddl.programs.reading import read_program
 from tpvqa.pddl.programs.writing import as_pddl
 
@@ -29,4 +31,11 @@ def pddl_of(
     """
     program = read_program(text, path=path, timeout=timeout, memory=memory)
     stem = re.sub(r"[^a-z0-9_-]", "_", path.stem.lower()) if path else "program"
-    return as_pddl(program, stem if stem[:1].isalpha() else f"p{stem}")
+    try:
+        return as_pddl(program, stem if stem[:1].isalpha() else f"p{stem}")
+    except IrregularError:
+        raise PDDLError(
+            f"the instances of an action have more than {PATTERNS} conditions or effects that are "
+            "not of one shape; let what they speak of be their arguments",
+            file=path or "(program)",
+        ) from None

@@ -3,10 +3,14 @@
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from itertools import product
+from math import prod
 
 from tpvqa.pddl.atoms import Atom, Literal
 from tpvqa.pddl.programs.lifting import Arguments, Guards, Item, patterns
 from tpvqa.pddl.programs.reading import Program
+
+_LISTED = 1_000_000
+"""More choices of objects than these are not listed."""
 
 
 def as_pddl(program: Program, name: str) -> tuple[str, str]:
@@ -15,6 +19,9 @@ def as_pddl(program: Program, name: str) -> tuple[str, str]:
     Args:
         program: What a program says.
         name: What domain and problem are called.
+
+    Raises:
+        IrregularError: The instances of an action have too little in common.
     """
     return _Writer(program).written(name)
 
@@ -80,7 +87,7 @@ class _Writer:
             count = len(next(iter(uses)))
             predicates.append(f"({guard} {' '.join(f'?x{n + 1}' for n in range(count))})")
         functions = sorted({each.predicate for each in program.costs})
-        numbers = [f"(cost_{each} {self._cost_parameters(by_name[each])})" for each in functions]
+        numbers = [f"(cost-{each} {self._cost_parameters(by_name[each])})" for each in functions]
         total = ["(:functions (total-cost) - number", *numbers, ")"] if program.costs else []
         domain = [
             f"(define (domain {name})",
@@ -106,7 +113,7 @@ class _Writer:
         if program.costs:
             facts.append("(= (total-cost) 0)")
             facts += [
-                f"(= {Atom(f'cost_{action.predicate}', action.arguments).pddl()} "
+                f"(= {Atom(f'cost-{action.predicate}', action.arguments).pddl()} "
                 f"{program.costs.get(action, 1)})"
                 for action in program.actions
                 if action.predicate in functions
@@ -150,15 +157,16 @@ class _Writer:
         said, kinds = self._parameters(names, instances)
         fitting = [sorted(self._extent.get(kind, self._objects)) for kind in kinds]
         conditions = []
-        others = frozenset(product(*fitting)) - instances
-        guard = self._guards.condition(f"may_{name}", names, instances, others)
+        small = prod(map(len, fitting)) <= _LISTED
+        others = frozenset(product(*fitting)) - instances if small else None
+        guard = self._guards.condition(f"may-{name}", names, instances, others)
         conditions += [guard] if guard else []
         needs: dict[Arguments, list[Item]] = {
             each.arguments: [(tuple(sorted(clause)), None) for clause in program.needs[each]]
             for each in actions
         }
         for (clause, _), having in patterns(needs, names):
-            guard = self._guards.condition(f"if_{name}", names, having, instances - having)
+            guard = self._guards.condition(f"if-{name}", names, having, instances - having)
             parts = [f"(not {guard})"] * bool(guard) + [_literal(each) for each in clause]
             conditions.append(parts[0] if len(parts) == 1 else f"(or {' '.join(parts)})")
         effects: dict[Arguments, list[Item]] = {
@@ -170,12 +178,12 @@ class _Writer:
         results = []
         for (under, literal), having in patterns(effects, names):
             assert literal is not None
-            guard = self._guards.condition(f"if_{name}", names, having, instances - having)
+            guard = self._guards.condition(f"if-{name}", names, having, instances - having)
             parts = [guard] * bool(guard) + [_literal(each) for each in under]
             effect = _literal(literal)
             results.append(f"(when (and {' '.join(parts)}) {effect})" if parts else effect)
         if any(each in program.costs for each in actions):
-            results.append(f"(increase (total-cost) (cost_{' '.join([name, *names])}))")
+            results.append(f"(increase (total-cost) (cost-{' '.join([name, *names])}))")
         elif program.costs:
             results.append("(increase (total-cost) 1)")
         return (
