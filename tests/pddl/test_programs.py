@@ -109,7 +109,7 @@ BAD = [
     ("action(a). causes(a,f).\n#program step(t).\ngoal(f).", 2, "#program step is not read"),
     ("action(a). causes(a,f). derived(f,g). causes(a,g).\ngoal(f).", None, "derived and caused"),
     (
-        "n(1..40). action(a(X,Y)) :- n(X), n(Y). causes(a(X,Y),f(X*Y+X)) :- n(X), n(Y). goal(f(7)).",
+        "n(1..40). action(a(X,Y)) :- n(X),n(Y). causes(a(X,Y),f(X*Y+X)) :- n(X),n(Y). goal(f(7)).",
         None,
         "not of one shape",
     ),
