@@ -27,7 +27,7 @@ from tpvqa.planning import Plan
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.tasks import find_task
 
-TARGETS = {"eat_apple": 15.0, "household_60": 10.0}
+TARGETS = {"eat_apple": 15.0, "household_60": 20.0}
 
 
 def unified_planning_call(domain: str, problem: str, folder: Path) -> Callable[[], int]:

@@ -95,9 +95,16 @@ def trial_layers(
     elif task is not None:
         if given:
             raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
+        if task.lower().endswith(".lp") and not given:  # a logic program is both
+            own = {("task", "domain"): _resolved(task), ("task", "problem"): _resolved(task)}
+            return _with_own(layers, own)
         if task.lower().endswith(".pddl"):
             raise TpvqaError(f"{task} is a domain or a problem alone; name both, the domain first.")
         own = {("task", "name"): task}
+    return _with_own(layers, own)
+
+
+def _with_own(layers: Sequence[Layer], own: dict[Key, Any]) -> list[Layer]:
     given_layers = [*layers, Layer(own, dict.fromkeys(own, "argument"))]
     return [_beside(given_layers), *given_layers]
 

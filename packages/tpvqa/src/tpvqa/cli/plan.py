@@ -32,7 +32,9 @@ def register(app: typer.Typer) -> None:
 
 Task = Annotated[
     str | None,
-    typer.Argument(help="A shipped task (see `tpvqa tasks`), or your own domain file."),
+    typer.Argument(
+        help="A shipped task (see `tpvqa tasks`), your own domain file, or a logic program (.lp)."
+    ),
 ]
 Problem = Annotated[
     Path | None, typer.Argument(metavar="[PROBLEM]", help="Your problem, after a domain file.")
@@ -57,7 +59,8 @@ def plan(
     planner: Annotated[
         str | None,
         typer.Option(
-            help="fast-downward, fast-downward:optimal, fast-downward:lama or a plug-in.",
+            help="fast-downward, fast-downward:optimal, :lama or :anytime, clingo, up:NAME (an "
+            "engine of unified-planning) or a plug-in; see docs/planners.md.",
             show_default="fast-downward",
         ),
     ] = None,

@@ -133,7 +133,7 @@ class PlannerConfig(Part):
 
     spec: str = setting(
         "--planner",
-        "fast-downward, or with arguments, e.g. fast-downward:optimal.",
+        "fast-downward, or with arguments, e.g. fast-downward:optimal; clingo; up:NAME.",
         "fast-downward",
     )
     timeout: float = setting(

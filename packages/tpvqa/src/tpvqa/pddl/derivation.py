@@ -73,6 +73,11 @@ class Derivation:
                         )
             self._strata.append(stratum)
 
+    @property
+    def rules(self) -> tuple[GroundAxiom, ...]:
+        """The ground axioms, static facts decided."""
+        return tuple(rule for stratum in self._strata for rule in stratum)
+
     def extend(self, state: State) -> State:
         """The state with all its derived atoms."""
         known = set(state)

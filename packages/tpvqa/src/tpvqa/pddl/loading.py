@@ -1,10 +1,11 @@
-"""PDDL files → `Task`. The text is read once, here; the worker parses and grounds it."""
+"""PDDL files, or a logic program, → `Task`. The text is read once, here; the worker grounds it."""
 
 from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import PDDLError
 from tpvqa.pddl.description import MEMORY, described, grounded_fields, unsure_fields
+from tpvqa.pddl.programs.loading import SUFFIX, pddl_of
 from tpvqa.pddl.schema import (
     ActionSchema,
     AxiomSchema,
@@ -30,8 +31,10 @@ def load_task(
     """Read a task.
 
     Args:
-        name_or_domain: The name of a shipped task, or the path of a domain.
-        problem: The path of the problem, where the first argument is a path.
+        name_or_domain: The name of a shipped task, or the path of a domain or of a logic program
+            (`.lp`, see docs/planners.md).
+        problem: The path of the problem, where the first argument is a domain's; a logic program
+            may be named twice, and needs no other.
         timeout: Seconds that reading and grounding may take; None for no limit.
         memory: The limit of their memory in MiB; None for none.
 
@@ -40,11 +43,16 @@ def load_task(
         PDDLError: A file is missing or cannot be read as PDDL.
         GroundingTimedOut: It took too long.
         PlannerError: Grounding failed.
+        MissingExtraError: It is a logic program, and clingo is not installed.
 
     Example:
         >>> load_task("clean_dishes").goal
         Literal(atom=Atom(predicate='clean', arguments=('plate',)), positive=True)
     """
+    if Path(name_or_domain).suffix.lower() == SUFFIX:
+        if problem is not None and Path(problem) != Path(name_or_domain):
+            raise PDDLError("a logic program needs no problem beside it", file=problem)
+        return _program(Path(name_or_domain), timeout, memory)
     if problem is None:
         from tpvqa.tasks import find_task
 
@@ -125,6 +133,16 @@ def task_from_text(
         except PDDLError as error:
             raise PDDLError(str(error), file=domain_path or "(domain)") from None
     return task
+
+
+def _program(path: Path, timeout: float | None, memory: int | None) -> Task:
+    domain, problem = pddl_of(_text(path, "program"), path=path, timeout=timeout, memory=memory)
+    try:
+        return task_from_text(
+            domain, problem, domain_path=path, problem_path=path, timeout=timeout, memory=memory
+        )
+    except PDDLError as error:  # its lines are not those of the program
+        raise PDDLError(f"written as PDDL, {error.message}", file=path) from None
 
 
 def _text(path: Path, part: str) -> str:

@@ -31,10 +31,14 @@ class WorkerTimedOut(Exception):  # noqa: N818
 
 
 class WorkerProcess:
-    """One worker process and the pipes to it. Used by one thread at a time."""
+    """One worker process and the pipes to it. Used by one thread at a time.
 
-    def __init__(self) -> None:
-        command = [sys.executable, "-P", "-m", "tpvqa.pddl.worker"]
+    Args:
+        module: What it runs: a module that reads requests and writes replies and heartbeats.
+    """
+
+    def __init__(self, module: str = "tpvqa.pddl.worker") -> None:
+        command = [sys.executable, "-P", "-m", module]
         if threading.current_thread() is threading.main_thread():
             # The signal comes when the *thread* that started the worker ends; only the main one
             # lives as long as the process.
@@ -193,10 +197,11 @@ class WorkerPool:
     Args:
         keep: So many idle workers stay for the next calls.
         limit: So many are at work at once; further callers wait.
+        module: What they run.
     """
 
-    def __init__(self, *, keep: int = 8, limit: int = 16):
-        self._keep, self._limit = keep, limit
+    def __init__(self, *, keep: int = 8, limit: int = 16, module: str = "tpvqa.pddl.worker"):
+        self._keep, self._limit, self._module = keep, limit, module
         self._free = threading.Semaphore(limit)
         self._lock = threading.Lock()
         self._idle: list[WorkerProcess] = []
@@ -241,7 +246,7 @@ class WorkerPool:
         if worker is None or not worker.alive:
             if worker is not None:
                 worker.kill()
-            worker = WorkerProcess()
+            worker = WorkerProcess(self._module)
         with self._lock:
             self._lent.add(worker)
         return worker
@@ -277,11 +282,16 @@ class WorkerPool:
         self._idle, self._lent = [], set()
 
 
-WORKERS = WorkerPool()
-"""The workers of this process, shared by reading and planning: who reads a task grounds it too."""
+def lasting_pool(*, keep: int = 8, limit: int = 16, module: str) -> WorkerPool:
+    """A pool that ends with this process and that a forked child does not share."""
+    pool = WorkerPool(keep=keep, limit=limit, module=module)
+    atexit.register(pool.end)
+    os.register_at_fork(after_in_child=pool.forget)
+    return pool
 
-atexit.register(WORKERS.end)
-os.register_at_fork(after_in_child=WORKERS.forget)
+
+WORKERS = lasting_pool(module="tpvqa.pddl.worker")
+"""The workers of this process, shared by reading and planning: who reads a task grounds it too."""
 
 
 def ask_worker(

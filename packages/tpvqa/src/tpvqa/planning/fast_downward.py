@@ -1,5 +1,6 @@
 """Fast Downward as the planner: replans on kept grounding, in worker processes."""
 
+import re
 import time
 from typing import Any
 
@@ -13,19 +14,33 @@ from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.plugins import PlainArguments
 
-SEARCHES = ("optimal", "lama")
+SEARCHES = ("optimal", "lama", "anytime")
 """What can be asked for beside the default."""
 
 _FF = "let(h,ff(),lazy_greedy([h],preferred=[h]))"
 # LAMA's first search (Richter and Westphal 2010), but that FF counts costs, too. Landmarks count
 # steps: where both counted costs, it found no plan in time for some tasks.
-_FF_AND_LANDMARKS = (
+_BOTH = (
     "let(s,eval_modify_costs(landmark_sum(lm_reasonable_orders_hps(lm_rhw()),pref=false),"
-    "cost_type=one),let(h,eval_modify_costs(ff(),cost_type=plusone),"
-    "lazy_greedy([h,s],preferred=[h,s],reopen_closed=false)))"
+    "cost_type=one),let(h,eval_modify_costs(ff(),cost_type=plusone),%s))"
 )
+_GREEDY = "lazy_greedy([h,s],preferred=[h,s],reopen_closed=%s)"
+_FF_AND_LANDMARKS = _BOTH % (_GREEDY % "false")
+# Its later searches: each for less cost than the plan that is there. As they come back to states
+# that are reached at less cost, one that ends by itself proves that there is no cheaper plan.
+_BETTER = (
+    _BOTH % (_GREEDY % "true,bound={bound}"),
+    *(
+        _BOTH % f"lazy_wastar([h,s],preferred=[h,s],w={weight},bound={{bound}})"
+        for weight in (5, 3, 2, 1)
+    ),
+)
+IMPROVING = 5.0
+"""Seconds that "anytime" gives to better plans, where it is not told otherwise."""
 _LMCUT = "astar(lmcut())"
 _HMAX = "astar(hmax())"
+
+_TIMED = re.compile(r"anytime:([0-9]{1,6}(?:\.[0-9]{1,6})?)")
 
 _EFFORTS = 2
 """The number of the last effort of `tpvqa.pddl.worker.relevance`."""
@@ -46,11 +61,14 @@ class FastDownward(PlainArguments):
     Args:
         search: "optimal" for a plan of least cost (A* with LM-cut, or with hmax where the task has
             axioms or conditional effects); "lama" for lazy greedy search with FF and landmarks,
-            which finds plans in some large tasks where the default finds none. By default lazy
-            greedy search with FF where every action costs 1, else as "lama".
+            which finds plans in some large tasks where FF alone finds none; "anytime" for plans
+            that get better until `improving` is over or none is. By default lazy greedy search with
+            FF where every action costs 1, and where that finds nothing in its share of the time (a
+            tenth) as "lama" for half of what is left, then FF again; else as "lama" at once.
         timeout: Seconds for a call; None for no limit.
         memory: The limit of the search's memory in MiB; None for none.
         grounding_memory: The same of grounding's, see also `load_task`.
+        improving: Seconds that "anytime" gives to better plans once it has one.
 
     Raises:
         PluginError: There is no such search.
@@ -67,27 +85,35 @@ class FastDownward(PlainArguments):
         timeout: float | None = 60.0,
         memory: int | None = MEMORY,
         grounding_memory: int | None = MEMORY,
+        improving: float = IMPROVING,
     ):
         if search is not None and search not in SEARCHES:
             raise PluginError(
                 f"'fast-downward:{search}' is not understood{suggestion(search, SEARCHES)} Write "
-                f"fast-downward, or {' or '.join(f'fast-downward:{each}' for each in SEARCHES)}."
+                f"fast-downward, or {' or '.join(f'fast-downward:{each}' for each in SEARCHES)} "
+                "(or fast-downward:anytime:SECONDS)."
             )
         self.search, self.timeout, self.memory = search, timeout, memory
-        self.grounding_memory = grounding_memory
+        self.grounding_memory, self.improving = grounding_memory, improving
 
     @classmethod
     def from_spec(cls, arguments: str = "") -> "FastDownward":
-        """Make it from `fast-downward`, `fast-downward:optimal` or `fast-downward:lama`.
+        """Make it from `fast-downward`, `fast-downward:optimal`, `fast-downward:lama`,
+        `fast-downward:anytime` or `fast-downward:anytime:SECONDS`.
 
         Raises:
             PluginError: There is no such search.
         """
-        return cls(search=arguments or None)
+        timed = _TIMED.fullmatch(arguments)
+        if timed is None:
+            return cls(search=arguments or None)
+        return cls(search="anytime", improving=float(timed[1]))
 
     @property
     def name(self) -> str:
         """The specification it can be made from again."""
+        if self.search == "anytime" and self.improving != IMPROVING:
+            return f"fast-downward:anytime:{self.improving:g}"
         return "fast-downward" if self.search is None else f"fast-downward:{self.search}"
 
     def plan(
@@ -131,7 +157,7 @@ class FastDownward(PlainArguments):
         request = {
             "do": "plan",
             "state": to_lists(state),
-            "searches": _searches(self.search, task),
+            "searches": _searches(self.search, task, self.improving),
             "seconds": seconds,
             "memory": self.memory,
             "grounding_memory": self.grounding_memory,
@@ -176,13 +202,18 @@ class FastDownward(PlainArguments):
         WORKERS.close()
 
 
-def _searches(search: str | None, task: Task) -> dict[str, str]:
-    """Searches for tasks that have neither axioms nor conditional effects, and for others."""
+def _searches(search: str | None, task: Task, improving: float) -> dict[str, Any]:
+    """Searches for tasks that have neither axioms nor conditional effects, and for others.
+
+    See `tpvqa.pddl.worker.seeking` for what else stands there.
+    """
     if search == "optimal":
         return {"simple": _LMCUT, "other": _HMAX}  # LM-cut knows neither
     unit_cost = all(schema.cost == 1 for schema in task.schemas)
-    chosen = _FF if search is None and unit_cost else _FF_AND_LANDMARKS
-    return {"simple": chosen, "other": chosen}
+    if search == "lama" or (not unit_cost and search is None):
+        return {"simple": _FF_AND_LANDMARKS, "other": _FF_AND_LANDMARKS}
+    quick = {"simple": _FF, "other": _FF, "quick": True, "then": _FF_AND_LANDMARKS}
+    return quick if search is None else {**quick, "better": _BETTER, "improve": improving}
 
 
 def _leaving_less(leaving: dict[str, Any], replay: Validation) -> dict[str, Any] | None:

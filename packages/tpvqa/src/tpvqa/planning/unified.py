@@ -1,12 +1,14 @@
-"""The door for unified-planning: a user's `Problem` becomes a `Task` through its PDDL."""
+"""The door for unified-planning: its `Problem` becomes a `Task`, our plan its `SequentialPlan`."""
 
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.errors import MissingExtraError, PDDLError
 from tpvqa.pddl import Task, task_from_text
+from tpvqa.planning.protocol import Plan
 
 if TYPE_CHECKING:
     from unified_planning.model import Problem
+    from unified_planning.plans import SequentialPlan
 
 
 def task_from_problem(problem: "Problem", *, timeout: float | None = 300.0) -> Task:
@@ -24,6 +26,43 @@ def task_from_problem(problem: "Problem", *, timeout: float | None = 300.0) -> T
         PDDLError: The problem cannot be said in the PDDL that Fast Downward reads (numeric fluents
             other than action costs, time, …).
     """
+    writer = _written(problem)
+    return task_from_text(writer.get_domain(), writer.get_problem(), timeout=timeout)
+
+
+def sequential_plan(problem: "Problem", plan: Plan) -> "SequentialPlan":
+    """A plan in the terms of the problem of unified-planning that its task was made from.
+
+    Args:
+        problem: The problem.
+        plan: A plan of `task_from_problem(problem)`.
+
+    Raises:
+        MissingExtraError: unified-planning is not installed.
+        PDDLError: The problem cannot be said in PDDL, or the plan is of another one.
+    """
+    writer = _written(problem)
+    from unified_planning.exceptions import UPException
+    from unified_planning.plans import ActionInstance, SequentialPlan
+
+    try:
+        steps = [
+            ActionInstance(
+                writer.get_item_named(action.name),
+                tuple(
+                    problem.environment.expression_manager.ObjectExp(writer.get_item_named(name))
+                    for name in action.arguments
+                ),
+            )
+            for action in plan.actions
+        ]
+        return SequentialPlan(steps, problem.environment)
+    except (UPException, AssertionError) as error:
+        raise PDDLError(f"the plan is not one of the problem {problem.name!r}: {error}") from error
+
+
+def _written(problem: "Problem") -> Any:
+    """What has written a problem as PDDL, and knows what it called everything."""
     try:
         from unified_planning.exceptions import UPException
         from unified_planning.io import PDDLWriter
@@ -31,9 +70,10 @@ def task_from_problem(problem: "Problem", *, timeout: float | None = 300.0) -> T
         raise MissingExtraError("unified-planning", "up", "Reading its problems") from error
     try:
         writer: Any = PDDLWriter(problem)
-        domain, text = writer.get_domain(), writer.get_problem()
+        writer.get_domain()
+        writer.get_problem()
     except (UPException, NotImplementedError) as error:
         raise PDDLError(
             f"the problem {problem.name!r} cannot be written as PDDL: {error}"
         ) from error
-    return task_from_text(domain, text, timeout=timeout)
+    return writer

@@ -15,6 +15,8 @@ from fast_downward.translate import (
 )
 from fast_downward.translate import main as translator
 
+from tpvqa.pddl.worker.ahead import AHEAD, Ahead, ahead_of
+
 AtomKey = tuple[str, ...]
 """A predicate and its arguments."""
 
@@ -49,14 +51,26 @@ class SASTemplate:
     simple: bool
     has_axioms: bool
 
-    def fill(self, state: Iterable[AtomKey]) -> bytes:
-        """The text of the task with a state as its initial one."""
+    def values(self, state: Iterable[AtomKey]) -> list[int]:
+        """Each variable's value in a state."""
         values = list(self.defaults)
         for atom in state:
             place = self.places.get(atom)
             if place is not None:
                 values[place[0]] = place[1]
-        return self.before + "\n".join(map(str, values)).encode() + b"\n" + self.after
+        return values
+
+    def fill(self, state: Iterable[AtomKey]) -> bytes:
+        """The text of the task with a state as its initial one."""
+        values = "\n".join(map(str, self.values(state))).encode()
+        return self.before + values + b"\n" + self.after
+
+    @cached_property
+    def ahead(self) -> Ahead | None:
+        """How the task is read before its initial state is known; None where that saves little."""
+        if len(self.before) + len(self.after) < AHEAD:
+            return None
+        return ahead_of(self.before, self.after, self.defaults)
 
 
 class Grounding:

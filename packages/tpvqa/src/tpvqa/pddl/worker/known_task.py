@@ -18,6 +18,7 @@ from tpvqa.pddl.worker.reading import ReadingError, read
 from tpvqa.pddl.worker.relevance import EFFORTS, relevant_objects
 from tpvqa.pddl.worker.rules import Rules, rules_of
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome
+from tpvqa.pddl.worker.seeking import sought
 from tpvqa.pddl.worker.unsure import UnsureError, chosen, give_room
 
 LARGE = 50_000
@@ -155,7 +156,7 @@ class KnownTask:
         state: list[list[str]],
         searcher: Searcher,
         *,
-        searches: dict[str, str],
+        searches: dict[str, Any],
         seconds: float | None,
         memory: int | None,
         leaving: Leaving | None = None,
@@ -166,7 +167,8 @@ class KnownTask:
             state: The atoms that hold.
             searcher: What runs the search.
             searches: Fast Downward's search for tasks that are "simple" (neither axioms nor
-                conditional effects) and for "other" ones.
+                conditional effects) and for "other" ones; see `tpvqa.pddl.worker.seeking` for what
+                else may stand here.
             seconds: The time limit of grounding and search together.
             memory: The limit of the search's memory in MiB.
             leaving: What may be left out, if the task is large; None for nothing. A plan found so
@@ -192,7 +194,7 @@ class KnownTask:
         static: Facts,
         fluent: Facts,
         searcher: Searcher,
-        searches: dict[str, str],
+        searches: dict[str, Any],
         end: float | None,
         memory: int | None,
     ) -> SearchOutcome:
@@ -211,7 +213,9 @@ class KnownTask:
         left = None if end is None else end - time.monotonic()
         if left is not None and left <= 0:
             return SearchOutcome("timeout")
-        return searcher.run(template.fill(kept.within(fluent)), search, seconds=left, memory=memory)
+        return sought(
+            searcher, template, kept.within(fluent), search, searches, seconds=left, memory=memory
+        )
 
     @cached_property
     def _first_part(self) -> KeptGroundings | None:

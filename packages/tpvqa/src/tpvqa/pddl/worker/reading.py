@@ -11,6 +11,7 @@ from fast_downward.translate.pddl_parser.parse_error import ParseError
 
 from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
+from tpvqa.pddl.worker.requirements import beyond
 from tpvqa.pddl.worker.typing_check import ill_typed
 from tpvqa.pddl.worker.unsure import Unsure, UnsureError, taken_out
 
@@ -65,6 +66,9 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         except LispError as error:
             raise ReadingError(error.message, part, error.line) from None
         _check_kind(part, blocks[part])
+    found = beyond(blocks["domain"])
+    if found is not None:
+        raise ReadingError(found[0], "domain", found[1])
     _check_functions(blocks["domain"])
     try:
         unsure = taken_out(blocks["problem"])

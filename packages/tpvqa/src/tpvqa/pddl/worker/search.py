@@ -11,12 +11,20 @@ import select
 import signal
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tpvqa.pddl.worker.ahead import BEGIN, Ahead
+
+if TYPE_CHECKING:
+    from tpvqa.pddl.worker.grounding import AtomKey, SASTemplate
 
 _PR_SET_PDEATHSIG = 1
+_PATIENCE = 2.0
+"""Seconds in which a process has to have read a task ahead."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +69,7 @@ class _Child:
 
     def __init__(self, binary: str, search: str, memory: int | None, in_child: Callable[[], None]):
         self.search, self.memory = search, memory
+        self.ahead: Ahead | None = None
         self._plan = os.memfd_create("plan")
         self._log = os.memfd_create("log")
         self._process = subprocess.Popen(
@@ -81,19 +90,30 @@ class _Child:
             limit = memory << 20
             resource.prlimit(self._process.pid, resource.RLIMIT_AS, (limit, limit))
 
-    def fits(self, search: str, memory: int | None) -> bool:
-        """Whether it still waits, for such a search."""
+    def fits(self, search: str, memory: int | None, ahead: Ahead | None) -> bool:
+        """Whether it still waits, for such a search, and has read nothing else."""
+        if self.ahead not in (None, ahead):
+            return False
         return (search, memory) == (self.search, self.memory) and self._process.poll() is None
 
+    def read_ahead(self, ahead: Ahead, end: float) -> bool:
+        """Have it read all of a task but its state; whether that was done in time."""
+        self.ahead = ahead
+        return self._write(ahead.first, end)
+
     def feed(self, text: bytes, end: float | None) -> None:
-        """Write the task; stops early where the process or the time ends."""
+        """Write the task, or what is left of it; stops early where process or time ends."""
+        self._write(text, end)
+        self._input.close()
+
+    def _write(self, text: bytes, end: float | None) -> bool:
         view = memoryview(text)
         poll = select.poll()
         poll.register(self._input.fileno(), select.POLLOUT)
         with contextlib.suppress(BrokenPipeError):
             while view and poll.poll(_milliseconds_until(end)):
                 view = view[os.write(self._input.fileno(), view) :]
-        self._input.close()
+        return not view
 
     def wait(self, end: float | None) -> bool:
         """Wait until the process ends; False where the time is over first."""
@@ -143,6 +163,8 @@ class Searcher:
     """
 
     def __init__(self) -> None:
+        self._ahead: Ahead | None = None
+        self._again = False
         self._binary = str(find_downward())
         self._prctl: Callable[[int, int], int] = ctypes.CDLL(None).prctl
         self._own = os.getpid()
@@ -156,11 +178,12 @@ class Searcher:
         if os.getppid() != self._own:
             os._exit(1)
 
-    def _take(self, search: str, memory: int | None) -> _Child:
+    def _take(self, search: str, memory: int | None, ahead: Ahead | None) -> _Child:
         child, self._waiting = self._waiting, None
         self._last = (search, memory)
+        self._again, self._ahead = ahead is not None and ahead is self._ahead, ahead
         if child is not None:
-            if child.fits(search, memory):
+            if child.fits(search, memory, ahead):
                 return child
             child.close()
         return _Child(self._binary, search, memory, self._in_child)
@@ -170,30 +193,56 @@ class Searcher:
         if self._waiting is None and self._last is not None:
             with contextlib.suppress(OSError):  # no process to be had now; the next call will see
                 self._waiting = _Child(self._binary, *self._last, self._in_child)
+                if self._again and self._ahead is not None:
+                    end = time.monotonic() + _PATIENCE
+                    if not self._waiting.read_ahead(self._ahead, end):
+                        self._waiting.close()
+                        self._waiting = None
 
     def run(
-        self, text: bytes, search: str, *, seconds: float | None, memory: int | None
+        self,
+        template: "SASTemplate",
+        state: "Iterable[AtomKey]",
+        search: str,
+        *,
+        seconds: float | None,
+        memory: int | None,
+        ahead: bool = False,
     ) -> SearchOutcome:
         """Search for a plan; a search that crashes is tried once more.
 
         Args:
-            text: The SAS+ task.
+            template: The SAS+ task.
+            state: Its initial state.
+            ahead: Whether the next search may read the same task before it is asked for.
             search: Fast Downward's search, e.g. "astar(lmcut())".
             seconds: The time limit; None for none.
             memory: The limit of the search's memory in MiB; None for none.
         """
         end = None if seconds is None else time.monotonic() + seconds
-        outcome = self._once(text, search, end, memory)
+        state = tuple(state)
+        known = template.ahead if ahead else None
+        outcome = self._once(template, state, search, end, memory, known)
         if outcome.kind == "crash":
-            outcome = self._once(text, search, end, memory)
+            outcome = self._once(template, state, search, end, memory, None)
         return outcome
 
     def _once(
-        self, text: bytes, search: str, end: float | None, memory: int | None
+        self,
+        template: "SASTemplate",
+        state: "tuple[AtomKey, ...]",
+        search: str,
+        end: float | None,
+        memory: int | None,
+        ahead: Ahead | None,
     ) -> SearchOutcome:
-        child = self._take(search, memory)
+        child = self._take(search, memory, ahead)
         try:
-            child.feed(text, end)
+            if ahead is None:
+                child.feed(template.fill(state), end)
+            else:  # the same text, whether read ahead or not, so that plans do not depend on it
+                begun = b"" if child.ahead is ahead else ahead.first
+                child.feed(begun + ahead.rest(template.values(state)), end)
             return child.outcome() if child.wait(end) else SearchOutcome("timeout")
         finally:
             child.close()
@@ -204,6 +253,7 @@ def _outcome(code: int, plan: str, log: str, memory: int | None) -> SearchOutcom
         steps = tuple(
             tuple(line.strip("()").split()) for line in plan.splitlines() if line.startswith("(")
         )
+        steps = tuple(step for step in steps if step != (BEGIN,))
         return SearchOutcome("plan", steps, int(plan.rsplit("; cost = ", 1)[1].split()[0]))
     if code in (10, 11) or (code == 12 and "Completely explored state space" in log):
         return SearchOutcome("unsolvable", reason="the search went through all states that matter")

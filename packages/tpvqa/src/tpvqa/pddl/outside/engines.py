@@ -1,0 +1,47 @@
+"""The engines that unified-planning knows of: the package of each, and what they plan with."""
+
+from collections.abc import Mapping
+from importlib.util import find_spec
+
+PACKAGES: Mapping[str, str] = {
+    "aries": "up-aries",
+    "enhsp": "up-enhsp",
+    "enhsp-any": "up-enhsp",
+    "enhsp-opt": "up-enhsp",
+    "fast-downward": "up-fast-downward",
+    "fast-downward-opt": "up-fast-downward",
+    "fmap": "up-fmap",
+    "lpg": "up-lpg",
+    "lpg-anytime": "up-lpg",
+    "pyperplan": "up-pyperplan",
+    "pyperplan-opt": "up-pyperplan",
+    "symk": "up-symk",
+    "symk-opt": "up-symk",
+    "tamer": "up-tamer",
+}
+"""The packages from which the engines come; each has a licence of its own."""
+
+KNOWS: Mapping[str, tuple[str, ...]] = {
+    "numbers": ("enhsp", "tamer", "aries"),
+    "time": ("tamer", "aries"),
+    "processes": ("enhsp",),
+    "objects": ("tamer", "aries"),
+}
+"""What Fast Downward does not know, by what the engines declare in unified-planning 1.3."""
+
+
+def is_there(engine: str) -> bool:
+    """Whether the package that brings an engine is installed."""
+    return find_spec(PACKAGES[engine].replace("-", "_")) is not None
+
+
+def where_known(feature: str) -> str:
+    """Who could plan with a feature, as a sentence without its full stop."""
+    names = KNOWS.get(feature, ())
+    if not names:
+        return "No engine of unified-planning does"
+    said = [
+        f"{name} ({'installed' if is_there(name) else f'pip install {PACKAGES[name]}'})"
+        for name in names
+    ]
+    return f"Of unified-planning's engines {', '.join(said)} would plan it; tpvqa cannot yet"

@@ -1,0 +1,1 @@
+"""Logic programs (answer set programming) as tasks: read, grounded, and written as PDDL."""

@@ -1,0 +1,171 @@
+"""A task without variables, as engines that know no PDDL are given it: from any state."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tpvqa.pddl import Action, Atom, Condition, Conjunction, Literal, State, Task
+from tpvqa.pddl.derivation import GroundAxiom
+from tpvqa.pddl.ground import Effect
+from tpvqa.pddl.schema import FALSE, TRUE, join
+
+
+@dataclass(frozen=True, slots=True)
+class Propositional:
+    """What can be done from a state, and to what end. What cannot vary is decided.
+
+    Attributes:
+        task: The task, grounded from where the state's facts can be reached.
+        init: The atoms that hold at first, of those that vary.
+        actions: The actions that can be reached where nothing is ever undone; conditions speak of
+            what varies alone.
+        goal: The goal, in the same way.
+        rules: What derived atoms follow from.
+        in_reach: Whether the goal can be reached where nothing is ever undone.
+        whole: Whether nothing of the task was left out.
+    """
+
+    task: Task
+    init: State
+    actions: tuple[Action, ...]
+    goal: Condition
+    rules: tuple[GroundAxiom, ...]
+    in_reach: bool
+    whole: bool
+
+    def numbered(self) -> dict[str, Any]:
+        """The same in lists and numbers, as it is sent to another process.
+
+        Atoms are numbers; a condition is `[atom, holds]`, or `["and", …]` or `["or", …]` of such.
+        An action is what it needs, its effects as `[condition, atom, holds]`, and its cost.
+        """
+        numbers: dict[Atom, int] = {}
+
+        def number(atom: Atom) -> int:
+            return numbers.setdefault(atom, len(numbers))
+
+        def said(condition: Condition) -> list[Any]:
+            if isinstance(condition, Literal):
+                return [number(condition.atom), condition.positive]
+            word = "and" if isinstance(condition, Conjunction) else "or"
+            return [word, *map(said, condition.parts)]
+
+        return {
+            "init": sorted(map(number, sorted(self.init))),
+            "goal": said(self.goal),
+            "actions": [
+                [
+                    said(action.precondition),
+                    [
+                        [said(e.condition), number(e.literal.atom), e.literal.positive]
+                        for e in action.effects
+                    ],
+                    action.cost,
+                ]
+                for action in self.actions
+            ],
+            "rules": [[number(rule.head), said(rule.condition)] for rule in self.rules],
+            "atoms": len(numbers),
+        }
+
+
+def propositional(task: Task, state: State) -> Propositional:
+    """Ground a task from a state.
+
+    Args:
+        task: The task; what it was grounded to is kept where that serves the state.
+        state: The atoms that hold; derived ones do not count.
+
+    Raises:
+        PDDLError: The state speaks of unknown predicates or objects.
+        PlannerError: It could not be grounded.
+    """
+    state = frozenset(atom for atom in state if atom.predicate not in task.derived)
+    fluent = frozenset(atom for atom in state if atom.predicate in task.fluents)
+    if state - fluent != task.static or not fluent <= task.reachable_atoms:
+        task = task.with_init(state)
+    rules = task.derivation(state).rules if task.axioms else ()
+    possible, stays, actions = _within_reach(task.ground_actions(), rules, state)
+    added = {e.literal.atom for a in actions for e in a.effects if e.literal.positive}
+    deleted = {e.literal.atom for a in actions for e in a.effects if not e.literal.positive}
+    heads = {rule.head for rule in rules} & possible
+
+    def known(atom: Atom) -> bool | None:
+        if atom in heads:
+            return None
+        if atom in state:
+            return None if atom in deleted else True
+        return None if atom in added and atom in possible else False
+
+    decided = tuple(
+        replace(
+            action,
+            precondition=_decided(action.precondition, known),
+            effects=tuple(
+                Effect(condition, effect.literal)
+                for effect in action.effects
+                if known(effect.literal.atom) is None
+                if (condition := _decided(effect.condition, known)) != FALSE
+            ),
+        )
+        for action in actions
+    )
+    return Propositional(
+        task=task,
+        init=frozenset(atom for atom in fluent if known(atom) is None),
+        actions=tuple(each for each in decided if each.precondition != FALSE and each.effects),
+        goal=_decided(task.goal, known),
+        rules=tuple(
+            GroundAxiom(rule.head, condition)
+            for rule in rules
+            if rule.head in heads
+            if (condition := _decided(rule.condition, known)) != FALSE
+        ),
+        in_reach=_may_hold(task.goal, possible, stays),
+        whole=not task.left_out,
+    )
+
+
+def _within_reach(
+    actions: tuple[Action, ...], rules: tuple[GroundAxiom, ...], state: State
+) -> tuple[set[Atom], set[Atom], tuple[Action, ...]]:
+    """Atoms and actions that can be reached where nothing is ever undone, and what never is."""
+    deleted = {e.literal.atom for a in actions for e in a.effects if not e.literal.positive}
+    stays = set(state) - deleted
+    possible, waiting = set(state), list(actions)
+    reached: list[Action] = []
+    before = (-1, -1)
+    while before != (len(possible), len(reached)):
+        before = len(possible), len(reached)
+        possible.update(rule.head for rule in rules if _may_hold(rule.condition, possible, stays))
+        left: list[Action] = []
+        for action in waiting:
+            (reached if _may_hold(action.precondition, possible, stays) else left).append(action)
+        waiting = left
+        possible.update(
+            effect.literal.atom
+            for action in reached
+            for effect in action.effects
+            if effect.literal.positive and _may_hold(effect.condition, possible, stays)
+        )
+    return possible, stays, tuple(reached)
+
+
+def _may_hold(condition: Condition, possible: set[Atom], stays: set[Atom]) -> bool:
+    """Whether a condition can come to hold, where each literal is taken by itself."""
+    if isinstance(condition, Literal):
+        return condition.atom in possible if condition.positive else condition.atom not in stays
+    parts = (_may_hold(part, possible, stays) for part in condition.parts)
+    return all(parts) if isinstance(condition, Conjunction) else any(parts)
+
+
+def _decided(condition: Condition, known: Callable[[Atom], bool | None]) -> Condition:
+    if isinstance(condition, Literal):
+        holds = known(condition.atom)
+        if holds is None:
+            return condition
+        return TRUE if holds == condition.positive else FALSE
+    return join(
+        (_decided(part, known) for part in condition.parts),
+        conjunctive=isinstance(condition, Conjunction),
+    )

@@ -1,0 +1,30 @@
+"""A whole seeded trial with every planner, as a user types it."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("up_aries")
+pytest.importorskip("up_pyperplan")
+
+
+@pytest.mark.parametrize("spec", ["up:pyperplan-opt", "up:aries", "fast-downward:anytime:0.5"])
+def test_a_trial_with_a_planner_by_name(spec: str, tmp_path: Path) -> None:
+    words = ["run", "clean_dishes", "--planner", spec, "--vlm", "oracle:0.95", "--seed", "5"]
+    done = subprocess.run(
+        [sys.executable, "-m", "tpvqa", *words, "--world", "symbolic", "--out", "trial"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "goal reached" in done.stdout
+    shown = subprocess.run(
+        [sys.executable, "-m", "tpvqa", "show", "trial"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert spec in shown.stdout

@@ -1,0 +1,64 @@
+"""Domains that ask for what Fast Downward does not know."""
+
+import pytest
+
+from tpvqa.errors import PDDLError
+from tpvqa.pddl import task_from_text
+from tpvqa.pddl.outside import engines
+
+PROBLEM = "(define (problem x) (:domain d) (:init) (:goal (p)))"
+
+
+def domain(
+    requirement: str, *, needs: str = "()", effect: str = "(p)", word: str = ":action"
+) -> str:
+    return (
+        f"(define (domain d)\n (:requirements :strips\n   {requirement})\n (:predicates (p) (q))\n"
+        f" (:functions (battery))\n ({word} a :parameters ()\n :precondition {needs}\n"
+        f" :effect {effect}))"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "says"),
+    [
+        (domain(":numeric-fluents"), 3, ":numeric-fluents is about numbers that actions change"),
+        (domain(":fluents"), 3, "write :action-costs instead"),
+        (domain(":durative-actions"), 3, "aries"),
+        (domain(":preferences"), 3, "No engine of unified-planning does"),
+        (domain(":probabilistic-effects"), 3, "effects by chance"),
+        (domain(":typign"), 3, "Did you mean ':typing'"),
+        (domain("", needs="(> (battery) 1)"), 7, "enhsp"),
+        (domain("", effect="(decrease (battery) 1)"), 8, "numbers that actions change"),
+        (domain("", word=":durative-action"), 6, "actions that last"),
+        (domain("", effect="(probabilistic 0.5 (p))"), 8, "effects by chance"),
+    ],
+)
+def test_which_requirement_and_who_knows_it(text: str, line: int, says: str) -> None:
+    with pytest.raises(PDDLError) as caught:
+        task_from_text(text, PROBLEM)
+    assert says in str(caught.value)
+    assert caught.value.line == line
+
+
+def test_an_engine_that_is_not_there_names_its_package(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engines, "is_there", lambda engine: engine == "aries")
+    said = engines.where_known("time")
+    assert "aries (installed)" in said
+    assert "tamer (pip install up-tamer)" in said
+
+
+def test_a_predicate_may_be_called_as_what_is_not_known() -> None:
+    text = domain("").replace("(q)", "(assign)").replace("()\n :effect", "(not (assign))\n :effect")
+    assert task_from_text(text.replace(" (:functions (battery))\n", ""), PROBLEM).goal is not None
+
+
+def test_what_is_declared_as_numeric_in_unified_planning() -> None:
+    """What is said of the engines is what they declare, of those that are installed."""
+    shortcuts = pytest.importorskip("unified_planning.shortcuts")
+    features = {"numbers": "INT_FLUENTS", "time": "CONTINUOUS_TIME", "objects": "OBJECT_FLUENTS"}
+    factory = shortcuts.get_environment().factory
+    for feature, name in features.items():
+        for engine in engines.KNOWS[feature]:
+            if engine in factory.engines:
+                assert name in factory.engine(engine).supported_kind().features
