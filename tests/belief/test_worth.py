@@ -107,8 +107,8 @@ def test_further_answers_are_expected_as_they_come() -> None:
 def test_as_much_is_expected_of_answers_as_they_have_said(
     right: float, said: float, trust: float
 ) -> None:
-    """A VLM whose P(yes) is less sure than its words were in the calibration, or surer: what it
-    says and how far it is trusted count once each."""
+    """A VLM whose P(yes) is less sure than its words were in the calibration: what it says and how
+    far it is trusted count once each. More than the calibration says is not expected."""
     worth, ratio = Worth(Trust(), FRESH), log(said / (1 - said))
     nearest = int(np.argmin(abs(np.array(GRID) - trust)))
     only = np.zeros((len(GRID), len(KINDS)))
@@ -117,4 +117,18 @@ def test_as_much_is_expected_of_answers_as_they_have_said(
     for _ in range(3000):
         worth.compare(Said(True, ratio), (right, 1 - right))
     expected = worth.expect((right, 1 - right)).yes_if_true
-    assert isclose(expected, 1 / (1 + exp(-GRID[nearest] * ratio)), abs_tol=0.02)
+    assert isclose(expected, min(1 / (1 + exp(-GRID[nearest] * ratio)), right), abs_tol=0.02)
+
+
+@given(st.lists(st.booleans(), min_size=5, max_size=30), st.floats(-1e-9, 1e-9))
+def test_what_is_all_but_impossible_does_not_grow(answers: list[bool], beyond: float) -> None:
+    """Sums of probabilities are above 1 by their last bits."""
+    worth = Worth(Trust(), RECORDED)
+    cases = by_truth(worth.weights, 0.5, Heard().drawn((), NONE, len(worth.weights)))
+    whole = np.ones_like(cases.drawn.yes)
+    drawn = cases.drawn._replace(yes=whole + beyond, new=0 * whole)
+    for yes in answers:
+        taken = worth.take(Said(yes, RATIO if yes else -RATIO), replace(cases, drawn=drawn), RATES)
+        assert taken.likely.min() >= 0
+        assert taken.likely.max() <= 1
+        drawn = taken.drawn

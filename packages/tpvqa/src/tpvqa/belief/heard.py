@@ -130,7 +130,7 @@ class Heard:
         known = Drawn(*(k[led.begun] for k in self.drawn(led.before, was, led.mixed.shape[1])))
         turns = (was[led.begun] != now[led.came])[:, None]
         stays = np.where(led.same[:, None], 1.0, _stays(led.mixed.shape[1]))
-        yes = stays * np.where(turns, 1 - known.yes - known.new, known.yes)
+        yes = stays * np.where(turns, np.maximum(1 - known.yes - known.new, 0.0), known.yes)
         new = 1 - stays * (1 - known.new)
         kept = np.where(turns[:, 0], 1 - known.kept, known.kept)
         once = np.stack([kept, led.same * known.answers, led.same * known.yeses])
@@ -155,7 +155,7 @@ def _places(known: tuple[int, ...], numbers: tuple[int, ...]) -> NDArray[np.intp
 
 def own(drawn: Drawn, rate: Floats) -> Floats:
     """P(the scene's own answer is a yes), where one that is not drawn yet is with a rate."""
-    found: Floats = drawn.yes + drawn.new * rate
+    found: Floats = np.clip(drawn.yes + drawn.new * rate, 0.0, 1.0)  # what is above 1 would grow
     return found
 
 

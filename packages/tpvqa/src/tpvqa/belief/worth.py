@@ -220,7 +220,7 @@ class Worth:
         share: Floats = np.ones_like(self._grid)
         if self.trust is not None:
             share = _says(self._grid, np.log(right / (1 - right))) / (2 * right - 1)
-        share = share * self._by_answers / self._by_words
+        share = np.minimum(share * self._by_answers / self._by_words, 1.0)
         yes, no = (np.clip(0.5 + share * (each - 0.5), SUREST, 1 - SUREST) for each in rates)
         return yes, no
 

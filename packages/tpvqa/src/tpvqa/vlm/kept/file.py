@@ -239,7 +239,7 @@ class AnswerFile:
             try:
                 yield self._connection
             except (sqlite3.Error, UnicodeDecodeError) as error:
-                raise wrong(self.path, _plain(error)) from error
+                raise wrong(self.path, error) from error
 
     @contextmanager
     def writing(self) -> Iterator[sqlite3.Connection]:
@@ -266,7 +266,3 @@ def _share(value: object) -> bool:
 
 def _text(text: str) -> str:
     return text[:_LONGEST_TEXT].encode(errors="backslashreplace").decode()
-
-
-def _plain(error: sqlite3.Error | UnicodeDecodeError) -> sqlite3.Error:
-    return error if isinstance(error, sqlite3.Error) else sqlite3.DataError(str(error))

@@ -54,7 +54,7 @@ def opened(path: Path, *, writing: bool) -> sqlite3.Connection:
         raise wrong(path, error) from error
     try:
         _check(path, connection, writing=writing)
-    except sqlite3.Error as error:
+    except (sqlite3.Error, UnicodeDecodeError) as error:
         connection.close()
         raise wrong(path, error) from error
     except BaseException:
@@ -146,7 +146,7 @@ def _schema(connection: sqlite3.Connection) -> list[str]:
     return sorted(str(sql) for name, sql in rows if sql is not None or name not in made)
 
 
-def wrong(path: Path, error: sqlite3.Error) -> CacheError | WriteError:
+def wrong(path: Path, error: sqlite3.Error | UnicodeDecodeError) -> CacheError | WriteError:
     """What to say where SQLite cannot go on."""
     said, code = str(error), getattr(error, "sqlite_errorcode", 0) & 0xFF
     if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
