@@ -118,6 +118,7 @@ class Worth:
         self._weights: Floats = np.outer(first, last).ravel()
         self._new: dict[Pair, Reliability] = {}
         self._by_words = self._by_answers = np.full_like(self._grid, ANSWERS)
+        self._as_said = int(np.argmin(abs(self._grid - 1.0)))
 
     @property
     def weights(self) -> Floats:
@@ -214,13 +215,14 @@ class Worth:
 
     def _rates(self, rates: Pair) -> tuple[Floats, Floats]:
         """P(yes) of an answer drawn afresh: drawn towards one half as far as it cannot be
-        trusted."""
+        trusted. More than the calibration says, or the answers themselves, is not expected."""
         true, false = rates
         right = min(max((true + 1 - false) / 2, 0.501), 0.999)
         share: Floats = np.ones_like(self._grid)
         if self.trust is not None:
             share = _says(self._grid, np.log(right / (1 - right))) / (2 * right - 1)
-        share = np.minimum(share * self._by_answers / self._by_words, 1.0)
+        told = self._by_answers / self._by_words
+        share = np.minimum(share * told, max(1.0, told[self._as_said]))
         yes, no = (np.clip(0.5 + share * (each - 0.5), SUREST, 1 - SUREST) for each in rates)
         return yes, no
 

@@ -329,7 +329,7 @@ class BeliefMonitor(Learning, PlainArguments):
         return self._errand is not None
 
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
-        budget = self._asking.budget()
+        budget, views = self._asking.budget(), self._asking.open_views
         questions = self._about_needs(step.book)
         if self._asks_all and budget.questions > 0:
             new = (
@@ -345,11 +345,13 @@ class BeliefMonitor(Learning, PlainArguments):
             table,
             budget,
             picture=self._now.picture,
-            views=self._asking.open_views,
+            views=views,
             person=self._asking.person,
         )
         if found is None and self._chooser.settles >= TELLING and self._ways.closely(self._now):
-            found = unknown(self._now, self.belief, step.book, budget, self._asking.open_views)
+            found = unknown(self._now, self.belief, step.book, budget, views)
+        if found is None and self._past is not None:
+            found = self._past.look(self._now, self.belief, step.book, budget, views)
         return found
 
     def _about_needs(self, book: QuestionBook) -> list[FactQuestion]:

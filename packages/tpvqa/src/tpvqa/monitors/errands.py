@@ -1,7 +1,7 @@
 """Going to where a goal can be seen: a goal out of sight is only believed."""
 
 from collections import Counter
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,19 +10,24 @@ from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.faults import Showing
-from tpvqa.belief.inquiry import DOUBT
+from tpvqa.belief.inquiry import DOUBT, Budget, Inquiry
 from tpvqa.belief.learned import Learned
 from tpvqa.belief.sight import Sight
+from tpvqa.monitors.inspection import Inspection
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import PlanFrom, Request
+from tpvqa.monitors.scrutiny import least_known
 from tpvqa.monitors.ways import Ways
 from tpvqa.pddl import Atom, Conjunction, Literal, State, Task
 from tpvqa.pddl.conditions import literals
 from tpvqa.planning import Plan
-from tpvqa.questions import FactWords, QuestionBook
+from tpvqa.questions import FactQuestion, FactWords, QuestionBook
 
 OFTEN = 3
 """How often one and the same place is gone to, at most."""
+ENOUGH = 20
+"""Questions after which what has been come for is not asked about any more."""
+Views = Callable[[FactQuestion], Sequence[str | None]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +37,26 @@ class Errand:
     Attributes:
         ways: The ways there.
         why: What is to be looked at, in words.
+        facts: It.
+        needed: From where it is shown.
     """
 
     ways: Ways
     why: str
+    facts: frozenset[Atom]
+    needed: frozenset[Atom]
+
+    def look(
+        self, now: Inspection, belief: Belief, book: QuestionBook, budget: Budget, views: Views
+    ) -> Inquiry | None:
+        """What to ask where it is shown: that is what the robot has come for.
+
+        That it will not be seen from the next place on, Q-MDP does not know.
+        """
+        there = belief.where(lambda state: self.needed <= state) >= 0.5
+        if not there or now.questions >= ENOUGH:
+            return None
+        return least_known(self.facts, now, belief, book, budget, views)
 
 
 class Errands:
@@ -100,7 +121,7 @@ class Errands:
             words = FactWords(book)
             facts = [a for a in self._doubted(belief, book) if self._needed(a) == needed]
             why = " and ".join(f"{words.of(a)} {belief.probability(a):.2f}" for a in facts)
-            return Errand(ways, f"{why} cannot be seen from here")
+            return Errand(ways, f"{why} cannot be seen from here", frozenset(facts), needed)
         return None
 
     def _savings(

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.inquiry import Budget, Inquiry
 from tpvqa.monitors.inspection import Inspection
-from tpvqa.pddl import literals
+from tpvqa.pddl import Atom, literals
 from tpvqa.questions import FactQuestion, QuestionBook
 
 KNOWN = 0.01
@@ -34,12 +34,26 @@ def unknown(
     Returns:
         What to ask; None where all is known or nothing may be asked.
     """
-    if now.action is None or min(budget.questions, budget.looks) <= 0:
+    if now.action is None:
         return None
     needed = {literal.atom for literal in literals(now.action.precondition)}
+    return least_known(now.effects | needed, now, belief, book, budget, views)
+
+
+def least_known(
+    atoms: frozenset[Atom],
+    now: Inspection,
+    belief: Belief,
+    book: QuestionBook,
+    budget: Budget,
+    views: Callable[[FactQuestion], Sequence[str | None]],
+) -> Inquiry | None:
+    """The question about some facts that is least settled; arguments as those of `unknown`."""
+    if min(budget.questions, budget.looks) <= 0:
+        return None
     sure = {
         question: abs(belief.probability(question.atom, question.alike) - 0.5)
-        for question in now.about(now.effects | needed, book)
+        for question in now.about(atoms, book)
         if views(question)
     }
     least = min(sure, key=sure.__getitem__, default=None)

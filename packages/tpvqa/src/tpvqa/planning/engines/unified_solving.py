@@ -1,6 +1,8 @@
 """An engine of unified-planning, given a numbered task as a `Problem` without variables."""
 
 import warnings
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from unified_planning import shortcuts as up
@@ -70,6 +72,15 @@ def problem_of(task: dict[str, Any]) -> Any:
     return problem
 
 
+def _without_spaces(engine: Any, folder: Path) -> None:
+    """Aries takes its program's path apart at every space."""
+    program = getattr(engine, "_executable", None)
+    if isinstance(program, str) and " " in program and " " not in str(folder):
+        link = folder / Path(program).name
+        link.symlink_to(program)
+        engine._executable = str(link)
+
+
 def solve(request: dict[str, Any]) -> dict[str, Any]:
     """Let an engine plan."""
     task, name = request["task"], request["engine"]
@@ -77,7 +88,8 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
         reason = "unified-planning cannot load this engine; importing its package says why"
         return {"kind": "crash", "reason": reason}
     problem = problem_of(task)
-    with up.OneshotPlanner(name=name) as engine:
+    with up.OneshotPlanner(name=name) as engine, TemporaryDirectory() as folder:
+        _without_spaces(engine, Path(folder))
         _measure(problem, task, engine)
         back = []
         for feature, kind in _COMPILERS:
