@@ -3,7 +3,11 @@
 A class says it, not an object: that a VLM is a noise model is known before one is made.
 """
 
+from collections.abc import Mapping
+from typing import Any, Protocol, runtime_checkable
+
 from tpvqa.plugins import class_of
+from tpvqa.vlm.usage import Usage
 
 
 class NoiseModel:
@@ -16,6 +20,31 @@ class NeedsPictures:
 
 class FactsOnly:
     """It answers questions about facts only, never about whole actions."""
+
+
+class SeesBefore:
+    """It can be shown the picture before the last action beside that after it, and is where its
+    `before_after` is true."""
+
+    before_after = False
+
+
+@runtime_checkable
+class Parametrised(Protocol):
+    """It tells all that an answer depends on besides pictures and question."""
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:
+        """Plain values: model, prompt's digest, size of pictures, samples, way of asking."""
+
+
+@runtime_checkable
+class Metered(Protocol):
+    """It counts what asking it costs."""
+
+    @property
+    def usage(self) -> Usage:
+        """What was spent so far."""
 
 
 class SaidInFull:
@@ -49,3 +78,14 @@ def needs_pictures(vlm: object) -> bool:
 def answers_facts_only(vlm: object) -> bool:
     """Whether a VLM, or a class of VLMs, answers nothing about whole actions."""
     return issubclass(class_of(vlm), FactsOnly)
+
+
+def sees_before(vlm: object) -> bool:
+    """Whether a VLM, or a class of VLMs, can be shown the picture before the last action."""
+    return issubclass(class_of(vlm), SeesBefore)
+
+
+def parameters_of(vlm: object) -> Mapping[str, Any]:
+    """All that a VLM's answers depend on besides pictures and question; empty where it does not
+    say."""
+    return vlm.parameters if isinstance(vlm, Parametrised) else {}
