@@ -121,6 +121,51 @@ class VLMConfig(_Part):
     base_url: Annotated[str | None, AfterValidator(_address)] = setting(
         "--base-url", "Address of an OpenAI-like server."
     )
+    together: bool = setting(
+        "--together",
+        "openai: ask all questions of a step in one request, with a JSON schema.",
+        False,
+    )
+    samples: int | None = setting(
+        "--samples",
+        "openai: so many samples give P(yes) where the server has no logprobs. Default: none are "
+        "drawn.",
+        ge=1,
+        le=64,
+    )
+    before_after: bool = setting(
+        "--before-after",
+        "openai: where an effect is asked about, show the picture before the action, too.",
+        False,
+    )
+    picture_size: int | None = setting(
+        "--picture-size",
+        "openai: pixels of the longest side of a picture as it is sent. Default: 1024.",
+        ge=32,
+        le=8192,
+    )
+    picture_quality: Annotated[str, Field(pattern=r"^(png|100|[1-9][0-9]?)$")] | None = setting(
+        "--picture-quality",
+        "openai: send pictures as JPEG of this quality (1 to 100), or as png. Default: as they "
+        "are, those made smaller as JPEG of 90.",
+        text=True,
+    )
+    prompt: str | None = setting(
+        "--prompt", "openai: file of what the server is told; see `tpvqa prompt`.", file=True
+    )
+    price_prompt: float | None = setting(
+        "--price-prompt", "openai: price of a million tokens of prompts.", ge=0
+    )
+    price_completion: float | None = setting(
+        "--price-completion", "openai: price of a million tokens of completions.", ge=0
+    )
+
+    def cost(self, prompt_tokens: int, completion_tokens: int) -> float | None:
+        """What tokens cost by the prices; None where there are none."""
+        if self.price_prompt is None and self.price_completion is None:
+            return None
+        prompt, completion = self.price_prompt or 0.0, self.price_completion or 0.0
+        return (prompt_tokens * prompt + completion_tokens * completion) / 1e6
 
 
 class MonitorConfig(_Part):
@@ -217,6 +262,15 @@ class Limits(_Part):
     )
     seconds: float | None = setting("--max-seconds", "Wall-clock time of the trial.", gt=0)
     action_seconds: float | None = setting("--action-deadline", "Seconds for one action.", ge=0)
+    requests: int | None = setting(
+        "--max-requests", "openai: requests to the server, retries included.", ge=1
+    )
+    tokens: int | None = setting(
+        "--max-tokens-spent", "openai: tokens, of prompts and completions together.", ge=1
+    )
+    cost: float | None = setting(
+        "--max-cost", "openai: money, by --price-prompt and --price-completion.", gt=0
+    )
 
     def actions_of(self, first_plan: int) -> int:
         """The limit of actions in a trial whose first plan has so many."""
@@ -362,6 +416,13 @@ class TrialConfig(_Part):
             "no_alternatives": self.monitor.no_alternatives or None,
             "simulator": self.world.simulator,
             "pictures": self.world.pictures,
-            "base_url": self.vlm.base_url,
+            **{
+                name: getattr(self.vlm, name) or None
+                for name in VLMConfig.model_fields
+                if name != "spec"
+            },
+            "max_requests": self.limits.requests,
+            "max_tokens_spent": self.limits.tokens,
+            "max_cost": self.limits.cost,
         }
         return self.options | {key: value for key, value in named.items() if value is not None}

@@ -74,7 +74,9 @@ class Dialect:
         complaint = complaint.lower()
         if self.schema and re.search(r"response_format|json_?schema|json_object", complaint):
             return replace(self, schema="json_object" if self.schema == "json_schema" else None)
-        if self.several and re.search(r"(?<![a-z])['\"`]?n['\"`]?(?![a-z'])|multiple completions", complaint):
+        if self.several and re.search(
+            r"(?<![a-z])['\"`]?n['\"`]?(?![a-z'])|multiple completions", complaint
+        ):
             return replace(self, several=False)
         if self.logprobs and re.search(r"log_?prob", complaint):
             at_most = re.search(

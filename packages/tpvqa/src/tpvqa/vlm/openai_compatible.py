@@ -21,24 +21,20 @@ from tpvqa.vlm.capabilities import NeedsPictures, SeesBefore
 from tpvqa.vlm.chat_completions import (
     Dialect,
     Inquiry,
-    complaint,
-    messages,
     read_choices,
     read_completion,
-    refuses_form,
 )
-from tpvqa.vlm.connection import Connection
 from tpvqa.vlm.pictures import grey_frame
 from tpvqa.vlm.prompt import load_prompt, shipped_prompt
 from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.sampled import frequency
 from tpvqa.vlm.sent_pictures import LONGEST, SentPictures
-from tpvqa.vlm.server_text import ServerText
+from tpvqa.vlm.server import Retry, Server
 from tpvqa.vlm.together import read_together
 from tpvqa.vlm.usage import Budget, Usage, usage_told
 
 if TYPE_CHECKING:
-    from openai import APIStatusError, AsyncOpenAI
+    from openai import AsyncOpenAI
 
 _LONGEST_PAUSE = 8.0
 _OF_EFFECTS = (Way.EFFECT, Way.SUCCESSFUL, Way.DID)
@@ -54,12 +50,6 @@ class _TimedReading:
     seconds: float
     unreachable: bool = False
     final: bool = True  # a failure may pass; a reading stays
-
-
-class _Retry(Exception):  # noqa: N818 — a request to try again, not an error
-    def __init__(self, why: str, *, pause: float | None = None, unreachable: bool = False):
-        super().__init__(why)
-        self.why, self.pause, self.unreachable = why, pause, unreachable
 
 
 class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
@@ -131,8 +121,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
                 checked_address(self.base_url)
             except ValueError as error:
                 raise AnswerError(f"openai:{model}: {error}.") from None
-        self._concurrency, self._deadline = concurrency, deadline
-        self._request_timeout, self._retries = request_timeout, retries
+        self._concurrency, self._deadline, self._retries = concurrency, deadline, retries
         self.together, self.samples, self.before_after = together, samples, before_after
         self._prompt = shipped_prompt() if prompt is None else load_prompt(Path(prompt))
         self._sent = SentPictures(picture_size, picture_quality)
@@ -143,8 +132,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         )
         self._sampling = False  # once the server turned out to give no logprobs
         self._dialect = Dialect()
-        self._text = ServerText("")
-        self._connection: Connection | None = None
+        self._server = Server(model, self.base_url, request_timeout)
         self._looked_at: tuple[object, ...] = ()
         self._known: dict[_Key, _TimedReading] = {}
 
@@ -271,52 +259,26 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
-        if self._connection is not None:
-            self._connection.close()
-
-    def _connect(self) -> Connection:
-        if self._connection is None or not self._connection.alive:
-            import openai
-
-            from tpvqa.vlm.http_client import bounded_client
-
-            key = os.environ.get("OPENAI_API_KEY", "").strip()
-            if not key and self.base_url is None:
-                raise AnswerError(
-                    "OpenAI needs a key. Set the environment variable OPENAI_API_KEY, or name a "
-                    "server of your own by --base-url."
-                )
-            if not key.isascii():
-                raise AnswerError("OPENAI_API_KEY has characters that no key has. Set it again.")
-            self._text = ServerText(key)
-            try:
-                client = openai.AsyncOpenAI(
-                    api_key=key or "none-needed",
-                    base_url=self.base_url,
-                    max_retries=0,
-                    http_client=bounded_client(),
-                )
-            except (openai.OpenAIError, ValueError) as error:
-                raise AnswerError(f"{self._where()} cannot be asked: {error}") from error
-            self._connection = Connection(client)
-        return self._connection
+        self._server.close()
 
     def _ask_all(self, asked: Sequence[Inquiry]) -> list[list[_TimedReading]]:
         """Ask; the one place that all that a server says comes out of."""
-        connection = self._connect()
+        connection = self._server.connect()
         self.budget.see(len(asked))
         try:
             outcomes = connection.run(self._ask_side_by_side, connection.client, asked)
         except BudgetError:
             raise
         except AnswerError as error:
-            raise AnswerError(self._text(str(error))) from None
+            raise AnswerError(self._server.text(str(error))) from None
         except Exception as error:  # noqa: BLE001  its text may be the server's
-            why = self._text(f"{type(error).__name__}: {error}")
-            raise AnswerError(f"{self._where()} cannot be asked: {why}") from None
+            why = self._server.text(f"{type(error).__name__}: {error}")
+            raise AnswerError(f"{self._server.where()} cannot be asked: {why}") from None
         return [
             [
-                replace(each, reading=replace(each.reading, text=self._text(each.reading.text)))
+                replace(
+                    each, reading=replace(each.reading, text=self._server.text(each.reading.text))
+                )
                 for each in found
             ]
             for found in outcomes
@@ -330,7 +292,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
 
         async def one(inquiry: Inquiry) -> list[_TimedReading]:
             started = time.monotonic()
-            failures: list[_Retry] = []
+            failures: list[Retry] = []
             try:
                 async with asyncio.timeout_at(end), turn:
                     started = time.monotonic()
@@ -356,7 +318,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         outcomes = [task.result() for task in tasks]
         if outcomes and all(each.unreachable for found in outcomes for each in found):
             raise AnswerError(
-                f"{self._where()} cannot be reached ({outcomes[0][0].reading.text}). Is the server "
+                f"{self._server.where()} cannot be reached ({outcomes[0][0].reading.text}). Is the server "
                 "running, and is the address right, with its path (usually /v1)?"
             )
         return outcomes
@@ -365,7 +327,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         self,
         client: "AsyncOpenAI",
         inquiry: Inquiry,
-        failures: list[_Retry],
+        failures: list[Retry],
         end: float,
     ) -> list[_TimedReading]:
         """Ask, again after failures that may pass.
@@ -382,7 +344,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
                 readings = await self._ask_well(client, inquiry)
                 seconds = time.monotonic() - started
                 return [_TimedReading(reading, seconds) for reading in readings]
-            except _Retry as retry:
+            except Retry as retry:
                 failures.append(retry)
             last, times = failures[-1], len(failures)
             why = last.why if times == 1 else f"{last.why}, {times} times"
@@ -441,7 +403,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
                 next_dialect = dialect.bare()
             if next_dialect is None:
                 raise AnswerError(
-                    f"{self._where()} refuses to be asked: {said}. Does the model {self.model!r} "
+                    f"{self._server.where()} refuses to be asked: {said}. Does the model {self.model!r} "
                     "take pictures?"
                 )
             dialect = next_dialect
@@ -453,7 +415,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         self.budget.begin()
         told = Usage(1)
         try:
-            body = await self._send(client, inquiry, dialect, samples)
+            body = await self._server.send(client, inquiry, self._prompt, dialect, samples)
             if isinstance(body, bytes):
                 told = usage_told(body)
         finally:
@@ -469,79 +431,12 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
             return [[each] for each in read_choices(body, inquiry.texts[0])]
         return [[read_completion(body, inquiry.texts[0])]]
 
-    async def _send(
-        self, client: "AsyncOpenAI", inquiry: Inquiry, dialect: Dialect, samples: int
-    ) -> bytes | Reading | str:
-        import openai
-
-        from tpvqa.vlm.http_client import ReplyTooLargeError
-
-        count = len(inquiry.texts) if inquiry.together else 0
-        parameters: dict[str, Any] = dialect.parameters(count, samples)
-        try:
-            async with asyncio.timeout(self._request_timeout):
-                response = await client.chat.completions.with_raw_response.create(
-                    model=self.model,
-                    messages=messages(inquiry, self._prompt),  # type: ignore[arg-type]
-                    timeout=self._request_timeout,
-                    **parameters,
-                )
-        except (TimeoutError, openai.APITimeoutError):
-            raise _Retry(f"late: nothing within {self._request_timeout:g} s") from None
-        except (openai.APIConnectionError, ReplyTooLargeError) as error:
-            for cause in (error, error.__cause__):
-                if isinstance(cause, ReplyTooLargeError):
-                    return Reading(Reply.UNKNOWN, text=f"garbled reply: {cause}")
-            why = str(error.__cause__ or error) or type(error.__cause__).__name__
-            raise _Retry(f"no connection: {why}", unreachable=True) from None
-        except openai.APIStatusError as error:
-            return self._refused(error)
-        if "html" in response.headers.get("content-type", ""):
-            raise AnswerError(
-                f"{self._where()} answers with a web page. Is the path right (usually /v1)?"
-            )
-        return response.content
-
-    def _refused(self, error: "APIStatusError") -> Reading | str:
-        status, parts = error.status_code, complaint(error.body)
-        said = ", ".join(parts.values()) or f"HTTP status {status}"
-        if any("content_" in value for key, value in parts.items() if key in ("code", "type")):
-            return Reading(Reply.UNKNOWN, text=f"refused: {said}")
-        if 300 <= status < 400:
-            there = error.response.headers.get("location", "elsewhere")
-            raise AnswerError(
-                f"{self._where()} sends requests on to {there[:200]}, and pictures are not sent to "
-                "another address than the one given. Give the right one by --base-url."
-            )
-        if refuses_form(status, said):
-            return said
-        if status in (401, 403):
-            raise AnswerError(
-                f"{self._where()} refuses the key (HTTP status {status}). Set the environment "
-                f"variable OPENAI_API_KEY to one that may use {self.model!r}."
-            )
-        if status == 404:
-            raise AnswerError(
-                f"{self._where()} has no model {self.model!r}, or not at this path, which "
-                f"usually ends with /v1: {said}"
-            )
-        if "insufficient_quota" in parts.values():
-            raise AnswerError(f"{self._where()}: the account has no credit left. {said}")
-        if status in (408, 409, 429) or status >= 500:
-            pause = error.response.headers.get("retry-after", "")
-            wanted = float(pause) if pause.replace(".", "", 1).isdecimal() else None
-            raise _Retry(f"HTTP status {status}: {said}", pause=wanted)
-        raise AnswerError(f"{self._where()} refuses to be asked (HTTP status {status}): {said}")
-
-    def _where(self) -> str:
-        return self.base_url or "OpenAI's server"
-
 
 def _key(question: Question, *, compares: bool) -> _Key:
     return question.text, compares and question.way in _OF_EFFECTS
 
 
-def _pause(retry: _Retry, attempt: int, text: str) -> float:
+def _pause(retry: Retry, attempt: int, text: str) -> float:
     """Seconds until the next attempt: what the server asked for, or twice as long each time."""
     if retry.pause is not None:
         return retry.pause

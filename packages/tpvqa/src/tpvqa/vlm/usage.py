@@ -108,9 +108,7 @@ class Budget:
                 "money can be kept. Limit requests instead: --max-requests"
             )
         if self._requests is not None and spent.requests + coming > self._requests:
-            raise BudgetError(
-                "requests", f"{spent.requests} of {self._requests}", "--max-requests"
-            )
+            raise BudgetError("requests", f"{spent.requests} of {self._requests}", "--max-requests")
         tokens = spent.tokens + coming * each.tokens
         if self._tokens is not None and (tokens > self._tokens or spent.tokens >= self._tokens):
             raise BudgetError(
