@@ -144,9 +144,7 @@ def prompt(
         return
     made = load_prompt(file)
     examples = len(made.examples)
-    tell(
-        f"{file}: can be used, with {examples} example{'s' * (examples != 1)} (digest {made.digest})"
-    )
+    tell(f"{file}: can be used; examples: {examples}, digest: {made.digest}")
 
 
 def _optimal(wanted: bool) -> list[Layer]:

@@ -7,53 +7,16 @@ that, `tpvqa config` prints it, `started` stores it, and `resume` and the bench 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from tpvqa.addresses import checked_address
+from tpvqa.config.parts import Part, VLMConfig, setting
 
 LEAST_ACTIONS = 60
 """The limit of actions where none is given, unless `PLANS` times the first plan is more."""
 PLANS = 6
 
 
-def setting(
-    option: str,
-    says: str,
-    default: Any = None,
-    *,
-    file: bool = False,
-    text: bool = False,
-    **limits: Any,
-) -> Any:
-    """A field of the configuration.
-
-    Args:
-        option: What the command line calls it.
-        says: What it is, in one line.
-        default: Its value where none is given.
-        file: Whether it names a file or a folder.
-        text: Whether the command line takes any text for it, as not only numbers count.
-        **limits: Of pydantic's `Field`: ge, le, gt.
-    """
-    told: dict[str, Any] = {"option": option, "file": file, "text": text}
-    return Field(default, description=says, json_schema_extra=told, **limits)
-
-
-def _address(value: str | None) -> str | None:
-    return None if value is None else checked_address(value)
-
-
-class _Part(BaseModel):
-    model_config = ConfigDict(
-        extra="forbid",
-        frozen=True,
-        allow_inf_nan=False,
-        populate_by_name=True,
-        hide_input_in_errors=True,
-    )
-
-
-class TaskConfig(_Part):
+class TaskConfig(Part):
     """Which task: a shipped one, or files of one's own."""
 
     name: str | None = setting("TASK", "A shipped task (see `tpvqa tasks`).")
@@ -78,7 +41,7 @@ class TaskConfig(_Part):
         return self
 
 
-class StartConfig(_Part):
+class StartConfig(Part):
     """What is known before anything was done."""
 
     what: Literal["known", "unknown"] = setting(
@@ -92,7 +55,7 @@ class StartConfig(_Part):
     )
 
 
-class WorldConfig(_Part):
+class WorldConfig(Part):
     """Where the robot acts and looks."""
 
     spec: str | None = setting(
@@ -109,66 +72,7 @@ class WorldConfig(_Part):
     )
 
 
-class VLMConfig(_Part):
-    """Who answers."""
-
-    spec: str | None = setting(
-        "--vlm",
-        "embedded (the default where there are pictures), openai:MODEL, or a noise model: "
-        "oracle[:ACCURACY[:RHO[:PERSISTENT]]] (the default where there are none), "
-        "recorded:MODEL[:HALF][:fresh], flawed:KIND[:…].",
-    )
-    base_url: Annotated[str | None, AfterValidator(_address)] = setting(
-        "--base-url", "Address of an OpenAI-like server."
-    )
-    together: bool = setting(
-        "--together",
-        "openai: ask all questions of a step in one request, with a JSON schema.",
-        False,
-    )
-    samples: int | None = setting(
-        "--samples",
-        "openai: so many samples give P(yes) where the server has no logprobs. Default: none are "
-        "drawn.",
-        ge=1,
-        le=64,
-    )
-    before_after: bool = setting(
-        "--before-after",
-        "openai: where an effect is asked about, show the picture before the action, too.",
-        False,
-    )
-    picture_size: int | None = setting(
-        "--picture-size",
-        "openai: pixels of the longest side of a picture as it is sent. Default: 1024.",
-        ge=32,
-        le=8192,
-    )
-    picture_quality: Annotated[str, Field(pattern=r"^(png|100|[1-9][0-9]?)$")] | None = setting(
-        "--picture-quality",
-        "openai: send pictures as JPEG of this quality (1 to 100), or as png. Default: as they "
-        "are, those made smaller as JPEG of 90.",
-        text=True,
-    )
-    prompt: str | None = setting(
-        "--prompt", "openai: file of what the server is told; see `tpvqa prompt`.", file=True
-    )
-    price_prompt: float | None = setting(
-        "--price-prompt", "openai: price of a million tokens of prompts.", ge=0
-    )
-    price_completion: float | None = setting(
-        "--price-completion", "openai: price of a million tokens of completions.", ge=0
-    )
-
-    def cost(self, prompt_tokens: int, completion_tokens: int) -> float | None:
-        """What tokens cost by the prices; None where there are none."""
-        if self.price_prompt is None and self.price_completion is None:
-            return None
-        prompt, completion = self.price_prompt or 0.0, self.price_completion or 0.0
-        return (prompt_tokens * prompt + completion_tokens * completion) / 1e6
-
-
-class MonitorConfig(_Part):
+class MonitorConfig(Part):
     """Who decides."""
 
     spec: str | None = setting(
@@ -224,7 +128,7 @@ class MonitorConfig(_Part):
         return self
 
 
-class PlannerConfig(_Part):
+class PlannerConfig(Part):
     """Who plans."""
 
     spec: str = setting(
@@ -247,7 +151,7 @@ Times = Annotated[str, Field(pattern=r"^[1-9][0-9]{0,5}x$")]
 """So many times the length of the first plan: `50x`."""
 
 
-class Limits(_Part):
+class Limits(Part):
     """When a trial is ended without success."""
 
     repeats: Limit = setting(
@@ -281,7 +185,7 @@ class Limits(_Part):
         return self.actions
 
 
-class SimulationConfig(_Part):
+class SimulationConfig(Part):
     """What goes wrong in a simulated world."""
 
     failure: float = setting("--failure", "P(an action fails).", 0.25, ge=0, le=1)
@@ -342,7 +246,7 @@ def _named_start(value: Any) -> Any:
 Named = BeforeValidator(_named)
 
 
-class TrialConfig(_Part):
+class TrialConfig(Part):
     """What a trial is. A name alone stands for a part: `TrialConfig(monitor="tpvqa")`.
 
     Raises:

@@ -6,16 +6,15 @@ import importlib.util
 import os
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.addresses import checked_address
-from tpvqa.chance import chance
 from tpvqa.errors import AnswerError, BudgetError, MissingExtraError, PluginError
 from tpvqa.observation import Frame, Observation
 from tpvqa.plugins import PlainArguments
-from tpvqa.questions.question import Question, Way
+from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import NeedsPictures, SeesBefore
 from tpvqa.vlm.chat_completions import (
@@ -30,26 +29,12 @@ from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.sampled import frequency
 from tpvqa.vlm.sent_pictures import LONGEST, SentPictures
 from tpvqa.vlm.server import Retry, Server
+from tpvqa.vlm.timed_reading import Key, TimedReading, answer_from, key_of, pause_before
 from tpvqa.vlm.together import read_together
 from tpvqa.vlm.usage import Budget, Usage, usage_told
 
 if TYPE_CHECKING:
     from openai import AsyncOpenAI
-
-_LONGEST_PAUSE = 8.0
-_OF_EFFECTS = (Way.EFFECT, Way.SUCCESSFUL, Way.DID)
-
-
-_Key = tuple[str, bool]
-"""A question, and whether it is shown the picture before the action, too."""
-
-
-@dataclass(frozen=True, slots=True)
-class _TimedReading:
-    reading: Reading
-    seconds: float
-    unreachable: bool = False
-    final: bool = True  # a failure may pass; a reading stays
 
 
 class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
@@ -134,7 +119,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         self._dialect = Dialect()
         self._server = Server(model, self.base_url, request_timeout)
         self._looked_at: tuple[object, ...] = ()
-        self._known: dict[_Key, _TimedReading] = {}
+        self._known: dict[Key, TimedReading] = {}
 
     @classmethod
     def from_spec(
@@ -218,18 +203,18 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         looked_at = (observation.look, len(before), *data)
         if looked_at != self._looked_at:
             self._looked_at, self._known = looked_at, {}
-        keys = [_key(each, compares=bool(before)) for each in questions]
+        keys = [key_of(each, compares=bool(before)) for each in questions]
         missing = [key for key in dict.fromkeys(keys) if key not in self._known]
         now = self._known | self._ask_missing(missing, frames, before)
         self._known = {key: outcome for key, outcome in now.items() if outcome.final}
-        return [_answer(q, now[key]) for q, key in zip(questions, keys, strict=True)]
+        return [answer_from(q, now[key]) for q, key in zip(questions, keys, strict=True)]
 
     def _ask_missing(
-        self, missing: Sequence["_Key"], frames: tuple[Frame, ...], before: tuple[Frame, ...]
-    ) -> dict["_Key", _TimedReading]:
+        self, missing: Sequence["Key"], frames: tuple[Frame, ...], before: tuple[Frame, ...]
+    ) -> dict["Key", TimedReading]:
         """Put questions into requests: each its own, or all that are shown the same pictures."""
         frames, before = tuple(map(self._sent, frames)), tuple(map(self._sent, before))
-        groups: list[list[_Key]] = [[key] for key in missing]
+        groups: list[list[Key]] = [[key] for key in missing]
         if self.together:
             groups = [[key for key in missing if key[1] is kind] for kind in (False, True)]
         groups = [group for group in groups if group]
@@ -261,7 +246,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         """Close the connections. Can be called twice."""
         self._server.close()
 
-    def _ask_all(self, asked: Sequence[Inquiry]) -> list[list[_TimedReading]]:
+    def _ask_all(self, asked: Sequence[Inquiry]) -> list[list[TimedReading]]:
         """Ask; the one place that all that a server says comes out of."""
         connection = self._server.connect()
         self.budget.see(len(asked))
@@ -286,11 +271,11 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
 
     async def _ask_side_by_side(
         self, client: "AsyncOpenAI", asked: Sequence[Inquiry]
-    ) -> list[list[_TimedReading]]:
+    ) -> list[list[TimedReading]]:
         turn = asyncio.Semaphore(self._concurrency)
         end = asyncio.get_running_loop().time() + self._deadline
 
-        async def one(inquiry: Inquiry) -> list[_TimedReading]:
+        async def one(inquiry: Inquiry) -> list[TimedReading]:
             started = time.monotonic()
             failures: list[Retry] = []
             try:
@@ -304,7 +289,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
             except BudgetError as spent:  # the rest of the step is answered
                 why = str(spent)
             none = Reading(Reply.UNKNOWN, text=why)
-            late = _TimedReading(none, time.monotonic() - started, final=False)
+            late = TimedReading(none, time.monotonic() - started, final=False)
             return [late] * len(inquiry.texts)
 
         try:
@@ -318,8 +303,8 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         outcomes = [task.result() for task in tasks]
         if outcomes and all(each.unreachable for found in outcomes for each in found):
             raise AnswerError(
-                f"{self._server.where()} cannot be reached ({outcomes[0][0].reading.text}). Is the server "
-                "running, and is the address right, with its path (usually /v1)?"
+                f"{self._server.where()} cannot be reached ({outcomes[0][0].reading.text}). Is "
+                "the server running, and is the address right, with its path (usually /v1)?"
             )
         return outcomes
 
@@ -329,7 +314,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         inquiry: Inquiry,
         failures: list[Retry],
         end: float,
-    ) -> list[_TimedReading]:
+    ) -> list[TimedReading]:
         """Ask, again after failures that may pass.
 
         Args:
@@ -343,13 +328,13 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
             try:
                 readings = await self._ask_well(client, inquiry)
                 seconds = time.monotonic() - started
-                return [_TimedReading(reading, seconds) for reading in readings]
+                return [TimedReading(reading, seconds) for reading in readings]
             except Retry as retry:
                 failures.append(retry)
             last, times = failures[-1], len(failures)
             why = last.why if times == 1 else f"{last.why}, {times} times"
             if times <= self._retries:
-                pause = _pause(last, times - 1, inquiry.texts[0])
+                pause = pause_before(last, times - 1, inquiry.texts[0])
                 if asyncio.get_running_loop().time() + pause < end:
                     await asyncio.sleep(pause)
                     continue
@@ -357,7 +342,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
                     f"; asking again in {round(pause, 1):g} s would be later than the "
                     f"{self._deadline:g} s that all questions have"
                 )
-            failed = _TimedReading(
+            failed = TimedReading(
                 Reading(Reply.UNKNOWN, text=why),
                 time.monotonic() - started,
                 unreachable=last.unreachable,
@@ -403,8 +388,8 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
                 next_dialect = dialect.bare()
             if next_dialect is None:
                 raise AnswerError(
-                    f"{self._server.where()} refuses to be asked: {said}. Does the model {self.model!r} "
-                    "take pictures?"
+                    f"{self._server.where()} refuses to be asked: {said}. Does the model "
+                    f"{self.model!r} take pictures?"
                 )
             dialect = next_dialect
 
@@ -430,28 +415,3 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         if samples:
             return [[each] for each in read_choices(body, inquiry.texts[0])]
         return [[read_completion(body, inquiry.texts[0])]]
-
-
-def _key(question: Question, *, compares: bool) -> _Key:
-    return question.text, compares and question.way in _OF_EFFECTS
-
-
-def _pause(retry: Retry, attempt: int, text: str) -> float:
-    """Seconds until the next attempt: what the server asked for, or twice as long each time."""
-    if retry.pause is not None:
-        return retry.pause
-    spread = 0.75 + 0.5 * chance(0, 0, "pause", text, attempt).random()
-    return float(min(_LONGEST_PAUSE, 0.5 * 2**attempt * spread))
-
-
-def _answer(question: Question, outcome: _TimedReading) -> Answer:
-    reading = outcome.reading
-    return Answer(
-        question=question,
-        reply=reading.reply,
-        p_yes=reading.p_yes,
-        source=reading.source,
-        text=reading.text,
-        leftover=reading.leftover,
-        seconds=outcome.seconds,
-    )

@@ -1,0 +1,105 @@
+"""What all parts of a configuration are made of, and the part of the VLM."""
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+from tpvqa.addresses import checked_address
+
+
+def setting(
+    option: str,
+    says: str,
+    default: Any = None,
+    *,
+    file: bool = False,
+    text: bool = False,
+    **limits: Any,
+) -> Any:
+    """A field of the configuration.
+
+    Args:
+        option: What the command line calls it.
+        says: What it is, in one line.
+        default: Its value where none is given.
+        file: Whether it names a file or a folder.
+        text: Whether the command line takes any text for it, as not only numbers count.
+        **limits: Of pydantic's `Field`: ge, le, gt.
+    """
+    told: dict[str, Any] = {"option": option, "file": file, "text": text}
+    return Field(default, description=says, json_schema_extra=told, **limits)
+
+
+def _address(value: str | None) -> str | None:
+    return None if value is None else checked_address(value)
+
+
+class Part(BaseModel):
+    """A part: strict, and never changed."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        populate_by_name=True,
+        hide_input_in_errors=True,
+    )
+
+
+class VLMConfig(Part):
+    """Who answers."""
+
+    spec: str | None = setting(
+        "--vlm",
+        "embedded (the default where there are pictures), openai:MODEL, or a noise model: "
+        "oracle[:ACCURACY[:RHO[:PERSISTENT]]] (the default where there are none), "
+        "recorded:MODEL[:HALF][:fresh], flawed:KIND[:…].",
+    )
+    base_url: Annotated[str | None, AfterValidator(_address)] = setting(
+        "--base-url", "Address of an OpenAI-like server."
+    )
+    together: bool = setting(
+        "--together",
+        "openai: ask all questions of a step in one request, with a JSON schema.",
+        False,
+    )
+    samples: int | None = setting(
+        "--samples",
+        "openai: so many samples give P(yes) where the server has no logprobs. Default: none are "
+        "drawn.",
+        ge=1,
+        le=64,
+    )
+    before_after: bool = setting(
+        "--before-after",
+        "openai: where an effect is asked about, show the picture before the action, too.",
+        False,
+    )
+    picture_size: int | None = setting(
+        "--picture-size",
+        "openai: pixels of the longest side of a picture as it is sent. Default: 1024.",
+        ge=32,
+        le=8192,
+    )
+    picture_quality: Annotated[str, Field(pattern=r"^(png|100|[1-9][0-9]?)$")] | None = setting(
+        "--picture-quality",
+        "openai: send pictures as JPEG of this quality (1 to 100), or as png. Default: as they "
+        "are, those made smaller as JPEG of 90.",
+        text=True,
+    )
+    prompt: str | None = setting(
+        "--prompt", "openai: file of what the server is told; see `tpvqa prompt`.", file=True
+    )
+    price_prompt: float | None = setting(
+        "--price-prompt", "openai: price of a million tokens of prompts.", ge=0
+    )
+    price_completion: float | None = setting(
+        "--price-completion", "openai: price of a million tokens of completions.", ge=0
+    )
+
+    def cost(self, prompt_tokens: int, completion_tokens: int) -> float | None:
+        """What tokens cost by the prices; None where there are none."""
+        if self.price_prompt is None and self.price_completion is None:
+            return None
+        prompt, completion = self.price_prompt or 0.0, self.price_completion or 0.0
+        return (prompt_tokens * prompt + completion_tokens * completion) / 1e6
