@@ -206,7 +206,7 @@ def test_a_budget_stops_before_the_request_that_would_exceed_it(
 ) -> None:
     with ChatServer(lambda *_: 0.9) as server:
         vlm = OpenAICompatibleVLM("test", base_url=server.url, **limit)
-        with pytest.raises(BudgetError, match="--max-"):
+        with pytest.raises(BudgetError, match="--max-"):  # noqa: PT012  which of them is told below
             for number in range(9):
                 vlm.ask(look(number), [worded(TEXTS[0])])
         vlm.close()

@@ -136,7 +136,7 @@ def prompt(
         Path | None, typer.Argument(help="A prompt of your own, to be checked.")
     ] = None,
 ) -> None:
-    """Print what a server is told (`--vlm openai:MODEL`); keep it, change it, give it by --prompt."""
+    """Print what a server is told; keep it in a file, change it, give it by --prompt."""
     from tpvqa.vlm.prompt import load_prompt, shipped_text
 
     if file is None:

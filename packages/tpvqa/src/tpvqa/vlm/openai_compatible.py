@@ -59,17 +59,8 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         request_timeout: Seconds for one request before it is tried again.
         retries: How often a request is repeated after 408, 409, 429, 5xx, a broken connection
             or a timeout.
-        together: Ask all questions of a step in one request, with a JSON schema.
-        samples: So many samples give P(yes) where the server has no logprobs.
-        before_after: Show the picture before the action, too, where an effect is asked about.
-        picture_size: Pixels of the longest side of a picture as it is sent.
-        picture_quality: JPEG's, "1" to "100", or "png"; see `SentPictures`.
-        prompt: File of what a server is told; see `tpvqa.vlm.prompt`.
-        max_requests: No more requests than so many; then `BudgetError`.
-        max_tokens_spent: No more tokens.
-        max_cost: No more money, by the prices.
-        price_prompt: Of a million tokens of prompts.
-        price_completion: Of a million tokens of completions.
+        together: As all that follow: the settings of that name in `config.parts.VLMConfig` and
+            `config.model.Limits`.
 
     Raises:
         MissingExtraError: The `openai` package is not installed.
