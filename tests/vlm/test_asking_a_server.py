@@ -133,7 +133,10 @@ def test_samples_give_p_yes_where_there_are_no_logprobs(gives_n: bool) -> None:
 
 def test_effects_are_shown_before_and_after_and_other_questions_are_not() -> None:
     seen = replace(look(2, b"after"), before=look(1, b"before"))
-    effect, other = replace(worded(TEXTS[0]), way=Way.EFFECT), worded(TEXTS[1])
+    effect, other = (
+        replace(worded(text), way=way)
+        for text, way in zip(TEXTS, (Way.EFFECT, Way.PRECONDITION), strict=False)
+    )
     with ChatServer(lambda *_: 0.9) as server:
         vlm = OpenAICompatibleVLM("test", base_url=server.url, before_after=True)
         vlm.ask(seen, [effect, other])
@@ -159,7 +162,7 @@ def test_a_prompt_of_ones_own_with_an_example(tmp_path: Path) -> None:
     file = tmp_path / "prompt.yaml"
     file.write_text(
         'question: "Look. {question} One word!"\n'
-        "examples:\n  - {pictures: open.png, question: Is it shut?, answer: 'no'}\n"
+        "examples:\n  - {pictures: open.png, question: 'Is it shut?', answer: 'no'}\n"
     )
     with ChatServer(lambda *_: 0.9) as server:
         ask(server, TEXTS[0], prompt=str(file))
@@ -174,8 +177,8 @@ def test_a_prompt_of_ones_own_with_an_example(tmp_path: Path) -> None:
     [
         ("question: no slot", r":1: question: has to hold \{question\}"),
         ("questoin: x", "not known here"),
-        ("examples:\n  - {pictures: gone.png, question: Is it?, answer: 'no'}", ":2:.*gone.png"),
-        ("examples:\n  - {pictures: p.png, question: Is it?, answer: maybe}", "yes or no"),
+        ("examples:\n  - {pictures: gone.png, question: 'Is it?', answer: 'no'}", ":2:.*gone.png"),
+        ("examples:\n  - {pictures: p.png, question: 'Is it?', answer: maybe}", "yes or no"),
         ("", "tpvqa prompt"),
     ],
 )

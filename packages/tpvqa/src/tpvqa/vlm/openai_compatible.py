@@ -306,14 +306,8 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         failures: list[Retry],
         end: float,
     ) -> list[TimedReading]:
-        """Ask, again after failures that may pass.
-
-        Args:
-            client: The connection.
-            inquiry: What is asked.
-            failures: Grows by what failed, so that the reason is known where the time ends.
-            end: The deadline, by the loop's clock. No pause begins that would go beyond it.
-        """
+        """Ask, again after failures that may pass, which `failures` grows by; no pause begins that
+        would go beyond `end`, the deadline by the loop's clock."""
         started = time.monotonic()
         while True:
             try:
