@@ -138,10 +138,8 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         """
         options = {key: value for key, value in locals().items() if key not in ("cls", "arguments")}
         if not arguments:
-            raise PluginError(
-                "'openai' does not say which model. Write openai:MODEL, and --base-url for a "
-                "server of your own."
-            )
+            said = "Write openai:MODEL, and --base-url for a server of your own."
+            raise PluginError(f"'openai' does not say which model. {said}")
         return cls(arguments, **options)
 
     @property
