@@ -134,7 +134,7 @@ def test_samples_give_p_yes_where_there_are_no_logprobs(gives_n: bool) -> None:
 def test_effects_are_shown_before_and_after_and_other_questions_are_not() -> None:
     seen = replace(look(2, b"after"), before=look(1, b"before"))
     effect, other = (
-        replace(worded(text), way=way)
+        replace(worded(text), way=way)  # type: ignore[arg-type]
         for text, way in zip(TEXTS, (Way.EFFECT, Way.PRECONDITION), strict=False)
     )
     with ChatServer(lambda *_: 0.9) as server:

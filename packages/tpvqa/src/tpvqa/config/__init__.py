@@ -8,9 +8,9 @@ from tpvqa.config.model import (
     StartConfig,
     TaskConfig,
     TrialConfig,
-    VLMConfig,
     WorldConfig,
 )
+from tpvqa.config.parts import VLMConfig
 
 __all__ = [
     "Limits",
