@@ -240,7 +240,7 @@ class Trial:
             calibration=None if told is None else told.model_dump(mode="json"),
             experience=None if known is None else known.model_dump(mode="json"),
             risk=None if risk is None else risk.model_dump(mode="json"),
-            parameters=dict(parameters_of(self.vlm)) or None,
+            parameters=parameters_of(self.vlm) or None,
         )
 
     @property

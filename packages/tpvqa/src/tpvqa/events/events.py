@@ -83,7 +83,7 @@ class Started(_Event):
     calibration: dict[str, Any] | None = None
     experience: dict[str, Any] | None = None
     risk: dict[str, Any] | None = None
-    parameters: dict[str, Any] | None = None
+    parameters: dict[str, str] | None = None
 
     @field_serializer("config")
     def _whole(self, config: TrialConfig) -> dict[str, Any]:

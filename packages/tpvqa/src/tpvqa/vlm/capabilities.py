@@ -4,7 +4,7 @@ A class says it, not an object: that a VLM is a noise model is known before one 
 """
 
 from collections.abc import Mapping
-from typing import Any, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 from tpvqa.plugins import class_of
 from tpvqa.vlm.usage import Usage
@@ -34,8 +34,8 @@ class Parametrised(Protocol):
     """It tells all that an answer depends on besides pictures and question."""
 
     @property
-    def parameters(self) -> Mapping[str, Any]:
-        """Plain values: model, prompt's digest, size of pictures, samples, way of asking."""
+    def parameters(self) -> Mapping[str, str]:
+        """By name: model, prompt's digest, size of pictures, samples, way of asking."""
 
 
 @runtime_checkable
@@ -85,7 +85,9 @@ def sees_before(vlm: object) -> bool:
     return issubclass(class_of(vlm), SeesBefore)
 
 
-def parameters_of(vlm: object) -> Mapping[str, Any]:
+def parameters_of(vlm: object) -> dict[str, str]:
     """All that a VLM's answers depend on besides pictures and question; empty where it does not
     say."""
-    return vlm.parameters if isinstance(vlm, Parametrised) else {}
+    if not isinstance(vlm, Parametrised):
+        return {}
+    return {str(name): str(value) for name, value in vlm.parameters.items()}

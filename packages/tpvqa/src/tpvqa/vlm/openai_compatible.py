@@ -143,9 +143,9 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         return cls(arguments, **options)
 
     @property
-    def parameters(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, str]:
         """All that an answer depends on besides pictures and question."""
-        return {
+        found = {
             "model": self.model,
             "prompt": self._prompt.digest,
             "picture_size": self._sent.longest,
@@ -154,6 +154,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
             "together": self.together,
             "before_after": self.before_after,
         }
+        return {name: str(value) for name, value in found.items()}
 
     @property
     def usage(self) -> Usage:
@@ -182,10 +183,8 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         """
         frames = tuple(observation.frames.values())
         if not frames:
-            raise AnswerError(
-                f"{self.name} looks at pictures, and this world shows none. Choose a world with "
-                "pictures, or a noise model such as oracle:0.9."
-            )
+            said = "Choose a world with pictures, or a noise model such as oracle:0.9."
+            raise AnswerError(f"{self.name} looks at pictures, and this world shows none. {said}")
         earlier = observation.before if self.before_after else None
         before = () if earlier is None else tuple(earlier.frames.values())
         data = (hashlib.sha256(frame.data).digest() for frame in (*before, *frames))
