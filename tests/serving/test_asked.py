@@ -12,7 +12,8 @@ from tpvqa.questions import Question, QuestionBook
 from tpvqa.serving.asked import LONGEST, question_in
 from tpvqa.serving.refusal import Refusal
 from tpvqa.tasks import find_task
-from tpvqa.vlm.chat_completions import INSTRUCTION, messages
+from tpvqa.vlm.chat_completions import Inquiry, messages
+from tpvqa.vlm.prompt import shipped_prompt
 
 TASKS = ("build_tower", "clean_dishes", "serve_breakfast", "eat_apple")
 
@@ -28,7 +29,7 @@ def planned(task: Task) -> tuple[Action, ...]:
 def prompt(question: str, views: int = 1) -> str:
     """What tpvqa's own client says."""
     frames = [Frame(str(n), str(n), b"") for n in range(views)]
-    (message,) = messages(frames, question, INSTRUCTION)
+    (message,) = messages(Inquiry((question,), tuple(frames)), shipped_prompt())
     return str(message["content"][-1]["text"])
 
 

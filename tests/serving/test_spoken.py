@@ -15,7 +15,8 @@ from tpvqa.serving.spoken import Spoken, spoken
 from tpvqa.serving.wire import Reply as WireReply
 from tpvqa.serving.wire import read_request
 from tpvqa.vlm import Answer, Reply
-from tpvqa.vlm.chat_completions import Reading, read_completion
+from tpvqa.vlm.chat_completions import read_completion
+from tpvqa.vlm.reading import Reading
 
 QUESTION = worded("Is the fridge open?")
 SHARES = st.floats(0, 1)

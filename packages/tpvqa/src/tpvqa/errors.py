@@ -7,10 +7,12 @@ TpvqaError
 │   ├── WorldFileError     a world file or a script is broken
 │   ├── PriorsError        a file of priors is broken
 │   ├── ConfigError        a trial's configuration is wrong
+│   ├── PromptError        a file of what a server is told is wrong
 │   └── PhotosError        a photo, its label or a file of prompts is wrong
 ├── PlannerError           the planner itself could not be run (never "there is no plan")
 │   └── GroundingTimedOut  reading and grounding took longer than allowed
 ├── AnswerError            a VLM could not be asked at all
+│   └── BudgetError        one more request would go beyond what may be spent
 ├── CacheError             recorded answers cannot be read, or lack one that is asked for
 ├── WorldError             a world cannot do what it is asked to
 ├── PictureError           a picture cannot be read, is of another format, or is too large
@@ -126,6 +128,26 @@ class AnswerError(TpvqaError):
 
 class CacheError(TpvqaError):
     """A file of recorded answers cannot be used, or lacks an answer that is asked for."""
+
+
+class BudgetError(AnswerError):
+    """One more request would go beyond what may be spent.
+
+    Args:
+        what: Requests, tokens or money.
+        spent: How much of how much is spent.
+        option: What sets the limit.
+    """
+
+    def __init__(self, what: str, spent: str, option: str):
+        super().__init__(
+            f"the budget of {what} does not allow another request: {spent} spent. Go on with "
+            f"`tpvqa resume` and a larger {option}"
+        )
+
+
+class PromptError(PlacedError):
+    """A file of what a server is told is wrong."""
 
 
 class ConfigError(PlacedError):

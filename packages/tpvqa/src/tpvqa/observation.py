@@ -174,6 +174,7 @@ class Observation:
         frames: The images, by view. Empty in worlds that are not seen but only told.
         detail: What else a world reports about the look, for the log only.
         facts: What the robot's own sensors tell at the look.
+        before: The look before the latest action, where a VLM is to be shown it, too.
     """
 
     look: int = 0
@@ -181,6 +182,7 @@ class Observation:
     frames: Mapping[str, Frame] = field(default_factory=dict)
     detail: Mapping[str, Any] = field(default_factory=dict)
     facts: Sequence[SensedFact] = ()
+    before: "Observation | None" = field(default=None, repr=False)
 
 
 _ENDINGS = mimetypes.MimeTypes()  # Python's own: those of the system differ between machines

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 from tpvqa import __version__
 from tpvqa.assembly.answering import answering
 from tpvqa.assembly.simulating import simulate
-from tpvqa.assembly.told import read_told, stated_bound
+from tpvqa.assembly.told import read_told, see_fitting, stated_bound
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import FaultModel
@@ -40,7 +40,7 @@ from tpvqa.tasks import find_task
 from tpvqa.text_files import kept_text
 from tpvqa.trial import trial
 from tpvqa.vlm import VLM
-from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
+from tpvqa.vlm.capabilities import is_noise_model, parameters_of
 from tpvqa.vlm.making import in_full
 from tpvqa.worlds import Restorable, World
 from tpvqa.worlds.capabilities import has_pictures, is_simulated, truth_of
@@ -187,11 +187,7 @@ class Trial:
         if not self.weighs_answers:
             self.calibration = None
         made, by_vlm = answering(self, vlm, context)
-        if not has_pictures(world) and needs_pictures(made):
-            raise TpvqaError(
-                f"The VLM {self.vlm_spec!r} looks at pictures, and the world {self.world_spec!r} "
-                "has none. Choose a noise model, e.g. 'oracle:0.9', or a world with pictures."
-            )
+        see_fitting(self, made, world, self._begun_as)
         if self._every_option:
             see_taken(options, by_world | by_monitor | by_vlm, context)
         if made is not vlm and isinstance(made, Closing):
@@ -245,6 +241,7 @@ class Trial:
             calibration=None if told is None else told.model_dump(mode="json"),
             experience=None if known is None else known.model_dump(mode="json"),
             risk=None if risk is None else risk.model_dump(mode="json"),
+            parameters=parameters_of(self.vlm) or None,
         )
 
     @property

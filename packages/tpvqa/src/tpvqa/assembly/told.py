@@ -14,8 +14,12 @@ from tpvqa.config import TrialConfig
 from tpvqa.config.layers import settings
 from tpvqa.config.model import MonitorConfig
 from tpvqa.errors import CalibrationError, TpvqaError
+from tpvqa.events import Started
 from tpvqa.monitors.stated_risk import split_risk
 from tpvqa.text_files import kept_text
+from tpvqa.vlm.capabilities import needs_pictures, parameters_of, sees_before
+from tpvqa.worlds import World
+from tpvqa.worlds.capabilities import has_pictures
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
@@ -24,7 +28,7 @@ DECIDING = ("what decides", "monitor", "VLM", "calibration", "task")
 """Conditions without which what was believed of a goal says nothing here."""
 _TOLD_OTHERWISE = ("task", "seed", "episode", "monitor")
 _SPECS = (
-    *(("vlm", name) for name in ("spec", "base_url", "cache", "record", "replay")),
+    *(("vlm", name) for name in ("spec", "base_url", "prompt", "cache", "record", "replay")),
     ("world", "spec"),
     ("start", "priors"),
 )
@@ -85,6 +89,31 @@ def stated_bound(trial: "Trial", given: RiskBound | None, *, reading: bool) -> R
         raise CalibrationError(f"{file}: {error}") from None
 
 
+def see_fitting(trial: "Trial", vlm: object, world: World, begun_as: Started | None) -> None:
+    """See that a VLM can do what is asked of it here, and is told what it was told before.
+
+    Raises:
+        TpvqaError: It cannot, or the server would be told something else.
+    """
+    if not has_pictures(world) and needs_pictures(vlm):
+        raise TpvqaError(
+            f"The VLM {trial.vlm_spec!r} looks at pictures, and the world {trial.world_spec!r} "
+            "has none. Choose a noise model, e.g. 'oracle:0.9', or a world with pictures."
+        )
+    if trial.config.vlm.before_after and not sees_before(vlm):
+        raise TpvqaError(
+            f"The VLM {trial.vlm_spec!r} is shown one look at a time. Leave out --before-after, "
+            "or take one that compares pictures, e.g. openai:MODEL."
+        )
+    logged = None if begun_as is None else begun_as.parameters
+    now = parameters_of(vlm).get("prompt")
+    if logged is not None and now is not None and logged.get("prompt") != now:
+        raise TpvqaError(
+            f"The episode was begun with another prompt (digest {logged.get('prompt')!s:.16}, and "
+            f"this one has {now}). Name the same file by --prompt, with the same pictures."
+        )
+
+
 def about_risk(trial: "Trial") -> list[str]:
     """What a user should know of the risk that a trial states."""
     config = trial.config
@@ -124,6 +153,8 @@ def conditions(trial: "Trial") -> dict[str, str]:
         "world file": _digest(kept_text(trial.world_file)),
         "priors": _digest(kept_text(config.start.priors)),
     }
+    if config.vlm.prompt is not None:
+        found["prompt"] = str(parameters_of(trial.vlm).get("prompt"))
     return found | _others(config)
 
 

@@ -27,6 +27,8 @@ class EpisodeRow(BaseModel):
         trust: The factor by which the VLM's answers are worth more or less than its calibration
             says, as the monitor has learned by the end; None where it learns no such thing.
         goal: How probable the monitor took the goal to be at the end; None where it does not say.
+        requests: To a server, where the VLM counts them; so are `prompt_tokens` and
+            `completion_tokens`.
         error: What went wrong in the program; empty where nothing did.
         answers: How many answers were of which kind: "way|subject|truth|reply|P(yes)".
         decisions: How many decisions were of which kind: "before|truth|went on".
@@ -60,6 +62,9 @@ class EpisodeRow(BaseModel):
     seconds: float = 0.0
     trust: float | None = None
     goal: float | None = None
+    requests: int | None = None
+    prompt_tokens: int | None = None
+    completion_tokens: int | None = None
     error: str = ""
     answers: dict[str, int] = {}
     decisions: dict[str, int] = {}

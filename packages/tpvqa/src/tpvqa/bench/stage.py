@@ -203,6 +203,7 @@ class Stage:
             "looks": ended.looks,
             "repeats": ended.repeats,
             "replans": ended.replans,
+            **({} if ended.usage is None else ended.usage.model_dump(exclude={"untold"})),
             "longest_repeat": judge.longest_repeat,
             "failures": judge.failures,
             "wasted": judge.wasted,

@@ -41,6 +41,7 @@ def register(app: typer.Typer) -> None:
     app.command(epilog=_EXIT)(run)
     app.command(epilog=_EXIT)(resume)
     app.command("config")(configuration)
+    app.command()(prompt)
     app.command()(show)
     app.command()(report)
 
@@ -130,6 +131,22 @@ def configuration(
         print(config.model_dump_json(indent=1, by_alias=True))
     else:
         print(as_yaml(config, layers), end="")
+
+
+def prompt(
+    file: Annotated[
+        Path | None, typer.Argument(help="A prompt of your own, to be checked.")
+    ] = None,
+) -> None:
+    """Print what a server is told; keep it in a file, change it, give it by --prompt."""
+    from tpvqa.vlm.prompt import load_prompt, shipped_text
+
+    if file is None:
+        print(shipped_text(), end="")
+        return
+    made = load_prompt(file)
+    examples = len(made.examples)
+    tell(f"{file}: can be used; examples: {examples}, digest: {made.digest}")
 
 
 def _optimal(wanted: bool) -> list[Layer]:
@@ -342,6 +359,8 @@ def _finish(ended: "Ended", folder: Path, lost: "WriteError | None", *, as_json:
                     "looks": ended.looks,
                     "repeats": ended.repeats,
                     "replans": ended.replans,
+                    "usage": ended.usage and ended.usage.model_dump(),
+                    "cost": ended.cost,
                     "episode": str(folder),
                 }
             )

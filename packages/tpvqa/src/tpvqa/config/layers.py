@@ -20,7 +20,9 @@ Key = tuple[str, ...]
 """Where a setting stands in the configuration: ("limits", "actions")."""
 NAMEABLE: tuple[Key, ...] = (
     *(("world", name) for name in ("spec", "pictures", "simulator")),
-    *(("vlm", name) for name in ("spec", "base_url", "device", "cache", "record", "replay")),
+    *(("vlm", name) for name in ("spec", "base_url", "prompt", "device")),
+    *(("vlm", name) for name in ("cache", "record", "replay")),
+    *(("limits", name) for name in ("requests", "tokens", "cost")),
     *(("monitor", name) for name in ("spec", "majority", "experience")),
     ("planner", "spec"),
     ("options",),

@@ -166,6 +166,15 @@ class Limits(Part):
     )
     seconds: float | None = setting("--max-seconds", "Wall-clock time of the trial.", gt=0)
     action_seconds: float | None = setting("--action-deadline", "Seconds for one action.", ge=0)
+    requests: int | None = setting(
+        "--max-requests", "openai: requests to the server, retries included.", ge=1
+    )
+    tokens: int | None = setting(
+        "--max-tokens-spent", "openai: tokens, of prompts and completions together.", ge=1
+    )
+    cost: float | None = setting(
+        "--max-cost", "openai: money, by --price-prompt and --price-completion.", gt=0
+    )
 
     def actions_of(self, first_plan: int) -> int:
         """The limit of actions in a trial whose first plan has so many."""
@@ -311,9 +320,13 @@ class TrialConfig(Part):
             "no_alternatives": self.monitor.no_alternatives or None,
             "simulator": self.world.simulator,
             "pictures": self.world.pictures,
-            "base_url": self.vlm.base_url,
-            "device": self.vlm.device,
-            "dtype": self.vlm.dtype,
-            "batch": self.vlm.batch,
+            **{
+                name: getattr(self.vlm, name) or None
+                for name in VLMConfig.model_fields
+                if name not in ("spec", "cache", "record", "replay")
+            },
+            "max_requests": self.limits.requests,
+            "max_tokens_spent": self.limits.tokens,
+            "max_cost": self.limits.cost,
         }
         return self.options | {key: value for key, value in named.items() if value is not None}

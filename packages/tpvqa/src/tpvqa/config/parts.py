@@ -82,6 +82,44 @@ class VLMConfig(Part):
         "or float16.",
     )
     batch: int | None = setting("--batch", "hf: questions at once. Default: 16.", ge=1)
+    together: bool = setting(
+        "--together",
+        "openai: ask all questions of a step in one request, with a JSON schema.",
+        False,
+    )
+    samples: int | None = setting(
+        "--samples",
+        "openai: so many samples give P(yes) where the server has no logprobs. Default: none are "
+        "drawn.",
+        ge=1,
+        le=64,
+    )
+    before_after: bool = setting(
+        "--before-after",
+        "openai: where an effect is asked about, show the picture before the action, too.",
+        False,
+    )
+    picture_size: int | None = setting(
+        "--picture-size",
+        "openai: pixels of the longest side of a picture as it is sent. Default: 1024.",
+        ge=32,
+        le=8192,
+    )
+    picture_quality: Annotated[str, Field(pattern=r"^(png|100|[1-9][0-9]?)$")] | None = setting(
+        "--picture-quality",
+        "openai: send pictures as JPEG of this quality (1 to 100), or as png. Default: as they "
+        "are, those made smaller as JPEG of 90.",
+        text=True,
+    )
+    prompt: str | None = setting(
+        "--prompt", "openai: file of what the server is told; see `tpvqa prompt`.", file=True
+    )
+    price_prompt: float | None = setting(
+        "--price-prompt", "openai: price of a million tokens of prompts.", ge=0
+    )
+    price_completion: float | None = setting(
+        "--price-completion", "openai: price of a million tokens of completions.", ge=0
+    )
 
     @property
     def answers(self) -> tuple[Literal["cache", "record", "replay"], str] | None:
@@ -97,3 +135,10 @@ class VLMConfig(Part):
         if sum(each is not None for each in (self.cache, self.record, self.replay)) > 1:
             raise ValueError("give one of --cache, --record and --replay")
         return self
+
+    def cost(self, prompt_tokens: int, completion_tokens: int) -> float | None:
+        """What tokens cost by the prices; None where there are none."""
+        if self.price_prompt is None and self.price_completion is None:
+            return None
+        prompt, completion = self.price_prompt or 0.0, self.price_completion or 0.0
+        return (prompt_tokens * prompt + completion_tokens * completion) / 1e6

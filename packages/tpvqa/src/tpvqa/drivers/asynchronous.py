@@ -6,10 +6,10 @@ from typing import Self
 
 from tpvqa.drivers.performing import Performed, Performer
 from tpvqa.drivers.stepping import SteppingTrial
-from tpvqa.errors import TpvqaError
+from tpvqa.errors import BudgetError, TpvqaError
 from tpvqa.events import Event
 from tpvqa.observation import Observation
-from tpvqa.trial import Act
+from tpvqa.trial import Act, Conclusion
 
 
 class AsynchronousTrial:
@@ -93,6 +93,7 @@ class AsynchronousTrial:
     async def _run(self) -> None:
         trial, performer, stopped = self._trial, self._performer, False
         loop = asyncio.get_running_loop()
+        conclusion: Conclusion | None = None
         trial.begin()
         while trial.pending is not None and not performer.cancel.is_set():
             trial.begun()
@@ -103,9 +104,12 @@ class AsynchronousTrial:
             except asyncio.CancelledError:  # the loop is shut down: the robot is not left acting
                 performer.cancel.set()
                 performed, stopped = await doing, True
+            except BudgetError as spent:
+                conclusion = Conclusion("budget spent", str(spent))
+                break
             async with self._seeing:  # a look that began while an action ran comes before its end
                 trial.send(performed)
         trial.take_over()
-        trial.end(goal_holds=performer.goal_holds())
+        trial.end(conclusion, goal_holds=performer.goal_holds())
         if stopped:
             raise asyncio.CancelledError

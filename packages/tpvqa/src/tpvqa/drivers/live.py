@@ -2,6 +2,7 @@
 
 from tpvqa.drivers.performing import Performer
 from tpvqa.drivers.stepping import SteppingTrial
+from tpvqa.errors import BudgetError
 from tpvqa.events import Ended
 from tpvqa.trial import Conclusion
 
@@ -41,6 +42,8 @@ def run(trial: SteppingTrial, performer: Performer) -> Ended:
             trial.begun()
             trial.send(performer.perform(trial.pending))
         conclusion = trial.conclusion
+    except BudgetError as spent:
+        conclusion = Conclusion("budget spent", str(spent))
     except KeyboardInterrupt:
         if trial.replaying:  # the log is right as it is
             raise

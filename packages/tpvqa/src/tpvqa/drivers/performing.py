@@ -26,8 +26,10 @@ from tpvqa.planning.without import plan_without
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending
 from tpvqa.vlm import VLM, Answer, Reply
+from tpvqa.vlm.capabilities import metered, sees_before
 from tpvqa.vlm.checking import checked_answers
 from tpvqa.vlm.sight import cannot_see, seen_by
+from tpvqa.vlm.usage import Usage
 from tpvqa.worlds import Execution, Report, Restorable, World
 from tpvqa.worlds.capabilities import Telling
 from tpvqa.worlds.goal import goal_holds
@@ -85,6 +87,8 @@ class Performer:
         self.cancel = cancel or Flag()
         # asked once: such checks are slow
         self._freshness = Freshness(parts.world)
+        self._metered = metered(parts.vlm)
+        self._counted = Usage() if self._metered is None else self._metered.usage
         self._telling = parts.world if isinstance(parts.world, Telling) else None
 
     def perform(self, pending: Pending) -> Performed:
@@ -175,8 +179,18 @@ class Performer:
         why = ""
         if seen is not None:
             seen, why = seen_by(self.parts.vlm, seen, self._freshness.faults)
+            seen = replace(seen, before=self._earlier(seen.before))
+        if self._metered is not None:
+            self._counted = self._metered.usage
         answers = cannot_see(questions, why) if why else _answers(self.parts.vlm, seen, questions)
         return Performed(answers, self._answered(self.parts.vlm, answers))
+
+    def _earlier(self, before: Observation | None) -> Observation | None:
+        """What is shown of the look before the latest action, where anything is to be seen."""
+        if before is None or not sees_before(self.parts.vlm):
+            return None
+        shown, why = seen_by(self.parts.vlm, before)
+        return None if why else shown
 
     def _ask_person(self, seen: Observation | None, question: Question) -> Performed:
         person = self.parts.person
@@ -188,7 +202,10 @@ class Performer:
 
     def _answered(self, asked: VLM, answers: Sequence[Answer]) -> Answered:
         try:
-            return answered_record(answers, self._snapshot(self.parts.vlm))
+            taken = None
+            if self._metered is not None and asked is self.parts.vlm:
+                taken = self._metered.usage - self._counted
+            return answered_record(answers, self._snapshot(self.parts.vlm), taken)
         except MALFORMED as error:
             raise malformed(asked, "ask", error) from error
 

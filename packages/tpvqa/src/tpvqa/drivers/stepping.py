@@ -101,6 +101,9 @@ class SteppingTrial:
         self.take_over()
         conclusion = conclusion or self.conclusion or CANCELLED
         state, believes = self.state, conclusion.believes_goal
+        usage, cost = state.usage, None
+        if usage is not None and state.started is not None:
+            cost = state.started.config.vlm.cost(usage.prompt_tokens, usage.completion_tokens)
         ended = Ended(
             because=conclusion.because,
             message=conclusion.message,
@@ -112,6 +115,8 @@ class SteppingTrial:
             looks=state.looks,
             repeats=state.repeats,
             replans=state.replans,
+            usage=usage,
+            cost=cost,
         )
         written = self.journal.write(ended)
         assert isinstance(written, Ended)

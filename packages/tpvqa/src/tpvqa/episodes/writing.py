@@ -14,6 +14,7 @@ from tpvqa.episodes.log import LOG, events_in, whole_lines
 from tpvqa.episodes.shape import FRAMES, is_frame
 from tpvqa.errors import EpisodeError, PluginError, WriteError
 from tpvqa.events import EVENT, Ended, Event
+from tpvqa.events.events import CAN_BE_GONE_ON_WITH
 from tpvqa.events.records import depth_file
 from tpvqa.files import open_plain, write_all, write_whole_at
 from tpvqa.observation import Frame
@@ -22,6 +23,7 @@ from tpvqa.pictures import MOST_BYTES
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 _TORN = b'{"number":0,'
 """How the first event of a log begins."""
+_NO_ENDS = tuple(f'"because":"{each}"'.encode() for each in CAN_BE_GONE_ON_WITH)
 
 
 class EpisodeWriter:
@@ -80,7 +82,7 @@ class EpisodeWriter:
             events = events_in(writer.folder / LOG, writer._file)
             last = events[-1]
             if isinstance(last, Ended):
-                if last.because != "cancelled":
+                if last.because not in CAN_BE_GONE_ON_WITH:
                     raise EpisodeError(
                         f"{folder}: the episode has ended ({last.ending}); show it instead"
                     )
@@ -156,7 +158,7 @@ class EpisodeWriter:
         what else follows was written since."""
         lines = list(whole_lines(self._file))
         more = lines[count:]
-        if more and not (len(more) == 1 and b'"because":"cancelled"' in more[0]):
+        if more and not (len(more) == 1 and any(end in more[0] for end in _NO_ENDS)):
             raise EpisodeError(
                 f"{self.folder} was written to by another process since it was read; try again"
             )

@@ -52,6 +52,8 @@ class Started(_Event):
         calibration: What the monitor was told of the VLM's answers, where it weighs them.
         experience: What it was told of earlier trials.
         risk: Where it may report "done", if it states a risk.
+        parameters: All that the VLM's answers depend on besides pictures and questions, where it
+            says so: model, digest of the prompt, size of pictures, samples, way of asking.
     """
 
     kind: Literal["started"] = "started"
@@ -81,6 +83,7 @@ class Started(_Event):
     calibration: dict[str, Any] | None = None
     experience: dict[str, Any] | None = None
     risk: dict[str, Any] | None = None
+    parameters: dict[str, str] | None = None
 
     @field_serializer("config")
     def _whole(self, config: TrialConfig) -> dict[str, Any]:
@@ -178,12 +181,38 @@ class QuestionRecord(_Record):
 
 
 class Asked(_Event):
-    """Questions about the latest look."""
+    """Questions about the latest look. `before` is the look before the latest action, where its
+    pictures are shown, too, with questions about effects."""
 
     kind: Literal["asked"] = "asked"
     look: int
     questions: tuple[QuestionRecord, ...]
     person: bool = False
+    before: int | None = None
+
+
+class UsageRecord(_Record):
+    """What asking a server took; `untold` replies did not say how many tokens."""
+
+    requests: int = Field(default=0, ge=0)
+    prompt_tokens: int = Field(default=0, ge=0)
+    completion_tokens: int = Field(default=0, ge=0)
+    untold: int = Field(default=0, ge=0)
+
+    def plus(self, other: "UsageRecord | None") -> "UsageRecord":
+        """Both together."""
+        if other is None:
+            return self
+        names = type(self).model_fields
+        return UsageRecord(**{n: getattr(self, n) + getattr(other, n) for n in names})
+
+    @property
+    def said(self) -> str:
+        """In words."""
+        tokens = f"{self.prompt_tokens:,} + {self.completion_tokens:,} tokens"
+        if self.untold:
+            tokens += f", {self.untold} replies without a count"
+        return f"{self.requests} requests, {tokens}"
 
 
 class AnswerRecord(_Record):
@@ -204,6 +233,7 @@ class Answered(_Event):
     kind: Literal["answered"] = "answered"
     answers: tuple[AnswerRecord, ...]
     snapshot: dict[str, Any] | None = None
+    usage: UsageRecord | None = None
 
 
 class Believed(_Event):
@@ -302,7 +332,10 @@ EndedBecause = Literal[
     "gave up",
     "world refused",
     "cancelled",
+    "budget spent",
 ]
+CAN_BE_GONE_ON_WITH = ("cancelled", "budget spent")
+"""Ends that are none: the trial goes on from there where it is resumed."""
 
 
 class Resumed(_Event):
@@ -334,6 +367,8 @@ class Ended(_Event):
     looks: int
     repeats: int
     replans: int
+    usage: UsageRecord | None = None
+    cost: float | None = None
 
     @property
     def ending(self) -> str:

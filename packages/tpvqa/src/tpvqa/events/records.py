@@ -17,6 +17,7 @@ from tpvqa.events.events import (
     PlanMade,
     QuestionRecord,
     SensedRecord,
+    UsageRecord,
 )
 from tpvqa.observation import NPY, PNG, Depth, Frame, Intrinsics, Observation, SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
@@ -24,6 +25,7 @@ from tpvqa.pictures import read_file
 from tpvqa.planning import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.questions import ActionQuestion, FactQuestion, Question, QuestionBook
 from tpvqa.vlm import Answer
+from tpvqa.vlm.usage import Usage
 from tpvqa.worlds import Execution
 from tpvqa.worlds.outcome import Outcome
 
@@ -84,12 +86,15 @@ def question_record(question: Question) -> QuestionRecord:
             return QuestionRecord(text=text, way=way, action=action.pddl())
 
 
-def answered_record(answers: Sequence[Answer], snapshot: dict[str, Any] | None) -> Answered:
-    """The answers as they are logged, with the state of the VLM that gave them."""
+def answered_record(
+    answers: Sequence[Answer], snapshot: dict[str, Any] | None, usage: Usage | None = None
+) -> Answered:
+    """The answers as they are logged, with the state of the VLM that gave them and what it took."""
     said = tuple(
         AnswerRecord(**{name: getattr(answer, name) for name in _OF_ANSWERS}) for answer in answers
     )
-    return Answered(answers=said, snapshot=snapshot)
+    taken = None if usage is None else UsageRecord(**asdict(usage))
+    return Answered(answers=said, snapshot=snapshot, usage=taken)
 
 
 def answers_from(record: Answered, questions: Sequence[Question]) -> list[Answer]:

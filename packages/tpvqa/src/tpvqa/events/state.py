@@ -22,6 +22,7 @@ from tpvqa.events.events import (
     PlanMade,
     QuestionRecord,
     Started,
+    UsageRecord,
 )
 from tpvqa.pddl import Atom, State
 from tpvqa.questions import Way
@@ -82,6 +83,7 @@ class TrialState:
         over: The limit that was reached; None while there is none.
         time: Seconds since the trial began.
         ended: The last event.
+        usage: What asking a server took so far; None where nothing was told of it.
     """
 
     started: Started | None = None
@@ -107,6 +109,7 @@ class TrialState:
     over: EndedBecause | None = None
     time: float = 0.0
     ended: Ended | None = None
+    usage: UsageRecord | None = None
     _checked: bool = False
     _deadline: float | None = None
 
@@ -187,6 +190,7 @@ class TrialState:
         return {"exchanges": (), "answered": 0} if self._checked else {}
 
     def _answers(self, event: Answered) -> dict[str, Any]:
+        change: dict[str, Any]
         asked = self.asked
         if asked is None:
             return {}
@@ -194,7 +198,10 @@ class TrialState:
             Exchange(question, answer, asked.look, asked.person)
             for question, answer in zip(asked.questions, event.answers, strict=True)
         )
-        return {"exchanges": self.exchanges + new, "answered": len(new)}
+        change = {"exchanges": self.exchanges + new, "answered": len(new)}
+        if event.usage is not None:
+            change["usage"] = event.usage.plus(self.usage)
+        return change
 
     def _decision(self, event: Decided) -> dict[str, Any]:
         change: dict[str, Any] = {"decided": event, "index": event.step, "_checked": True}

@@ -104,6 +104,8 @@ def _of(config: TrialConfig, key: Key) -> Any:
 
 def _harmless(key: Key, value: str) -> bool:
     """Whether a value may come from a stranger."""
+    if key[0] == "limits":
+        return True
     if key in _KINDS:
         return is_plain(_KINDS[key], value)
     return key in _WORDS and _WORD.fullmatch(value) is not None

@@ -13,7 +13,7 @@ from tpvqa.monitors.capabilities import LooksFirst
 from tpvqa.observation import Observation
 from tpvqa.pddl import State, Task
 from tpvqa.planning import Crashed, Plan, TimedOut
-from tpvqa.questions import Question, QuestionBook
+from tpvqa.questions import Question, QuestionBook, Way
 from tpvqa.trial.pending import Act, Conclusion, Pending, Result, Steps, Unwatched
 from tpvqa.worlds import Execution, Report
 
@@ -52,6 +52,7 @@ class _Loop:
         self.state = TrialState()
         self.plan: Plan | None = None
         self._seen: Observation | None = None
+        self._before: Observation | None = None
         self._records: dict[Question, QuestionRecord] = {}
 
     def run(self) -> Steps:
@@ -140,14 +141,18 @@ class _Loop:
         self.state = yield event
 
     def _do(
-        self, request: Request | Act, announced: Asked | Acting | None = None
+        self,
+        request: Request | Act,
+        announced: Asked | Acting | None = None,
+        seen: Observation | None = None,
     ) -> Generator[Pending, Result, Any]:
         """Have something done."""
         if self.state.over == "limit of time":
             raise _Over
         try:
             state = self.state
-            result = yield Pending(request, announced, state.looks, self._seen, state.seconds_left)
+            seen = seen or self._seen
+            result = yield Pending(request, announced, state.looks, seen, state.seconds_left)
         except Unwatched as unwatched:
             self.state = unwatched.state
             raise
@@ -234,7 +239,21 @@ class _Loop:
             questions=tuple(map(self._record, questions)),
             person=isinstance(request, AskPerson),
         )
-        return (yield from self._do(request, asked))
+        before = None if asked.person else self._compared(questions)
+        if before is None:
+            return (yield from self._do(request, asked))
+        asked = asked.model_copy(update={"before": before.look})
+        return (yield from self._do(request, asked, replace(self._seen, before=before)))
+
+    def _compared(self, questions: tuple[Question, ...]) -> Observation | None:
+        """The look before the latest action, where it is to be shown, too."""
+        started, before = self.state.started, self._before
+        if started is None or not started.config.vlm.before_after or before is None:
+            return None
+        assert self._seen is not None
+        ways = (Way.EFFECT, Way.SUCCESSFUL, Way.DID)
+        later = self._seen.look > before.look
+        return before if later and any(each.way in ways for each in questions) else None
 
     def _record(self, question: Question) -> QuestionRecord:
         """Questions are asked again and again; what is logged of one is worked out once."""
@@ -249,6 +268,7 @@ class _Loop:
         Raises:
             Unwatched: The world may have changed before it was begun.
         """
+        self._before = self._seen
         said = action_record(step.action, self.book)
         acting = Acting(step=step.index, action=said, attempt=step.attempt)
         try:

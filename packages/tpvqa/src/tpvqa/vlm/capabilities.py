@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
 from tpvqa.plugins import class_of
+from tpvqa.vlm.usage import Usage
 
 
 class NoiseModel:
@@ -29,6 +30,13 @@ class Deterministic:
     """The same question about the same pictures always gets the same answer."""
 
 
+class SeesBefore:
+    """It can be shown the picture before the last action beside that after it, and is where its
+    `before_after` is true."""
+
+    before_after = False
+
+
 @runtime_checkable
 class Parametrised(Protocol):
     """Its answers depend on more than its specification says: a prompt, sizes, weights."""
@@ -43,9 +51,20 @@ class StandsIn:
 
     Attributes:
         stands_for: The class of the other one.
+        inner: It; None where it is not asked at all.
     """
 
     stands_for: type
+    inner: object
+
+
+@runtime_checkable
+class Metered(Protocol):
+    """It counts what asking it costs."""
+
+    @property
+    def usage(self) -> Usage:
+        """What was spent so far."""
 
 
 class SaidInFull:
@@ -94,6 +113,17 @@ def may_be_asked_side_by_side(vlm: object) -> bool:
 def is_deterministic(vlm: object) -> bool:
     """Whether a VLM, or a class of VLMs, never answers the same otherwise."""
     return issubclass(kind_of(vlm), Deterministic)
+
+
+def sees_before(vlm: object) -> bool:
+    """Whether a VLM, or a class of VLMs, can be shown the picture before the last action."""
+    return issubclass(kind_of(vlm), SeesBefore)
+
+
+def metered(vlm: object) -> Metered | None:
+    """Whoever counts what asking a VLM costs: it, or the one that it stands for."""
+    asked = vlm.inner if isinstance(vlm, StandsIn) else vlm
+    return asked if isinstance(asked, Metered) else None
 
 
 def parameters_of(vlm: object) -> dict[str, str]:

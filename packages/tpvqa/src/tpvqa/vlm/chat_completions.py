@@ -11,16 +11,15 @@ from pydantic import BaseModel, Field, ValidationError
 
 from tpvqa.observation import Frame
 from tpvqa.vlm.answer import Reply
+from tpvqa.vlm.prompt import Prompt
+from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.reply_shape import read_words, still_thinking
 from tpvqa.vlm.yes_no import Token, answer_token, mass, meaning, spelt
 
-INSTRUCTION = "Answer with one word, yes or no."
-"""Said after the question, so that the options are not the first thing the model hears: naming
-them pushes judges towards the negative one."""
-
 _ROOM_TO_THINK = 2048
-_ENDED_BY_ITSELF = ("stop", "eos", "eos_token", "end_turn", "stop_sequence")
-_MOST_CHOICES = 16
+_TOKENS_OF_AN_ANSWER = 12  # in JSON, key and all
+ENDED_BY_ITSELF = ("stop", "eos", "eos_token", "end_turn", "stop_sequence")
+_MOST_CHOICES = 64
 _LONGEST = 100_000  # characters, reasoning included
 
 
@@ -33,22 +32,37 @@ class Dialect:
         limit: The parameter that limits the length, None for no limit.
         tokens: That limit. Short answers suffice, but reasoning counts too.
         temperature: Whether a temperature may be given.
+        schema: How the form of a reply to several questions is asked for; None for words alone.
+        several: Whether `n` may be given.
     """
 
     logprobs: int = 20
     limit: str | None = "max_tokens"
     tokens: int = 12
     temperature: bool = True
+    schema: str | None = "json_schema"
+    several: bool = True
 
-    def parameters(self) -> dict[str, Any]:
-        """The optional parameters of a request."""
+    def parameters(self, together: int = 0, samples: int = 0) -> dict[str, Any]:
+        """The optional parameters of a request.
+
+        Args:
+            together: How many questions it has, where they are asked together; 0 for one alone.
+            samples: How many samples are wanted; 0 for the likeliest reply.
+        """
         parameters: dict[str, Any] = {}
-        if self.logprobs:
+        if together and self.schema == "json_schema":
+            parameters["response_format"] = answers_schema(together)
+        elif together and self.schema:
+            parameters["response_format"] = {"type": self.schema}
+        if samples > 1 and self.several:
+            parameters["n"] = samples
+        if self.logprobs and not samples:
             parameters |= {"logprobs": True, "top_logprobs": self.logprobs}
         if self.limit:
-            parameters[self.limit] = self.tokens
+            parameters[self.limit] = self.tokens + _TOKENS_OF_AN_ANSWER * together
         if self.temperature:
-            parameters["temperature"] = 0
+            parameters["temperature"] = 1 if samples else 0
         return parameters
 
     def after_refusal(self, complaint: str) -> "Dialect | None":
@@ -58,6 +72,12 @@ class Dialect:
             complaint: What the server said, with the name of the parameter where it gave one.
         """
         complaint = complaint.lower()
+        if self.schema and re.search(r"response_format|json_?schema|json_object", complaint):
+            return replace(self, schema="json_object" if self.schema == "json_schema" else None)
+        if self.several and re.search(
+            r"(?<![a-z])['\"`]?n['\"`]?(?![a-z'])|multiple completions", complaint
+        ):
+            return replace(self, several=False)
         if self.logprobs and re.search(r"log_?prob", complaint):
             at_most = re.search(
                 r"(?:<=|at most|more than|maximum[^\d]*|equal to)\s*(\d+)", complaint
@@ -73,7 +93,7 @@ class Dialect:
 
     def bare(self) -> "Dialect":
         """Nothing optional at all."""
-        return Dialect(logprobs=0, limit=None, temperature=False)
+        return Dialect(logprobs=0, limit=None, temperature=False, schema=None, several=False)
 
     def with_room_to_think(self) -> "Dialect | None":
         """More tokens, for models that reason first; None where that was tried."""
@@ -82,47 +102,65 @@ class Dialect:
         return replace(self, tokens=_ROOM_TO_THINK)
 
 
-def messages(frames: Sequence[Frame], question: str, instruction: str) -> list[dict[str, Any]]:
-    """One user message: the pictures, then the question, then how to answer."""
+@dataclass(frozen=True, slots=True)
+class Inquiry:
+    """What one request asks.
+
+    Attributes:
+        texts: The questions.
+        frames: The pictures of now.
+        before: Those of before the last action, where they are shown.
+        together: Whether the answers are wanted as one JSON object.
+    """
+
+    texts: tuple[str, ...]
+    frames: tuple[Frame, ...]
+    before: tuple[Frame, ...] = ()
+    together: bool = False
+
+
+def answers_schema(count: int) -> dict[str, Any]:
+    """The form of a reply to so many questions: q1, q2, …, each yes, no or unknown."""
+    keys = [f"q{at}" for at in range(1, count + 1)]
+    each = {"type": "string", "enum": ["yes", "no", "unknown"]}
+    schema = {
+        "type": "object",
+        "properties": dict.fromkeys(keys, each),
+        "required": keys,
+        "additionalProperties": False,
+    }
+    named = {"name": "answers", "strict": True, "schema": schema}
+    return {"type": "json_schema", "json_schema": named}
+
+
+def messages(asked: Inquiry, prompt: Prompt) -> list[dict[str, Any]]:
+    """What a server is sent: examples first, then the pictures, then what is asked about them."""
+    said: list[dict[str, Any]] = []
+    if prompt.system:
+        said.append({"role": "system", "content": prompt.system})
+    for example in prompt.examples:
+        shown = Inquiry((example.question,), example.pictures, together=asked.together)
+        answer = json.dumps({"q1": example.answer}) if asked.together else example.answer
+        said += [_turn(shown, prompt), {"role": "assistant", "content": answer}]
+    return [*said, _turn(asked, prompt)]
+
+
+def _turn(asked: Inquiry, prompt: Prompt) -> dict[str, Any]:
+    pictures = (*asked.before, *asked.frames)
+    counts = {"pictures": len(pictures), "before": len(asked.before)}
+    if asked.together:
+        text = prompt.many(asked.texts, **counts)
+    else:
+        text = prompt.one(asked.texts[0], **counts)
     content: list[dict[str, Any]] = [
-        {"type": "image_url", "image_url": {"url": data_url(frame)}} for frame in frames
+        {"type": "image_url", "image_url": {"url": data_url(frame)}} for frame in pictures
     ]
-    content.append({"type": "text", "text": prompt(question, instruction, len(frames))})
-    return [{"role": "user", "content": content}]
-
-
-def prompt(question: str, instruction: str, pictures: int) -> str:
-    """What is said beside so many pictures of one look."""
-    text = f"{question} {instruction}".strip()
-    if pictures > 1:
-        text = f"These {pictures} pictures show the same moment from several views. {text}"
-    return text
+    return {"role": "user", "content": [*content, {"type": "text", "text": text}]}
 
 
 def data_url(frame: Frame) -> str:
     """A picture inside an address, as the API takes it."""
     return f"data:{frame.media_type};base64,{base64.b64encode(frame.data).decode('ascii')}"
-
-
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """What a reply says.
-
-    Attributes:
-        reply: Yes, no, or *unknown* for whatever is neither clearly.
-        source: "logprobs" or "word".
-        text: The model's words, or why there are none.
-        p_yes: P(yes | yes or no); None where it comes from the bare word or is unknown.
-        leftover: Probability of neither, where known.
-        cut_short: The reply ended at its length limit before a word of the answer.
-    """
-
-    reply: Reply
-    source: str = "word"
-    text: str = ""
-    p_yes: float | None = None
-    leftover: float | None = None
-    cut_short: bool = False
 
 
 class _Alternative(BaseModel):
@@ -145,7 +183,7 @@ class _Message(BaseModel):
     tool_calls: Any = None
 
 
-class _Choice(BaseModel):
+class Choice(BaseModel):
     message: _Message
     finish_reason: str | None = None
     # Its shape is checked apart: broken probabilities must not cost a clear word.
@@ -153,7 +191,7 @@ class _Choice(BaseModel):
 
 
 class _Completion(BaseModel):
-    choices: list[_Choice] = Field(min_length=1)
+    choices: list[Choice] = Field(min_length=1)
     error: Any = None
 
 
@@ -167,6 +205,23 @@ def read_completion(body: str | bytes, question: str | None = None) -> Reading:
         body: What the server sent.
         question: What was asked, where that is known.
     """
+    readings = read_choices(body, question)
+    if len({reading.reply for reading in readings}) > 1:
+        said = " / ".join(reading.text for reading in readings)
+        return Reading(Reply.UNKNOWN, text=f"several answers: {said[:200]}")
+    return readings[0]
+
+
+def read_choices(body: str | bytes, question: str | None = None) -> list[Reading]:
+    """Read each choice of a reply by itself, as `read_completion` does; one at least."""
+    choices = choices_of(body)
+    if isinstance(choices, Reading):
+        return [choices]
+    return [_read_choice(choice, question) for choice in choices]
+
+
+def choices_of(body: str | bytes) -> list[Choice] | Reading:
+    """The choices of a reply, or why there are none."""
     try:
         completion = _Completion.model_validate_json(body)
     except (ValidationError, ValueError, RecursionError):
@@ -176,14 +231,10 @@ def read_completion(body: str | bytes, question: str | None = None) -> Reading:
         return Reading(
             Reply.UNKNOWN, text=f"the server reports an error: {completion.error!s:.200}"
         )
-    readings = [_read_choice(choice, question) for choice in completion.choices[:_MOST_CHOICES]]
-    if len({reading.reply for reading in readings}) > 1:
-        said = " / ".join(reading.text for reading in readings)
-        return Reading(Reply.UNKNOWN, text=f"several answers: {said[:200]}")
-    return readings[0]
+    return completion.choices[:_MOST_CHOICES]
 
 
-def _read_choice(choice: _Choice, question: str | None) -> Reading:
+def _read_choice(choice: Choice, question: str | None) -> Reading:
     message, ended = choice.message, (choice.finish_reason or "stop").lower()
     said, cut = message.content or "", ended == "length"
     if len(said) > _LONGEST:
@@ -192,7 +243,7 @@ def _read_choice(choice: _Choice, question: str | None) -> Reading:
         return Reading(Reply.UNKNOWN, text=f"refused: {message.refusal[:200]}")
     if not said.strip():
         return Reading(Reply.UNKNOWN, text="cut short" if cut else "empty reply", cut_short=cut)
-    if not cut and ended not in _ENDED_BY_ITSELF:
+    if not cut and ended not in ENDED_BY_ITSELF:
         return Reading(Reply.UNKNOWN, text=f"ended by {ended[:40]!r}: {said}")
     if message.tool_calls or message.role not in (None, "assistant"):
         return Reading(Reply.UNKNOWN, text=f"not said by the model as an answer: {said}")
@@ -200,7 +251,7 @@ def _read_choice(choice: _Choice, question: str | None) -> Reading:
     if word is Reply.UNKNOWN:
         cut = cut and (still_thinking(said) or read_words(said, question) is not Reply.UNKNOWN)
         return Reading(word, text=said, cut_short=cut)
-    return weighed(word, said, _tokens(choice.logprobs))
+    return weighed(word, said, tokens_of(choice.logprobs))
 
 
 def weighed(word: Reply, said: str, tokens: Sequence[Token]) -> Reading:
@@ -222,7 +273,7 @@ def weighed(word: Reply, said: str, tokens: Sequence[Token]) -> Reading:
     return Reading(word, "logprobs", said, p_yes=p_yes, leftover=found.leftover)
 
 
-def _tokens(logprobs: Any) -> list[Token]:
+def tokens_of(logprobs: Any) -> list[Token]:
     try:
         content = _Logprobs.model_validate(logprobs).content or []
     except ValidationError:

@@ -5,52 +5,39 @@ import hashlib
 import importlib.util
 import os
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.addresses import checked_address
-from tpvqa.chance import chance
-from tpvqa.errors import AnswerError, MissingExtraError, PluginError
+from tpvqa.errors import AnswerError, BudgetError, MissingExtraError, PluginError
 from tpvqa.observation import Frame, Observation
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
-from tpvqa.vlm.capabilities import NeedsPictures
+from tpvqa.vlm.capabilities import NeedsPictures, SeesBefore
 from tpvqa.vlm.chat_completions import (
-    INSTRUCTION,
     Dialect,
-    Reading,
-    complaint,
-    messages,
+    Inquiry,
+    read_choices,
     read_completion,
-    refuses_form,
 )
-from tpvqa.vlm.connection import Connection
 from tpvqa.vlm.pictures import grey_frame
-from tpvqa.vlm.server_text import ServerText
+from tpvqa.vlm.prompt import load_prompt, shipped_prompt
+from tpvqa.vlm.reading import Reading
+from tpvqa.vlm.sampled import frequency
+from tpvqa.vlm.sent_pictures import LONGEST, SentPictures
+from tpvqa.vlm.server import Retry, Server
+from tpvqa.vlm.timed_reading import Key, TimedReading, answer_from, key_of, pause_before
+from tpvqa.vlm.together import read_together
+from tpvqa.vlm.usage import Budget, Usage, usage_told
 
 if TYPE_CHECKING:
-    from openai import APIStatusError, AsyncOpenAI
-
-_LONGEST_PAUSE = 8.0
+    from openai import AsyncOpenAI
 
 
-@dataclass(frozen=True, slots=True)
-class _TimedReading:
-    reading: Reading
-    seconds: float
-    unreachable: bool = False
-    final: bool = True  # a failure may pass; a reading stays
-
-
-class _Retry(Exception):  # noqa: N818 — a request to try again, not an error
-    def __init__(self, why: str, *, pause: float | None = None, unreachable: bool = False):
-        super().__init__(why)
-        self.why, self.pause, self.unreachable = why, pause, unreachable
-
-
-class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
+class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
     """Asks a server with the pictures and one question a request, several at a time.
 
     P(yes) comes from the logprobs of the first answer token, P(yes) = yes / (yes + no) summed
@@ -72,7 +59,8 @@ class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
         request_timeout: Seconds for one request before it is tried again.
         retries: How often a request is repeated after 408, 409, 429, 5xx, a broken connection
             or a timeout.
-        instruction: What is said after each question.
+        together: As all that follow: the settings of that name in `config.parts.VLMConfig` and
+            `config.model.Limits`.
 
     Raises:
         MissingExtraError: The `openai` package is not installed.
@@ -88,7 +76,17 @@ class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
         deadline: float = 60.0,
         request_timeout: float = 30.0,
         retries: int = 3,
-        instruction: str = INSTRUCTION,
+        together: bool = False,
+        samples: int = 1,
+        before_after: bool = False,
+        picture_size: int = LONGEST,
+        picture_quality: str | None = None,
+        prompt: str | None = None,
+        max_requests: int | None = None,
+        max_tokens_spent: int | None = None,
+        max_cost: float | None = None,
+        price_prompt: float | None = None,
+        price_completion: float | None = None,
     ) -> None:
         if importlib.util.find_spec("openai") is None:
             raise MissingExtraError("openai", "openai", f"The VLM 'openai:{model}'")
@@ -99,28 +97,77 @@ class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
                 checked_address(self.base_url)
             except ValueError as error:
                 raise AnswerError(f"openai:{model}: {error}.") from None
-        self._concurrency, self._deadline = concurrency, deadline
-        self._request_timeout, self._retries = request_timeout, retries
-        self._instruction = instruction
+        self._concurrency, self._deadline, self._retries = concurrency, deadline, retries
+        self.together, self.samples, self.before_after = together, samples, before_after
+        self._prompt = shipped_prompt() if prompt is None else load_prompt(Path(prompt))
+        self._sent = SentPictures(picture_size, picture_quality)
+        given = price_prompt is not None or price_completion is not None
+        prices = (price_prompt or 0.0, price_completion or 0.0) if given else None
+        self.budget = Budget(
+            requests=max_requests, tokens=max_tokens_spent, cost=max_cost, prices=prices
+        )
+        self._sampling = False  # once the server turned out to give no logprobs
         self._dialect = Dialect()
-        self._text = ServerText("")
-        self._connection: Connection | None = None
+        self._server = Server(model, self.base_url, request_timeout)
         self._looked_at: tuple[object, ...] = ()
-        self._known: dict[str, _TimedReading] = {}
+        self._known: dict[Key, TimedReading] = {}
 
     @classmethod
-    def from_spec(cls, arguments: str, *, base_url: str | None = None) -> "OpenAICompatibleVLM":
+    def from_spec(
+        cls,
+        arguments: str,
+        *,
+        base_url: str | None = None,
+        together: bool = False,
+        samples: int = 1,
+        before_after: bool = False,
+        picture_size: int = LONGEST,
+        picture_quality: str | None = None,
+        prompt: str | None = None,
+        max_requests: int | None = None,
+        max_tokens_spent: int | None = None,
+        max_cost: float | None = None,
+        price_prompt: float | None = None,
+        price_completion: float | None = None,
+    ) -> "OpenAICompatibleVLM":
         """Make it from the model's name, which may have colons itself.
 
         Raises:
             PluginError: No model is named.
+            PromptError: The prompt's file is wrong.
         """
+        options = {key: value for key, value in locals().items() if key not in ("cls", "arguments")}
         if not arguments:
-            raise PluginError(
-                "'openai' does not say which model. Write openai:MODEL, and --base-url for a "
-                "server of your own."
-            )
-        return cls(arguments, base_url=base_url)
+            said = "Write openai:MODEL, and --base-url for a server of your own."
+            raise PluginError(f"'openai' does not say which model. {said}")
+        return cls(arguments, **options)
+
+    @property
+    def parameters(self) -> dict[str, str]:
+        """All that an answer depends on besides pictures and question."""
+        found = {
+            "model": self.model,
+            "prompt": self._prompt.digest,
+            "picture_size": self._sent.longest,
+            "picture_quality": self._sent.quality,
+            "samples": self.samples,
+            "together": self.together,
+            "before_after": self.before_after,
+        }
+        return {name: str(value) for name, value in found.items()}
+
+    @property
+    def usage(self) -> Usage:
+        """What was spent so far."""
+        return self.budget.spent
+
+    def snapshot(self) -> dict[str, Any]:
+        """What was spent, so that a budget holds when the trial is gone on with."""
+        return {"spent": asdict(self.budget.spent)}
+
+    def restore(self, snapshot: Mapping[str, Any]) -> None:
+        """Count what was spent before, too."""
+        self.budget.spent += Usage.of(snapshot["spent"])
 
     @property
     def name(self) -> str:
@@ -136,19 +183,44 @@ class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
         """
         frames = tuple(observation.frames.values())
         if not frames:
-            raise AnswerError(
-                f"{self.name} looks at pictures, and this world shows none. Choose a world with "
-                "pictures, or a noise model such as oracle:0.9."
-            )
-        looked_at = (observation.look, *(hashlib.sha256(frame.data).digest() for frame in frames))
+            said = "Choose a world with pictures, or a noise model such as oracle:0.9."
+            raise AnswerError(f"{self.name} looks at pictures, and this world shows none. {said}")
+        earlier = observation.before if self.before_after else None
+        before = () if earlier is None else tuple(earlier.frames.values())
+        data = (hashlib.sha256(frame.data).digest() for frame in (*before, *frames))
+        looked_at = (observation.look, len(before), *data)
         if looked_at != self._looked_at:
             self._looked_at, self._known = looked_at, {}
-        asked = dict.fromkeys(question.text for question in questions)
-        missing = [text for text in asked if text not in self._known]
-        outcomes = self._ask_all(frames, missing)
-        now = self._known | dict(zip(missing, outcomes, strict=True))
-        self._known = {text: outcome for text, outcome in now.items() if outcome.final}
-        return [_answer(question, now[question.text]) for question in questions]
+        keys = [key_of(each, compares=bool(before)) for each in questions]
+        missing = [key for key in dict.fromkeys(keys) if key not in self._known]
+        now = self._known | self._ask_missing(missing, frames, before)
+        self._known = {key: outcome for key, outcome in now.items() if outcome.final}
+        return [answer_from(q, now[key]) for q, key in zip(questions, keys, strict=True)]
+
+    def _ask_missing(
+        self, missing: Sequence["Key"], frames: tuple[Frame, ...], before: tuple[Frame, ...]
+    ) -> dict["Key", TimedReading]:
+        """Put questions into requests: each its own, or all that are shown the same pictures."""
+        frames, before = tuple(map(self._sent, frames)), tuple(map(self._sent, before))
+        groups: list[list[Key]] = [[key] for key in missing]
+        if self.together:
+            groups = [[key for key in missing if key[1] is kind] for kind in (False, True)]
+        groups = [group for group in groups if group]
+        asked = [
+            Inquiry(
+                tuple(text for text, _ in group),
+                frames,
+                before if group[0][1] else (),
+                self.together,
+            )
+            for group in groups
+        ]
+        outcomes = self._ask_all(asked)
+        return {
+            key: each
+            for group, found in zip(groups, outcomes, strict=True)
+            for key, each in zip(group, found, strict=True)
+        }
 
     def check(self) -> None:
         """Ask one question about a grey picture, whatever the answer.
@@ -156,119 +228,95 @@ class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
         Raises:
             AnswerError: As `ask` does.
         """
-        self._ask_all((grey_frame(),), ("Is this picture grey?",))
+        self._ask_all([Inquiry(("Is this picture grey?",), (grey_frame(),), (), self.together)])
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
-        if self._connection is not None:
-            self._connection.close()
+        self._server.close()
 
-    def _connect(self) -> Connection:
-        if self._connection is None or not self._connection.alive:
-            import openai
-
-            from tpvqa.vlm.http_client import bounded_client
-
-            key = os.environ.get("OPENAI_API_KEY", "").strip()
-            if not key and self.base_url is None:
-                raise AnswerError(
-                    "OpenAI needs a key. Set the environment variable OPENAI_API_KEY, or name a "
-                    "server of your own by --base-url."
-                )
-            if not key.isascii():
-                raise AnswerError("OPENAI_API_KEY has characters that no key has. Set it again.")
-            self._text = ServerText(key)
-            try:
-                client = openai.AsyncOpenAI(
-                    api_key=key or "none-needed",
-                    base_url=self.base_url,
-                    max_retries=0,
-                    http_client=bounded_client(),
-                )
-            except (openai.OpenAIError, ValueError) as error:
-                raise AnswerError(f"{self._where()} cannot be asked: {error}") from error
-            self._connection = Connection(client)
-        return self._connection
-
-    def _ask_all(self, frames: Sequence[Frame], texts: Sequence[str]) -> list[_TimedReading]:
+    def _ask_all(self, asked: Sequence[Inquiry]) -> list[list[TimedReading]]:
         """Ask; the one place that all that a server says comes out of."""
-        connection = self._connect()
+        connection = self._server.connect()
+        self.budget.see(len(asked))
         try:
-            outcomes = connection.run(self._ask_side_by_side, connection.client, frames, texts)
+            outcomes = connection.run(self._ask_side_by_side, connection.client, asked)
+        except BudgetError:
+            raise
         except AnswerError as error:
-            raise AnswerError(self._text(str(error))) from None
+            raise AnswerError(self._server.text(str(error))) from None
         except Exception as error:  # noqa: BLE001  its text may be the server's
-            why = self._text(f"{type(error).__name__}: {error}")
-            raise AnswerError(f"{self._where()} cannot be asked: {why}") from None
+            why = self._server.text(f"{type(error).__name__}: {error}")
+            raise AnswerError(f"{self._server.where()} cannot be asked: {why}") from None
         return [
-            replace(each, reading=replace(each.reading, text=self._text(each.reading.text)))
-            for each in outcomes
+            [
+                replace(
+                    each, reading=replace(each.reading, text=self._server.text(each.reading.text))
+                )
+                for each in found
+            ]
+            for found in outcomes
         ]
 
     async def _ask_side_by_side(
-        self, client: "AsyncOpenAI", frames: Sequence[Frame], texts: Sequence[str]
-    ) -> list[_TimedReading]:
-        turn = asyncio.Semaphore(self._concurrency)
+        self, client: "AsyncOpenAI", asked: Sequence[Inquiry]
+    ) -> list[list[TimedReading]]:
+        turn = asyncio.Semaphore(1 if self.budget.blind else self._concurrency)
         end = asyncio.get_running_loop().time() + self._deadline
 
-        async def one(text: str) -> _TimedReading:
+        async def one(inquiry: Inquiry) -> list[TimedReading]:
             started = time.monotonic()
-            failures: list[_Retry] = []
+            failures: list[Retry] = []
             try:
                 async with asyncio.timeout_at(end), turn:
                     started = time.monotonic()
-                    return await self._ask_with_retries(client, frames, text, failures, end)
+                    return await self._ask_with_retries(client, inquiry, failures, end)
             except TimeoutError:
                 why = f"late: nothing within {self._deadline:g} s"
                 if failures:
                     why += f"; before that {failures[-1].why}"
-                late = Reading(Reply.UNKNOWN, text=why)
-                return _TimedReading(late, time.monotonic() - started, final=False)
+            except BudgetError as spent:  # the rest of the step is answered
+                why = str(spent)
+            none = Reading(Reply.UNKNOWN, text=why)
+            late = TimedReading(none, time.monotonic() - started, final=False)
+            return [late] * len(inquiry.texts)
 
         try:
             async with asyncio.TaskGroup() as asking:
-                tasks = [asking.create_task(one(text)) for text in texts]
+                tasks = [asking.create_task(one(inquiry)) for inquiry in asked]
         except ExceptionGroup as group:  # what is raised in an `except*` stays in a group
             refused, other = group.split(AnswerError)
             if refused is None or other is not None:
                 raise
             raise refused.exceptions[0] from None
         outcomes = [task.result() for task in tasks]
-        if outcomes and all(outcome.unreachable for outcome in outcomes):
+        if outcomes and all(each.unreachable for found in outcomes for each in found):
             raise AnswerError(
-                f"{self._where()} cannot be reached ({outcomes[0].reading.text}). Is the server "
-                "running, and is the address right, with its path (usually /v1)?"
+                f"{self._server.where()} cannot be reached ({outcomes[0][0].reading.text}). Is "
+                "the server running, and is the address right, with its path (usually /v1)?"
             )
         return outcomes
 
     async def _ask_with_retries(
         self,
         client: "AsyncOpenAI",
-        frames: Sequence[Frame],
-        text: str,
-        failures: list[_Retry],
+        inquiry: Inquiry,
+        failures: list[Retry],
         end: float,
-    ) -> _TimedReading:
-        """Ask one question, again after failures that may pass.
-
-        Args:
-            client: The connection.
-            frames: The pictures.
-            text: The question.
-            failures: Grows by what failed, so that the reason is known where the time ends.
-            end: The deadline, by the loop's clock. No pause begins that would go beyond it.
-        """
+    ) -> list[TimedReading]:
+        """Ask, again after failures that may pass, which `failures` grows by; no pause begins that
+        would go beyond `end`, the deadline by the loop's clock."""
         started = time.monotonic()
         while True:
             try:
-                reading = await self._ask_as_understood(client, frames, text)
-                return _TimedReading(reading, time.monotonic() - started)
-            except _Retry as retry:
+                readings = await self._ask_well(client, inquiry)
+                seconds = time.monotonic() - started
+                return [TimedReading(reading, seconds) for reading in readings]
+            except Retry as retry:
                 failures.append(retry)
             last, times = failures[-1], len(failures)
             why = last.why if times == 1 else f"{last.why}, {times} times"
             if times <= self._retries:
-                pause = _pause(last, times - 1, text)
+                pause = pause_before(last, times - 1, inquiry.texts[0])
                 if asyncio.get_running_loop().time() + pause < end:
                     await asyncio.sleep(pause)
                     continue
@@ -276,23 +324,43 @@ class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
                     f"; asking again in {round(pause, 1):g} s would be later than the "
                     f"{self._deadline:g} s that all questions have"
                 )
-            return _TimedReading(
+            failed = TimedReading(
                 Reading(Reply.UNKNOWN, text=why),
                 time.monotonic() - started,
                 unreachable=last.unreachable,
                 final=False,
             )
+            return [failed] * len(inquiry.texts)
+
+    async def _ask_well(self, client: "AsyncOpenAI", inquiry: Inquiry) -> list[Reading]:
+        """Ask for the likeliest reply; where it comes without a probability, for samples."""
+        if not self._sampling:
+            (readings,) = (await self._ask_as_understood(client, inquiry, 0))[:1]
+            words = [each for each in readings if each.source == "word" and each.p_yes is None]
+            clear = any(each.reply is not Reply.UNKNOWN for each in words)
+            if self.samples == 1 or not clear or any(e.source == "logprobs" for e in readings):
+                return readings
+            self._sampling = True
+        drawn: list[list[Reading]] = []
+        while len(drawn) < self.samples:
+            drawn += await self._ask_as_understood(client, inquiry, self.samples - len(drawn))
+        drawn = drawn[: self.samples]
+        return [
+            frequency([each[at] for each in drawn], self.samples)
+            for at in range(len(inquiry.texts))
+        ]
 
     async def _ask_as_understood(
-        self, client: "AsyncOpenAI", frames: Sequence[Frame], text: str
-    ) -> Reading:
-        """Ask one question, finding out what the server understands."""
+        self, client: "AsyncOpenAI", inquiry: Inquiry, samples: int
+    ) -> list[list[Reading]]:
+        """Ask, finding out what the server understands; for each choice a reading a question."""
         dialect = self._dialect
         while True:
-            said = await self._request(client, frames, text, dialect)
-            if isinstance(said, Reading):
+            said = await self._request(client, inquiry, dialect, samples)
+            if isinstance(said, list):
                 self._dialect = dialect
-                longer = dialect.with_room_to_think() if said.cut_short else None
+                cut = any(reading.cut_short for readings in said for reading in readings)
+                longer = dialect.with_room_to_think() if cut else None
                 if longer is None:
                     return said
                 dialect = longer
@@ -302,95 +370,30 @@ class OpenAICompatibleVLM(NeedsPictures, PlainArguments):
                 next_dialect = dialect.bare()
             if next_dialect is None:
                 raise AnswerError(
-                    f"{self._where()} refuses to be asked: {said}. Does the model {self.model!r} "
-                    "take pictures?"
+                    f"{self._server.where()} refuses to be asked: {said}. Does the model "
+                    f"{self.model!r} take pictures?"
                 )
             dialect = next_dialect
 
     async def _request(
-        self, client: "AsyncOpenAI", frames: Sequence[Frame], text: str, dialect: Dialect
-    ) -> Reading | str:
+        self, client: "AsyncOpenAI", inquiry: Inquiry, dialect: Dialect, samples: int
+    ) -> list[list[Reading]] | str:
         """One request; what the server complains of where it refuses its form."""
-        import openai
-
-        from tpvqa.vlm.http_client import ReplyTooLargeError
-
-        parameters: dict[str, Any] = dialect.parameters()
+        self.budget.begin()
+        told = Usage(1)
         try:
-            async with asyncio.timeout(self._request_timeout):
-                response = await client.chat.completions.with_raw_response.create(
-                    model=self.model,
-                    messages=messages(frames, text, self._instruction),  # type: ignore[arg-type]
-                    timeout=self._request_timeout,
-                    **parameters,
-                )
-        except (TimeoutError, openai.APITimeoutError):
-            raise _Retry(f"late: nothing within {self._request_timeout:g} s") from None
-        except (openai.APIConnectionError, ReplyTooLargeError) as error:
-            for cause in (error, error.__cause__):
-                if isinstance(cause, ReplyTooLargeError):
-                    return Reading(Reply.UNKNOWN, text=f"garbled reply: {cause}")
-            why = str(error.__cause__ or error) or type(error.__cause__).__name__
-            raise _Retry(f"no connection: {why}", unreachable=True) from None
-        except openai.APIStatusError as error:
-            return self._refused(error)
-        if "html" in response.headers.get("content-type", ""):
-            raise AnswerError(
-                f"{self._where()} answers with a web page. Is the path right (usually /v1)?"
-            )
-        return read_completion(response.content, text)
-
-    def _refused(self, error: "APIStatusError") -> Reading | str:
-        status, parts = error.status_code, complaint(error.body)
-        said = ", ".join(parts.values()) or f"HTTP status {status}"
-        if any("content_" in value for key, value in parts.items() if key in ("code", "type")):
-            return Reading(Reply.UNKNOWN, text=f"refused: {said}")
-        if 300 <= status < 400:
-            there = error.response.headers.get("location", "elsewhere")
-            raise AnswerError(
-                f"{self._where()} sends requests on to {there[:200]}, and pictures are not sent to "
-                "another address than the one given. Give the right one by --base-url."
-            )
-        if refuses_form(status, said):
-            return said
-        if status in (401, 403):
-            raise AnswerError(
-                f"{self._where()} refuses the key (HTTP status {status}). Set the environment "
-                f"variable OPENAI_API_KEY to one that may use {self.model!r}."
-            )
-        if status == 404:
-            raise AnswerError(
-                f"{self._where()} has no model {self.model!r}, or not at this path, which "
-                f"usually ends with /v1: {said}"
-            )
-        if "insufficient_quota" in parts.values():
-            raise AnswerError(f"{self._where()}: the account has no credit left. {said}")
-        if status in (408, 409, 429) or status >= 500:
-            pause = error.response.headers.get("retry-after", "")
-            wanted = float(pause) if pause.replace(".", "", 1).isdecimal() else None
-            raise _Retry(f"HTTP status {status}: {said}", pause=wanted)
-        raise AnswerError(f"{self._where()} refuses to be asked (HTTP status {status}): {said}")
-
-    def _where(self) -> str:
-        return self.base_url or "OpenAI's server"
-
-
-def _pause(retry: _Retry, attempt: int, text: str) -> float:
-    """Seconds until the next attempt: what the server asked for, or twice as long each time."""
-    if retry.pause is not None:
-        return retry.pause
-    spread = 0.75 + 0.5 * chance(0, 0, "pause", text, attempt).random()
-    return float(min(_LONGEST_PAUSE, 0.5 * 2**attempt * spread))
-
-
-def _answer(question: Question, outcome: _TimedReading) -> Answer:
-    reading = outcome.reading
-    return Answer(
-        question=question,
-        reply=reading.reply,
-        p_yes=reading.p_yes,
-        source=reading.source,
-        text=reading.text,
-        leftover=reading.leftover,
-        seconds=outcome.seconds,
-    )
+            body = await self._server.send(client, inquiry, self._prompt, dialect, samples)
+            if isinstance(body, bytes):
+                told = usage_told(body)
+        finally:
+            self.budget.end(told)
+        if isinstance(body, str):
+            return body
+        count = len(inquiry.texts)
+        if isinstance(body, Reading):
+            return [[body] * count]
+        if inquiry.together:
+            return read_together(body, count)
+        if samples:
+            return [[each] for each in read_choices(body, inquiry.texts[0])]
+        return [[read_completion(body, inquiry.texts[0])]]

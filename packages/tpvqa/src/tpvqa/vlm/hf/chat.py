@@ -5,9 +5,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.errors import AnswerError
-from tpvqa.vlm.chat_completions import INSTRUCTION, Reading, prompt, weighed
+from tpvqa.vlm.chat_completions import weighed
 from tpvqa.vlm.hf.family import Asked, Loaded
 from tpvqa.vlm.hf.prefix import SHARING, last_logits
+from tpvqa.vlm.prompt import shipped_prompt
+from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.reply_shape import read_words
 from tpvqa.vlm.yes_no import Token, meaning
 
@@ -27,7 +29,6 @@ class Chat:
 
     Args:
         loaded: A model for images and text to text, with its processor.
-        instruction: What is said after each question.
 
     Raises:
         AnswerError: How the model is asked is not known, or it has no token for yes or for no.
@@ -36,8 +37,8 @@ class Chat:
     source = "logprobs"
     several = True
 
-    def __init__(self, loaded: Loaded, *, instruction: str = INSTRUCTION):
-        self._loaded, self._instruction = loaded, instruction
+    def __init__(self, loaded: Loaded):
+        self._loaded = loaded
         self._tokenizer = loaded.processor.tokenizer
         self._keeps = "logits_to_keep" in inspect.signature(loaded.model.forward).parameters
         if loaded.model.config.is_encoder_decoder:
@@ -153,9 +154,8 @@ class Chat:
         content: list[dict[str, Any]] = [
             {"type": "image", "image": picture} for picture in asked.pictures
         ]
-        content.append(
-            {"type": "text", "text": prompt(asked.text, self._instruction, len(asked.pictures))}
-        )
+        text = shipped_prompt().one(asked.text, pictures=len(asked.pictures), before=0)
+        content.append({"type": "text", "text": text})
         return [{"role": "user", "content": content}]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
-from tpvqa.vlm.chat_completions import Reading
+from tpvqa.vlm.reading import Reading
 
 if TYPE_CHECKING:
     import torch

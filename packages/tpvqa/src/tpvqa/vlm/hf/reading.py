@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 
 from tpvqa.vlm.answer import Reply
-from tpvqa.vlm.chat_completions import Reading
 from tpvqa.vlm.hf.family import Asked, Family
+from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.yes_no import YesNoMass
 
 MOST_LEFT = 0.5

@@ -13,7 +13,6 @@ from tpvqa.pictures import decoded
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer
 from tpvqa.vlm.capabilities import NeedsPictures
-from tpvqa.vlm.chat_completions import Reading
 from tpvqa.vlm.hf.device import AUTO
 from tpvqa.vlm.hf.failures import told_plainly
 from tpvqa.vlm.hf.family import Asked, Family
@@ -21,6 +20,7 @@ from tpvqa.vlm.hf.loading import family_of, load, see_installed
 from tpvqa.vlm.hf.quiet import quiet
 from tpvqa.vlm.hf.reading import read, together
 from tpvqa.vlm.pictures import grey_frame
+from tpvqa.vlm.reading import Reading
 
 if TYPE_CHECKING:
     from PIL import Image

@@ -68,7 +68,8 @@ class KeptVLM(StandsIn):
         trial: bytes | None,
         owned: bool = False,
     ):
-        self.file, self.use, self.inner, self.stands_for = file, use, inner, stands_for
+        self.file, self.use, self.stands_for = file, use, stands_for
+        self.inner: VLM | None = inner
         self._model, self._name, self._owned = model, name, owned
         self._trial, self._fixed = trial, is_deterministic(stands_for)
         self.given = self.asked = 0

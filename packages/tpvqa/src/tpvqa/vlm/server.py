@@ -1,0 +1,153 @@
+"""One request to a server: what it says, or why it says nothing."""
+
+import asyncio
+import os
+from typing import TYPE_CHECKING, Any
+
+from tpvqa.errors import AnswerError
+from tpvqa.vlm.answer import Reply
+from tpvqa.vlm.chat_completions import Dialect, Inquiry, complaint, messages, refuses_form
+from tpvqa.vlm.connection import Connection
+from tpvqa.vlm.prompt import Prompt
+from tpvqa.vlm.reading import Reading
+from tpvqa.vlm.server_text import ServerText
+
+if TYPE_CHECKING:
+    from openai import APIStatusError, AsyncOpenAI
+
+
+class Retry(Exception):  # noqa: N818 — a request to try again, not an error
+    def __init__(self, why: str, *, pause: float | None = None, unreachable: bool = False):
+        super().__init__(why)
+        self.why, self.pause, self.unreachable = why, pause, unreachable
+
+
+class Server:
+    """A server at an address, asked for one model.
+
+    Args:
+        model: As the server knows it.
+        base_url: The address; None for OpenAI's.
+        timeout: Seconds for one request.
+    """
+
+    def __init__(self, model: str, base_url: str | None, timeout: float):
+        self.model, self.base_url, self._request_timeout = model, base_url, timeout
+        self.text = ServerText("")
+        self._connection: Connection | None = None
+
+    def close(self) -> None:
+        """Close the connections. Can be called twice."""
+        if self._connection is not None:
+            self._connection.close()
+
+    def connect(self) -> Connection:
+        """The connection, made where there is none.
+
+        Raises:
+            AnswerError: There is no key, or the address cannot be used.
+        """
+        if self._connection is None or not self._connection.alive:
+            import openai
+
+            from tpvqa.vlm.http_client import bounded_client
+
+            key = os.environ.get("OPENAI_API_KEY", "").strip()
+            if not key and self.base_url is None:
+                raise AnswerError(
+                    "OpenAI needs a key. Set the environment variable OPENAI_API_KEY, or name a "
+                    "server of your own by --base-url."
+                )
+            if not key.isascii():
+                raise AnswerError("OPENAI_API_KEY has characters that no key has. Set it again.")
+            self.text = ServerText(key)
+            try:
+                client = openai.AsyncOpenAI(
+                    api_key=key or "none-needed",
+                    base_url=self.base_url,
+                    max_retries=0,
+                    http_client=bounded_client(),
+                )
+            except (openai.OpenAIError, ValueError) as error:
+                raise AnswerError(f"{self.where()} cannot be asked: {error}") from error
+            self._connection = Connection(client)
+        return self._connection
+
+    async def send(
+        self,
+        client: "AsyncOpenAI",
+        inquiry: Inquiry,
+        prompt: Prompt,
+        dialect: Dialect,
+        samples: int,
+    ) -> bytes | Reading | str:
+        """The body of a reply, an unknown answer, or what the server complains of.
+
+        Raises:
+            Retry: It may do better when asked again.
+            AnswerError: Asking again does not help.
+        """
+        import openai
+
+        from tpvqa.vlm.http_client import ReplyTooLargeError
+
+        count = len(inquiry.texts) if inquiry.together else 0
+        parameters: dict[str, Any] = dialect.parameters(count, samples)
+        try:
+            async with asyncio.timeout(self._request_timeout):
+                response = await client.chat.completions.with_raw_response.create(
+                    model=self.model,
+                    messages=messages(inquiry, prompt),  # type: ignore[arg-type]
+                    timeout=self._request_timeout,
+                    **parameters,
+                )
+        except (TimeoutError, openai.APITimeoutError):
+            raise Retry(f"late: nothing within {self._request_timeout:g} s") from None
+        except (openai.APIConnectionError, ReplyTooLargeError) as error:
+            for cause in (error, error.__cause__):
+                if isinstance(cause, ReplyTooLargeError):
+                    return Reading(Reply.UNKNOWN, text=f"garbled reply: {cause}")
+            why = str(error.__cause__ or error) or type(error.__cause__).__name__
+            raise Retry(f"no connection: {why}", unreachable=True) from None
+        except openai.APIStatusError as error:
+            return self._refused(error)
+        if "html" in response.headers.get("content-type", ""):
+            raise AnswerError(
+                f"{self.where()} answers with a web page. Is the path right (usually /v1)?"
+            )
+        return response.content
+
+    def _refused(self, error: "APIStatusError") -> Reading | str:
+        status, parts = error.status_code, complaint(error.body)
+        said = ", ".join(parts.values()) or f"HTTP status {status}"
+        if any("content_" in value for key, value in parts.items() if key in ("code", "type")):
+            return Reading(Reply.UNKNOWN, text=f"refused: {said}")
+        if 300 <= status < 400:
+            there = error.response.headers.get("location", "elsewhere")
+            raise AnswerError(
+                f"{self.where()} sends requests on to {there[:200]}, and pictures are not sent to "
+                "another address than the one given. Give the right one by --base-url."
+            )
+        if refuses_form(status, said):
+            return said
+        if status in (401, 403):
+            raise AnswerError(
+                f"{self.where()} refuses the key (HTTP status {status}). Set the environment "
+                f"variable OPENAI_API_KEY to one that may use {self.model!r}."
+            )
+        if status == 404:
+            raise AnswerError(
+                f"{self.where()} has no model {self.model!r}, or not at this path, which "
+                f"usually ends with /v1: {said}"
+            )
+        if "insufficient_quota" in parts.values():
+            raise AnswerError(f"{self.where()}: the account has no credit left. {said}")
+        if status in (408, 409, 429) or status >= 500:
+            pause = error.response.headers.get("retry-after", "")
+            wanted = float(pause) if pause.replace(".", "", 1).isdecimal() else None
+            raise Retry(f"HTTP status {status}: {said}", pause=wanted)
+        raise AnswerError(f"{self.where()} refuses to be asked (HTTP status {status}): {said}")
+
+    def where(self) -> str:
+        """The address, for messages."""
+        return self.base_url or "OpenAI's server"

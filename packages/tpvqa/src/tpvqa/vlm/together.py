@@ -1,0 +1,91 @@
+"""Answers to several questions in one reply: each read by itself, from one JSON object."""
+
+import json
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+from tpvqa.vlm.answer import Reply
+from tpvqa.vlm.chat_completions import ENDED_BY_ITSELF, Choice, choices_of, tokens_of
+from tpvqa.vlm.reading import Reading
+from tpvqa.vlm.reply_shape import unwrapped
+from tpvqa.vlm.yes_no import Token, mass, meaning
+
+
+def read_together(body: str | bytes, count: int) -> list[list[Reading]]:
+    """Read the body of a reply to so many questions.
+
+    An answer that is missing, doubled, or none of yes, no and unknown is *unknown* by itself; where
+    there is no JSON object at all, every answer is.
+
+    Returns:
+        For each choice the readings, in the order of the questions.
+    """
+    choices = choices_of(body)
+    if isinstance(choices, Reading):
+        return [[choices] * count]
+    return [_read(choice, count) for choice in choices]
+
+
+def _read(choice: Choice, count: int) -> list[Reading]:
+    message, ended = choice.message, (choice.finish_reason or "stop").lower()
+    said = message.content or ""
+
+    def none(why: str, *, cut: bool = False) -> list[Reading]:
+        return [Reading(Reply.UNKNOWN, text=why, cut_short=cut)] * count
+
+    if message.refusal:
+        return none(f"refused: {message.refusal[:200]}")
+    if ended == "length":
+        return none("cut short", cut=True)
+    if ended not in ENDED_BY_ITSELF or message.tool_calls:
+        return none(f"ended by {ended[:40]!r}: {said[:200]}")
+    if message.role not in (None, "assistant"):
+        return none(f"not said by the model as an answer: {said[:200]}")
+    try:
+        pairs = json.loads(unwrapped(said), object_pairs_hook=tuple)
+    except (ValueError, RecursionError):
+        return none(f"no JSON: {said[:200]}" if said.strip() else "empty reply")
+    if not isinstance(pairs, tuple):
+        return none(f"no JSON object: {said[:200]}")
+    times, told = Counter(key for key, _ in pairs), dict(pairs)
+    tokens = tokens_of(choice.logprobs)
+    return [
+        _one(f"q{at}", times[f"q{at}"], told.get(f"q{at}"), said, tokens)
+        for at in range(1, count + 1)
+    ]
+
+
+def _one(key: str, times: int, value: object, said: str, tokens: Sequence[Token]) -> Reading:
+    if times != 1:
+        return Reading(Reply.UNKNOWN, text="answered twice" if times else "not in the reply")
+    word = value.strip().lower() if isinstance(value, str) else ""
+    if word not in ("yes", "no"):
+        shown = json.dumps(value, default=str)[:200]
+        return Reading(Reply.UNKNOWN, text=shown if word == "unknown" else f"no answer: {shown}")
+    reading = Reading(Reply(word), text=word)
+    token = _token(key, said, tokens)
+    if token is None or meaning(token.text) != word:
+        return reading
+    found = mass(token.alternatives.items())
+    if found.p_yes is None or found.leftover > 0.5 or (found.p_yes > 0.5) != (word == "yes"):
+        why = f"its tokens say otherwise: {word}"
+        return Reading(Reply.UNKNOWN, "logprobs", why, leftover=found.leftover)
+    return replace(reading, source="logprobs", p_yes=found.p_yes, leftover=found.leftover)
+
+
+def _token(key: str, said: str, tokens: Sequence[Token]) -> Token | None:
+    """The token that begins a key's answer; None where tokens and text do not fit together."""
+    if "".join(token.text for token in tokens) != said:
+        return None
+    found = re.findall(rf'"{key}"\s*:\s*"', said)
+    place = re.search(rf'"{key}"\s*:\s*"\s*', said)
+    if place is None or len(found) != 1:
+        return None
+    start = 0
+    for token in tokens:
+        if start <= place.end() < start + len(token.text):
+            return token
+        start += len(token.text)
+    return None
