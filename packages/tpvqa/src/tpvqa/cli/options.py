@@ -10,13 +10,15 @@ import typer
 
 from tpvqa.config.layers import Key, Layer, Setting, combined, file_layer, settings
 from tpvqa.config.model import TaskConfig, TrialConfig
+from tpvqa.config.parts import VLMConfig
 from tpvqa.errors import TpvqaError
 from tpvqa.plugins import Kind, names
 
 _TYPES = {"int | None": int, "float | None": float, "str | None": str}
-_VLMS = ("base_url", "device", "dtype", "batch", "cache", "record", "replay")
+_OF_TRIALS = ("spec", "before_after")
 ANSWERING: tuple[Key, ...] = (
-    *(("vlm", name) for name in _VLMS),
+    *(("vlm", name) for name in VLMConfig.model_fields if name not in _OF_TRIALS),
+    *(("limits", name) for name in ("requests", "tokens", "cost")),
     ("options",),
 )
 """Settings of who answers that commands without a trial have, too."""

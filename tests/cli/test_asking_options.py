@@ -1,0 +1,72 @@
+"""The ways of asking a server, in whole trials; none is given what was recorded of another."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.cli.conftest import Run
+from tests.vlm.chat_server import ChatServer
+
+WAYS = {
+    "singly": (),
+    "together": ("--together",),
+    "samples": ("--samples", "3"),
+    "before and after": ("--before-after",),
+    "small": ("--picture-size", "64"),
+    "prompt": ("--prompt", "prompt.yaml"),
+}
+
+
+@pytest.fixture(autouse=True)
+def environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("OPENAI_API_KEY", raising=False)
+    monkeypatch.setenv("NO_PROXY", "127.0.0.1")
+
+
+def in_words(_: Sequence[bytes], text: str) -> str:
+    """Yes to everything, without probabilities, as one word or as the JSON that is asked for."""
+    every = {f"q{number}": "yes" for number in range(1, 10)}
+    return json.dumps(every) if text.startswith("q1:") else "Yes"
+
+
+def test_ways_of_asking_run_trials_and_share_no_recorded_answer(tpvqa: Run) -> None:
+    Path("prompt.yaml").write_text('question: "Look. {question}"\n')
+    with ChatServer(in_words, logprobs=False) as server:
+        vlm = ("--vlm", "openai:m", "--base-url", server.url, "--monitor", "tpvqa")
+        run = ("run", "eat_apple", *vlm, "--seed", "1", "--max-actions", "3", "--json")
+        asked, pictures, trials = {}, {}, {}
+        for name, way in WAYS.items():
+            server.requests.clear()
+            code, out, err = tpvqa(*run, *way, "--out", f"{name} 1", "--cache", "answers.db")
+            assert code != 2, err
+            asked[name], trials[name] = len(server.requests), json.loads(out)
+            pictures[name] = max(len(each.pictures) for each in server.requests)
+            seeing = 1 + 3 * (name == "samples")  # whether the server is there
+            assert trials[name]["usage"]["requests"] == asked[name] - seeing
+        for name, way in WAYS.items():
+            server.requests.clear()
+            code, out, err = tpvqa(*run, *way, "--out", f"{name} 2", "--cache", "answers.db")
+            again = json.loads(out)
+            assert len(server.requests) <= 1 + 3 * (name == "samples"), name
+            assert again["questions"] == trials[name]["questions"] > 0
+    assert all(asked[name] > 1 for name in WAYS)
+    assert asked["together"] < asked["singly"] < asked["samples"]
+    assert pictures["before and after"] == 2 * pictures["singly"]
+
+
+def test_a_single_question_is_asked_in_the_same_ways(tpvqa: Run) -> None:
+    picture = Path("seen.png")
+    Image.effect_noise((64, 64), 60).save(picture)
+    with ChatServer(in_words, logprobs=False) as server:
+        vlm = ("--vlm", "openai:m", "--base-url", server.url)
+        texts = ("Is it open?", "Is it shut?")
+        code, out, err = tpvqa("ask", picture, *texts, *vlm, "--together", "--json")
+        assert code == 0, err
+        assert [each["reply"] for each in json.loads(out)["answers"]] == ["yes", "yes"]
+        assert sum("q2" in each.question for each in server.requests) == 1
+        code, out, err = tpvqa("ask", picture, *texts, *vlm, "--max-requests", "1")
+    assert code == 2
+    assert "--max-requests" in " ".join(err.split())
