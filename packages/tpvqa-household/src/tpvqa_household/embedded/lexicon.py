@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cached_property
 
+from tpvqa_household.embedded.rewording import rewordings
+
 _FILLERS = frozenset({"is", "are", "there", "it", "to", "here", "now", "of", "please"})
 """Words that a question may have or lack and still be the same question."""
 
@@ -36,8 +38,8 @@ class Lexicon:
     """The closed vocabulary, and the questions that training asked.
 
     A question is known if training asked it up to letter case, punctuation, articles and words
-    such as "here" or "please". Anything else is unknown, also where every word is known: the
-    network would only guess.
+    such as "here" or "please", or in words that simply mean the same (`rewording`). Anything else
+    is unknown, also where every word is known: the network would only guess.
 
     Attributes:
         vocabulary: The words; token 0 is padding, word i is token i + 1.
@@ -81,10 +83,18 @@ class Lexicon:
             found[spoken] = spoken
         return found
 
+    def _meant(self, spoken: tuple[str, ...]) -> tuple[str, ...] | None:
+        """The known question that is meant; None where there is none."""
+        for each in (spoken, *(tuple(other.split()) for other in rewordings(" ".join(spoken)))):
+            known = self._by_content.get(each) or self._by_content.get(_content(each))
+            if known is not None:
+                return known
+        return None
+
     def tokens(self, question: str) -> tuple[int, ...] | Unknown:
         """The tokens of the known question that a question amounts to."""
         spoken = words(question)
-        known = self._by_content.get(spoken) or self._by_content.get(_content(spoken))
+        known = self._meant(spoken)
         if known is not None:
             return tuple(self._token[word] for word in known)
         foreign = [word for word in spoken if word not in self._token and word not in _FILLERS]
