@@ -1,8 +1,8 @@
 """What the network finds on real photographs: `python benchmarks/real_photographs.py FOLDER`.
 
-The folder holds photographs and a `labels.csv`: `file`, `split`, `group`, and a column for each fact,
-1 where it is true, 0 where it is not, empty where nobody can say. Each photograph is asked about each
-fact in the words of the household's questions file. Nothing is learned from them.
+The folder holds photographs and a `labels.csv`: `file`, `split`, `group`, and a column for each
+fact, 1 where it is true, 0 where it is not, empty where nobody can say. Each photograph is asked
+about each fact in the words of the household's questions file. Nothing is learned from them.
 """
 
 import argparse

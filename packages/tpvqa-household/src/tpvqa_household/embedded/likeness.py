@@ -1,4 +1,4 @@
-"""How far a picture lies from the pictures of a kind, by the mean and spread of their features."""
+"""Which kind of picture a picture is, by the mean and spread of its features."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -63,6 +63,33 @@ class Likeness:
             raise ValueError(f"the arrays of {name!r} do not fit each other")
         rest, edge = float(arrays[f"{name}.rest"]), float(arrays[f"{name}.edge"])
         return cls(mean, scale, axes, variances, rest, edge)
+
+
+@dataclass(frozen=True)
+class Divide:
+    """A plane between two kinds of pictures.
+
+    Attributes:
+        weights: Of n features.
+        bias: Above 0 lies the second kind.
+    """
+
+    weights: Floats
+    bias: float
+
+    def beyond(self, features: Floats) -> NDArray[np.float64]:
+        """How far on the second kind's side pictures lie, m × n."""
+        found: NDArray[np.float64] = features.astype(np.float64) @ self.weights + self.bias
+        return found
+
+    def arrays(self, name: str) -> dict[str, Floats]:
+        """As `Likeness.arrays`."""
+        return {f"{name}.weights": self.weights, f"{name}.bias": np.asarray(self.bias, np.float32)}
+
+    @classmethod
+    def of(cls, arrays: Mapping[str, Floats], name: str) -> "Divide":
+        """As `Likeness.of`."""
+        return cls(arrays[f"{name}.weights"], float(arrays[f"{name}.bias"]))
 
 
 def summary(maps: Floats) -> Floats:

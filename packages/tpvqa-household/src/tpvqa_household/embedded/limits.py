@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.errors import AnswerError
-from tpvqa_household.embedded.likeness import Floats, Likeness, summary
+from tpvqa_household.embedded.likeness import Divide, Floats, Likeness, summary
 from tpvqa_household.embedded.weights import LIMITS, Weights
 
 UNLIKE = "unlike the pictures it knows"
@@ -46,6 +46,8 @@ class Limits:
 
     Attributes:
         known: The pictures it was taught with, by `summary` of their maps.
+        photographic: Photographs beyond it, the other side being the pictures that it was taught
+            with: real homes are near to them.
         natural: Photographs, by their texture in the frozen branch.
         features: Heads × features, weights.
         classes: Heads × classes, weights.
@@ -56,6 +58,7 @@ class Limits:
     """
 
     known: Likeness
+    photographic: Divide
     natural: Likeness
     features: Floats
     classes: Floats
@@ -66,7 +69,9 @@ class Limits:
 
     def knows(self, maps: Floats) -> bool:
         """Whether a picture, by its map, is like those that the network was taught with."""
-        return bool(self.known.distance(summary(maps)[None])[0] <= 1.0)
+        features = summary(maps)[None]
+        near = self.known.distance(features)[0] <= 1.0
+        return bool(near and self.photographic.beyond(features)[0] <= 0.0)
 
     def odds(self, seen: Seen) -> "Odds":
         """What the heads say about a picture that is not known."""
@@ -113,6 +118,7 @@ class Limits:
             raise ValueError("the heads do not fit each other")
         return cls(
             Likeness.of(arrays, "known"),
+            Divide.of(arrays, "photographic"),
             Likeness.of(arrays, "natural"),
             features,
             classes,

@@ -144,6 +144,14 @@ class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
             for question, tokens in zip(questions, found, strict=True)
         ]
 
+    def knows(self, frame: Frame) -> bool:
+        """Whether a picture is like those that it was taught with; always, without limits.
+
+        Raises:
+            AnswerError: The weights are missing or damaged, or the picture cannot be read.
+        """
+        return self._view(frame).odds is None
+
     def leanings(self, frame: Frame, questions: Sequence[Question]) -> list[float | None]:
         """P(yes) of one picture, however unlike and unsure it is: for measuring, not for acting.
 

@@ -1,11 +1,19 @@
-"""Fitting where a kind of pictures ends."""
+"""Fitting where a kind of pictures ends, and what divides two kinds."""
 
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa_household.embedded.likeness import Floats, Likeness
+from tpvqa.errors import MissingExtraError
+from tpvqa_household import DISTRIBUTION
+from tpvqa_household.embedded.likeness import Divide, Floats, Likeness
+
+EDGE_FROM = 5
+"""Of the held-out parts, counted from the recipe's `validation_from`, those from this one on set
+the edge; those before it only measure."""
+_STRENGTH = 0.01
+"""Inverse strength of a divide's regularisation, for standardised features."""
 
 
 def fitted(features: Floats, *, directions: int) -> Likeness:
@@ -36,3 +44,29 @@ def ending(likeness: Likeness, distances: NDArray[np.float64], share: float) -> 
         share: Of them, how many are beyond the edge.
     """
     return replace(likeness, edge=float(np.quantile(distances, 1 - share)))
+
+
+def divide(first: Floats, second: Floats, held_back: Floats, share: float) -> Divide:
+    """A plane between two kinds of pictures, which weigh the same, by logistic regression.
+
+    Args:
+        first: Features of the first kind, n × m.
+        second: Of the second kind.
+        held_back: Of the first kind, that set where the plane lies.
+        share: How many of them lie on the second kind's side.
+
+    Raises:
+        MissingExtraError: scikit-learn is not installed.
+    """
+    try:
+        from sklearn.linear_model import LogisticRegression
+    except ImportError as error:
+        raise MissingExtraError(
+            "scikit-learn", "train", "Fitting limits", distribution=DISTRIBUTION
+        ) from error
+    mean, scale = first.mean(0), first.std(0) + 1e-6
+    x = (np.concatenate([first, second]) - mean) / scale
+    kind = np.repeat([0, 1], [len(first), len(second)])
+    model = LogisticRegression(C=_STRENGTH, class_weight="balanced", max_iter=3000).fit(x, kind)
+    found = Divide((model.coef_[0] / scale).astype(np.float32), 0.0)
+    return replace(found, bias=-float(np.quantile(found.beyond(held_back), 1 - share)))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from tpvqa.chance import chance_array
 from tpvqa.errors import TpvqaError
 from tpvqa_household.embedded.lexicon import Unknown
-from tpvqa_household.embedded.likeness import Floats, Likeness, summary
+from tpvqa_household.embedded.likeness import Divide, Floats, Likeness, summary
 from tpvqa_household.embedded.limits import described
 from tpvqa_household.embedded.sessions import Sessions
 from tpvqa_household.embedded.weights import DESCRIPTION, FROZEN, LIMITS, SHIPPED, Weights
@@ -30,7 +30,7 @@ from tpvqa_household.training.graphs import written
 from tpvqa_household.training.imagenet import ImageNetBranch, Seen
 from tpvqa_household.training.labelled import COLUMNS, Labelled, read_labelled
 from tpvqa_household.training.labels import Label
-from tpvqa_household.training.likeness_fit import ending, fitted
+from tpvqa_household.training.likeness_fit import EDGE_FROM, divide, ending, fitted
 from tpvqa_household.training.network import SIDE
 from tpvqa_household.training.photo_heads import Heads, Taught, taught
 from tpvqa_household.training.recipe import Recipe
@@ -44,8 +44,6 @@ UNNATURAL = 0.05
 """Share of the photographs held back that are taken for no photographs."""
 SURE = 0.9
 """The probability from which on a head is sure."""
-EDGE_FROM = 5
-"""Held-out parts of the first kept seed plus this and above set the edge; the others measure it."""
 _TAUGHT = range(20)
 _DIRECTIONS, _TEXTURES = 64, 16
 _VARIANTS = 4
@@ -73,21 +71,30 @@ def _summaries(sessions: Sessions, pixels: NDArray[np.uint8]) -> Floats:
     return np.stack([summary(sessions.encode(picture)) for picture in pixels])
 
 
-def known_pictures(sessions: Sessions, known: Pictures, other: Pictures, seed: int) -> Likeness:
+def known_pictures(
+    sessions: Sessions, known: Pictures, other: Pictures, photographs: Labelled, seed: int
+) -> tuple[Likeness, Divide]:
     """Where the pictures that the network knows end.
 
     Args:
         sessions: The network.
         known: Kitchens of the training.
         other: Kitchens that neither taught nor will measure, with meshes never seen.
+        photographs: What lies beyond.
         seed: Decides how pictures are made worse.
+
+    Returns:
+        The likeness to what it knows, and a plane between that and photographs. Each takes half of
+        `FALSE_ALARMS`.
     """
-    taught_with = known.pixels(np.arange(len(known)))
-    likeness = fitted(
-        _summaries(sessions, _both(taught_with, seed, "known")), directions=_DIRECTIONS
+    kitchens = _summaries(sessions, _both(known.pixels(np.arange(len(known))), seed, "known"))
+    held_out = _summaries(sessions, _both(other.pixels(np.arange(len(other))), seed, "held out"))
+    beyond = _summaries(sessions, _both(photographs.pixels, seed, "photographs"))
+    likeness, share = fitted(kitchens, directions=_DIRECTIONS), FALSE_ALARMS / 2
+    return (
+        ending(likeness, likeness.distance(held_out), share),
+        divide(kitchens, beyond, held_out, share),
     )
-    held_out = _both(other.pixels(np.arange(len(other))), seed, "held out")
-    return ending(likeness, likeness.distance(_summaries(sessions, held_out)), FALSE_ALARMS)
 
 
 def natural_pictures(texture: Floats, groups: NDArray[np.str_]) -> Likeness:
@@ -196,8 +203,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         fit, seen = heads(branch, photographs, known, chosen.seed)
         print(_report(fit, photographs), flush=True)
         sessions = Sessions(weights, threads=chosen.threads)
+        likeness, plane = known_pictures(sessions, known, other, photographs, chosen.seed)
         arrays = {
-            **known_pictures(sessions, known, other, chosen.seed).arrays("known"),
+            **likeness.arrays("known"),
+            **plane.arrays("photographic"),
             **natural_pictures(seen.texture, photographs.groups).arrays("natural"),
             "heads.features": fit.features,
             "heads.classes": fit.classes,
