@@ -20,7 +20,7 @@ def fitted(features: Floats, *, directions: int) -> Likeness:
     """The likeness to pictures whose features are given, n × m, with the edge still at 1."""
     mean, scale = features.mean(0), features.std(0) + 1e-6
     away = ((features - mean) / scale).astype(np.float64)
-    variances, axes = np.linalg.eigh(np.cov(away.T))
+    variances, axes = np.linalg.eigh(np.atleast_2d(np.cov(away.T)))
     kept, axes = variances[::-1][:directions], axes[:, ::-1][:, :directions]
     # The sign of an axis says nothing; fixed, so that the same pictures give the same file.
     axes = axes * np.where(axes[np.abs(axes).argmax(0), np.arange(axes.shape[1])] < 0, -1, 1)

@@ -6,7 +6,7 @@ that the odds are those of a thing that is there as often as not.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,12 +35,12 @@ class Taught:
     Attributes:
         seen: By the frozen branch; of photographs several variants, one after the other.
         labels: n × heads: 1, 0, -1 for not known.
-        groups: Of n photographs; None for kitchens.
+        groups: Of n photographs; none for kitchens.
     """
 
     seen: Seen
     labels: NDArray[np.int64]
-    groups: NDArray[np.str_] | None = None
+    groups: NDArray[np.str_] = field(default_factory=lambda: np.array([], np.str_))
 
 
 @dataclass(frozen=True)
@@ -169,7 +169,7 @@ class _Head:
     def held_back(self) -> NDArray[np.float64]:
         """Log odds of each photograph from heads that its group did not teach."""
         found = np.full(len(self._labels), np.nan)
-        groups = np.unique(self._groups[self._labels >= 0]) if self._groups is not None else []
+        groups = np.unique(self._groups[self._labels >= 0])
         for fold in range(_FOLDS):
             out = np.isin(self._groups, groups[fold::_FOLDS]) & (self._labels >= 0)
             left = self._labels[(self._labels >= 0) & ~out]
