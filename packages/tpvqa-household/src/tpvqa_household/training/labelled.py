@@ -64,7 +64,7 @@ def read_labelled(folder: Path, split: str) -> Labelled:
     values = {"0": 0, "1": 1}
     labels = [[values.get(row[column], -1) for column in COLUMNS.values()] for row in rows]
     return Labelled(
-        np.stack([_squeezed(folder / row["file"]) for row in rows]),
+        np.stack([squeezed(folder / row["file"]) for row in rows]),
         np.array(labels, np.int64),
         np.array([row["group"] for row in rows]),
         [row["file"] for row in rows],
@@ -89,7 +89,8 @@ def read_rows(folder: Path) -> list[dict[str, str]]:
     return rows
 
 
-def _squeezed(path: Path) -> NDArray[np.uint8]:
+def squeezed(path: Path) -> NDArray[np.uint8]:
+    """A picture as the network squeezes it into its square."""
     picture = decoded(read_picture(path)).convert("RGB")
     size = (SIDE, SIDE)
     return np.asarray(picture.resize(size, Image.Resampling.BICUBIC, reducing_gap=3))

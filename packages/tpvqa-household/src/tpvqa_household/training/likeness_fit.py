@@ -12,7 +12,7 @@ from tpvqa_household.embedded.likeness import Divide, Floats, Likeness
 EDGE_FROM = 5
 """Of the held-out parts, counted from the recipe's `validation_from`, those from this one on set
 the edge; those before it only measure."""
-_STRENGTH = 0.01
+_STRENGTH = 0.1
 """Inverse strength of a divide's regularisation, for standardised features."""
 
 
@@ -44,6 +44,11 @@ def ending(likeness: Likeness, distances: NDArray[np.float64], share: float) -> 
         share: Of them, how many are beyond the edge.
     """
     return replace(likeness, edge=float(np.quantile(distances, 1 - share)))
+
+
+def reaching(likeness: Likeness, distances: NDArray[np.float64]) -> Likeness:
+    """The same with its edge beyond all pictures of the given distances, if it is not already."""
+    return replace(likeness, edge=likeness.edge * max(1.0, 1.001 * float(distances.max())))
 
 
 def divide(first: Floats, second: Floats, held_back: Floats, share: float) -> Divide:

@@ -24,14 +24,21 @@ from tpvqa_household.embedded.likeness import Divide, Floats, Likeness, summary
 from tpvqa_household.embedded.limits import described
 from tpvqa_household.embedded.sessions import Sessions
 from tpvqa_household.embedded.weights import DESCRIPTION, FROZEN, LIMITS, SHIPPED, Weights
+from tpvqa_household.images.manifest import load_pictures
 from tpvqa_household.training.asking import Asking
 from tpvqa_household.training.augment import augmented
 from tpvqa_household.training.data import Pictures
 from tpvqa_household.training.graphs import written
 from tpvqa_household.training.imagenet import ImageNetBranch, Seen
-from tpvqa_household.training.labelled import COLUMNS, Labelled, read_labelled
+from tpvqa_household.training.labelled import COLUMNS, Labelled, read_labelled, squeezed
 from tpvqa_household.training.labels import Label
-from tpvqa_household.training.likeness_fit import EDGE_FROM, divide, ending, fitted
+from tpvqa_household.training.likeness_fit import (
+    EDGE_FROM,
+    divide,
+    ending,
+    fitted,
+    reaching,
+)
 from tpvqa_household.training.network import SIDE
 from tpvqa_household.training.photo_heads import Heads, Taught, taught
 from tpvqa_household.training.recipe import Recipe
@@ -47,6 +54,8 @@ SURE = 0.9
 """The probability from which on a head is sure."""
 _TAUGHT = range(20)
 _DIRECTIONS, _TEXTURES = 64, 16
+_SHIPPED = 4
+"""How often each shipped picture counts beside one of the training's renderer."""
 _VARIANTS = 4
 _EVERY = 4
 _FOLDS = 5
@@ -95,6 +104,9 @@ def known_pictures(
 ) -> tuple[Likeness, Divide]:
     """Where the pictures that the network knows end.
 
+    The pictures that ship, by another renderer, count among them: it is known how well they are
+    answered, and trials are made of them.
+
     Args:
         sessions: The network.
         known: Kitchens of the training.
@@ -106,18 +118,27 @@ def known_pictures(
         The likeness to what it knows, and a plane between that and photographs. Each takes half of
         `FALSE_ALARMS`.
     """
-    kitchens = _summaries(
-        sessions, _by_any_camera(known.pixels(np.arange(len(known))), seed, "known")
-    )
-    held_out = _summaries(
-        sessions, _by_any_camera(other.pixels(np.arange(len(other))), seed, "held out")
-    )
+
+    def summaries(pixels: NDArray[np.uint8], purpose: str) -> Floats:
+        return _summaries(sessions, _by_any_camera(pixels, seed, purpose))
+
+    as_they_are = _shipped()
+    shipped = summaries(as_they_are, "shipped")
+    rendered = summaries(known.pixels(np.arange(len(known))), "known")
+    kitchens = np.concatenate([rendered, *[shipped] * _SHIPPED])
+    held_out = summaries(other.pixels(np.arange(len(other))), "held out")
     beyond = _summaries(sessions, _both(photographs.pixels, seed, "photographs"))
     likeness, share = fitted(kitchens, directions=_DIRECTIONS), FALSE_ALARMS / 2
+    edged = ending(likeness, likeness.distance(held_out), share)
     return (
-        ending(likeness, likeness.distance(held_out), share),
+        reaching(edged, edged.distance(shipped[: len(as_they_are)])),
         divide(kitchens, beyond, held_out, share),
     )
+
+
+def _shipped() -> NDArray[np.uint8]:
+    pictures = load_pictures()
+    return np.stack([squeezed(pictures.folder / p.file) for p in pictures.manifest.pictures])
 
 
 def natural_pictures(texture: Floats, groups: NDArray[np.str_]) -> Likeness:
