@@ -24,7 +24,7 @@ def fitted(features: Floats, *, directions: int) -> Likeness:
     kept, axes = variances[::-1][:directions], axes[:, ::-1][:, :directions]
     # The sign of an axis says nothing; fixed, so that the same pictures give the same file.
     axes = axes * np.where(axes[np.abs(axes).argmax(0), np.arange(axes.shape[1])] < 0, -1, 1)
-    rest = max(float(variances.sum() - kept.sum()) / max(1, len(mean) - directions), 1e-9)
+    rest = max(float(variances.sum() - kept.sum()) / max(1, len(mean) - directions), 1e-3)
     return Likeness(
         mean.astype(np.float32),
         scale.astype(np.float32),
