@@ -1,110 +1,120 @@
 """What the network finds on real photographs: `python benchmarks/real_photographs.py FOLDER`.
 
-The folder holds photographs and a `labels.csv`: `file`, `split`, and a column for each thing, 1
-where it is in the picture, 0 where it is not, empty where nobody can say. Each photograph is asked
-for each thing in the words of the household's questions file. Nothing is learned from them.
+The folder holds photographs and a `labels.csv`: `file`, `split`, `group`, and a column for each
+fact, 1 where it is true, 0 where it is not, empty where nobody can say. Each photograph is asked
+about each fact in the words of the household's questions file. Nothing is learned from them.
 """
 
 import argparse
-import csv
 import sys
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from tpvqa.bench.statistics import wilson
 from tpvqa.errors import AnswerError, TpvqaError
 from tpvqa.pddl import Atom, Literal, load_task
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
-from tpvqa.vlm import VLM, Reply
+from tpvqa.vlm import Reply
+from tpvqa.vlm.metrics import auroc
 from tpvqa.vlm.pictures import observe_file
 from tpvqa_household.embedded import EmbeddedVLM
+from tpvqa_household.training.labelled import COLUMNS, read_rows
+from tpvqa_household.training.subjects import Subject
 
-COLUMNS = {
-    "fridge": "refrigerator",
-    "sink": "sink",
-    "tv": "tv",
-    "table": "table",
-    "counter": "counter",
-    "knife": "knife",
-    "apple": "apple",
-    "bread": "bread",
-    "plate": "plate_or_bowl",
-}
-"""The labels' column of each thing; bowls count as plates."""
 SURE = 0.05
 """An answer of a smaller P(yes) is a confident no."""
 
 
+_RESAMPLES = 1000
+
+
 @dataclass(frozen=True)
 class Asked:
-    """One answer to "Is there a … in the image?".
+    """One answer to "Is there a … in the image?", "Is the fridge open?", "Is the TV turned on?".
 
     Attributes:
         thing: What was asked for.
-        there: Whether it is in the picture.
+        there: Whether it is in the picture, or the state is so.
         reply: The answer.
         p_yes: Its probability, where the answer has one.
+        leaning: P(yes) before any abstention.
     """
 
     thing: str
     there: bool
     reply: Reply
     p_yes: float | None
+    leaning: float
 
 
-def ask_all(vlm: VLM, folder: Path, split: str) -> list[Asked]:
-    """Ask for every labelled thing in every photograph of a split."""
+def _name(subject: Subject) -> str:
+    (thing,) = subject.arguments
+    return thing if subject.name == "near" else f"{thing} {subject.name}".replace("_", " ")
+
+
+def ask_all(vlm: EmbeddedVLM, folder: Path, split: str) -> list[Asked]:
+    """Ask for everything labelled in every photograph of a split."""
     book = QuestionBook.load(find_task("serve_breakfast").questions, load_task("serve_breakfast"))
-    questions = {x: book.fact(Literal(Atom("near", (x,)), True)) for x in COLUMNS}
+    questions = {x: book.fact(Literal(Atom(x.name, x.arguments), True)) for x in COLUMNS}
     found = []
-    for row in _labels(folder / "labels.csv"):
+    for row in read_rows(folder):
         if row["split"] != split:
             continue
         labelled = [x for x, column in COLUMNS.items() if row[column] in ("0", "1")]
-        answers = vlm.ask(observe_file(folder / row["file"]), [questions[x] for x in labelled])
-        found += [
-            Asked(x, row[COLUMNS[x]] == "1", answer.reply, answer.p_yes)
-            for x, answer in zip(labelled, answers, strict=True)
-        ]
+        asked, look = [questions[x] for x in labelled], observe_file(folder / row["file"])
+        (frame,) = look.frames.values()
+        told = zip(labelled, vlm.ask(look, asked), vlm.leanings(frame, asked), strict=True)
+        for subject, answer, leaning in told:
+            assert leaning is not None, answer.question.text
+            there = row[COLUMNS[subject]] == "1"
+            found.append(Asked(_name(subject), there, answer.reply, answer.p_yes, leaning))
     if not found:
         raise AnswerError(f"{folder / 'labels.csv'} has no labelled photographs of split {split!r}")
     return found
 
 
-def _labels(file: Path) -> list[dict[str, str]]:
-    try:
-        with file.open(encoding="utf-8", newline="") as lines:
-            rows = list(csv.DictReader(lines))
-    except (OSError, UnicodeDecodeError) as error:
-        raise AnswerError(f"{file} cannot be read: {error}") from error
-    lacking = {"file", "split", *COLUMNS.values()} - set(rows[0] if rows else ())
-    if lacking:
-        raise AnswerError(f"{file} lacks the columns {', '.join(sorted(lacking))}")
-    return rows
-
-
 def table(asked: Sequence[Asked]) -> str:
-    """Markdown: what was found of what is there, and what was seen where it is not."""
+    """Markdown: how well P(yes) tells, what was found, and what was not answered."""
     things: dict[str, list[Asked]] = defaultdict(list)
     for one in asked:
         things[one.thing].append(one)
     lines = [
-        "| thing | there | found | confident no | not there | said to be there |",
-        "|---|---|---|---|---|---|",
+        "| thing | there | AUROC | found | confident no | abstained "
+        "| not there | said to be there | abstained |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
     for name, of in {**things, "all": list(asked)}.items():
         there = [one for one in of if one.there]
         absent = [one for one in of if not one.there]
         sure_no = (one.p_yes is not None and one.p_yes < SURE for one in there)
+        area = "–" if name == "all" else _area(there, absent)
         lines.append(
-            f"| {name} | {len(there)} | {_rate(one.reply is Reply.YES for one in there)} "
-            f"| {_rate(sure_no)} | {len(absent)} "
-            f"| {_rate(one.reply is Reply.YES for one in absent)} |"
+            f"| {name} | {len(there)} | {area} | {_rate(one.reply is Reply.YES for one in there)} "
+            f"| {_rate(sure_no)} | {_rate(one.reply is Reply.UNKNOWN for one in there)} "
+            f"| {len(absent)} | {_rate(one.reply is Reply.YES for one in absent)} "
+            f"| {_rate(one.reply is Reply.UNKNOWN for one in absent)} |"
         )
     return "\n".join(lines)
+
+
+def _area(there: Sequence[Asked], absent: Sequence[Asked]) -> str:
+    """AUROC of P(yes) before any abstention; its interval by the bootstrap, yes and no apart."""
+    if not there or not absent:
+        return "–"
+    scores = [np.array([one.leaning for one in of]) for of in (there, absent)]
+    truth = np.repeat([True, False], [len(there), len(absent)])
+    rng = np.random.default_rng(0)
+    drawn = [
+        auroc(np.concatenate([rng.choice(of, len(of)) for of in scores]), truth) or 0.0
+        for _ in range(_RESAMPLES)
+    ]
+    low, high = np.quantile(drawn, [0.025, 0.975])
+    return f"{auroc(np.concatenate(scores), truth):.3f} ({low:.3f}–{high:.3f})"
 
 
 def _rate(hits: Iterable[bool]) -> str:

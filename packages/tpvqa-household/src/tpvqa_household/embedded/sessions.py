@@ -1,14 +1,15 @@
-"""The two halves of the network in onnxruntime: picture → map, map and questions → logits."""
+"""The network in onnxruntime: picture → map, map and questions → logits; the frozen branch."""
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from tpvqa_household.embedded.weights import HEAD, IMAGE, Weights
-
-Floats = NDArray[np.float32]
+from tpvqa_household.embedded.likeness import Floats
+from tpvqa_household.embedded.limits import Seen
+from tpvqa_household.embedded.weights import FROZEN, HEAD, IMAGE, Weights
 
 
 class Sessions:
@@ -33,20 +34,34 @@ class Sessions:
                 str(weights.folder / name), options, providers=["CPUExecutionProvider"]
             )
 
+        self._load = load
         self._image, self._head = load(IMAGE), load(HEAD)
         self._side = weights.side
+
+    @cached_property
+    def _frozen(self) -> Any:
+        """Loaded with the first picture that is not known."""
+        return self._load(FROZEN)
 
     def encode(self, pixels: NDArray[np.uint8]) -> Floats:
         """A picture of any size, height × width × 3, to its map of features.
 
         The whole picture is squeezed into a square: nothing at its edges is lost.
         """
-        if pixels.shape[:2] != (self._side, self._side):
-            size = (self._side, self._side)
-            resized = Image.fromarray(pixels).resize(size, Image.Resampling.BICUBIC, reducing_gap=3)
-            pixels = np.asarray(resized)
-        maps: Floats = self._image.run(None, {"pixels": pixels[None]})[0]
+        maps: Floats = self._image.run(None, {"pixels": self._square(pixels)[None]})[0]
         return maps
+
+    def see(self, pixels: NDArray[np.uint8]) -> Seen:
+        """What the frozen branch makes of a picture of any size, squeezed in the same way."""
+        features, classes, texture = self._frozen.run(None, {"pixels": self._square(pixels)[None]})
+        return Seen(features[0], classes[0], texture[0])
+
+    def _square(self, pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        size = (self._side, self._side)
+        if pixels.shape[:2] == size:
+            return pixels
+        resized = Image.fromarray(pixels).resize(size, Image.Resampling.BICUBIC, reducing_gap=3)
+        return np.asarray(resized)
 
     def answer(self, maps: Floats, tokens: NDArray[np.int64]) -> Floats:
         """Logits (yes, no, cannot see) of questions, n × words, about an encoded picture."""

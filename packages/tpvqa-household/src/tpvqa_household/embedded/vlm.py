@@ -6,6 +6,7 @@ import time
 from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +16,35 @@ from tpvqa.observation import Frame, Observation
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import Deterministic, NeedsPictures, SideBySide
-from tpvqa_household.embedded.lexicon import Unknown
-from tpvqa_household.embedded.sessions import Floats, Sessions
+from tpvqa_household.embedded.lexicon import Lexicon, Unknown
+from tpvqa_household.embedded.likeness import Floats
+from tpvqa_household.embedded.limits import Limits, Odds
+from tpvqa_household.embedded.sessions import Sessions
 from tpvqa_household.embedded.weights import SHIPPED, Weights
 
 REMEMBERED = 8
 """Pictures whose maps are kept, 0.1 MB each."""
 _ANSWERS = 100_000
 """Answers that are kept."""
+_SILENT = 60.0
+"""The logit of *cannot see* of a frame about which nothing is said, beside 0 for yes and no."""
+
+Tokens = tuple[int, ...]
+
+
+class _Loaded(NamedTuple):
+    """A network as it runs; `limits` is None for one that does not know them."""
+
+    weights: Weights
+    sessions: Sessions
+    limits: Limits | None
+
+
+class _View(NamedTuple):
+    """What was made of a picture; `odds` is None where it is like the pictures that are known."""
+
+    maps: Floats
+    odds: Odds | None
 
 
 class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
@@ -31,6 +53,10 @@ class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
     Not a general VLM: it knows the household's objects in pictures like those it was trained on,
     and only questions that its training asked. Others are *unknown*. What the picture does not
     show is *cannot see*.
+
+    Of a picture unlike those it was trained on it says that, and *unknown*. If it is a photograph,
+    a branch that is as ImageNet left it answers what it is sure of: whether a thing is there,
+    whether a fridge is open and a TV on.
 
     An observation of several frames is answered from all of them: frames that show what is asked
     count by how surely they show it.
@@ -58,9 +84,9 @@ class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
         self._folder = SHIPPED if folder is None else Path(folder)
         self._threads = threads
         self._lock = threading.Lock()
-        self._loaded: tuple[Weights, Sessions] | None = None
-        self._maps: OrderedDict[bytes, Floats] = OrderedDict()
-        self._known: OrderedDict[tuple[bytes, tuple[int, ...]], Floats] = OrderedDict()
+        self._loaded: _Loaded | None = None
+        self._views: OrderedDict[bytes, _View] = OrderedDict()
+        self._known: OrderedDict[tuple[bytes, Tokens], Floats | str] = OrderedDict()
         self._remember = remember
 
     @classmethod
@@ -80,7 +106,7 @@ class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
         Raises:
             AnswerError: The weights are missing or damaged.
         """
-        return self._load()[0]
+        return self._load().weights
 
     @property
     def parameters(self) -> dict[str, str]:
@@ -101,39 +127,74 @@ class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
         weights = self.weights
         found = [weights.lexicon.tokens(question.text) for question in questions]
         known = sorted({tokens for tokens in found if not isinstance(tokens, Unknown)})
-        chances: dict[tuple[int, ...], tuple[float, float]] = {}
+        chances: dict[Tokens, tuple[float, float] | str] = {}
         if known and observation.frames:
-            frames = observation.frames.values()
-            logits = np.stack([self._logits(frame, known) for frame in frames])
-            p_yes, p_unseen = combine(logits / np.float32(weights.temperature))
+            said = [self._said(frame, known) for frame in observation.frames.values()]
+            rows = np.array([[_row(each[q]) for q in known] for each in said], np.float32)
+            p_yes, p_unseen = combine(rows / np.float32(weights.temperature))
             pairs = zip(p_yes.tolist(), p_unseen.tolist(), strict=True)
             chances = dict(zip(known, pairs, strict=True))
+            for question in known:
+                silent = [one for each in said if isinstance(one := each[question], str)]
+                if len(silent) == len(said):
+                    chances[question] = silent[0]
         seconds = (time.perf_counter() - began) / max(1, len(questions))
         return [
             self._answer(question, tokens, chances, seconds)
             for question, tokens in zip(questions, found, strict=True)
         ]
 
+    def knows(self, frame: Frame) -> bool:
+        """Whether a picture is like those that it was taught with; always, without limits.
+
+        Raises:
+            AnswerError: The weights are missing or damaged, or the picture cannot be read.
+        """
+        return self._view(frame).odds is None
+
+    def leanings(self, frame: Frame, questions: Sequence[Question]) -> list[float | None]:
+        """P(yes) of one picture, however unlike and unsure it is: for measuring, not for acting.
+
+        Args:
+            frame: The picture.
+            questions: What is asked.
+
+        Returns:
+            For each question P(yes | yes or no), None where it has no words for it.
+
+        Raises:
+            AnswerError: The weights are missing or damaged, or the picture cannot be read.
+        """
+        weights, sessions, _ = self._load()
+        view = self._view(frame)
+        leaning: list[float | None] = []
+        for question in questions:
+            tokens = weights.lexicon.tokens(question.text)
+            if isinstance(tokens, Unknown):
+                leaning.append(None)
+                continue
+            odds = None if view.odds is None else view.odds.of(_spoken(weights.lexicon, tokens))
+            if odds is None:
+                row = sessions.answer(view.maps, _padded([tokens], weights.lexicon))[0]
+                odds = float(row[0] - row[1]) / weights.temperature
+            leaning.append(float(1.0 / (1.0 + np.exp(-np.clip(odds, -60, 60)))))
+        return leaning
+
     @staticmethod
     def _answer(
         question: Question,
-        tokens: tuple[int, ...] | Unknown,
-        chances: dict[tuple[int, ...], tuple[float, float]],
+        tokens: Tokens | Unknown,
+        chances: dict[Tokens, tuple[float, float] | str],
         seconds: float,
     ) -> Answer:
-        if isinstance(tokens, Unknown):
-            return Answer(
-                question, Reply.UNKNOWN, source="network", text=tokens.reason, seconds=seconds
-            )
-        if tokens not in chances:
-            return Answer(
-                question,
-                Reply.UNKNOWN,
-                source="network",
-                text="the observation has no picture",
-                seconds=seconds,
-            )
-        p_yes, p_unseen = chances[tokens]
+        said = (
+            tokens.reason
+            if isinstance(tokens, Unknown)
+            else chances.get(tokens, "the observation has no picture")
+        )
+        if isinstance(said, str):
+            return Answer(question, Reply.UNKNOWN, source="network", text=said, seconds=seconds)
+        p_yes, p_unseen = said
         seen = Reply.YES if p_yes > 0.5 else Reply.NO
         reply = Reply.CANNOT_SEE if p_unseen > 0.5 else seen
         return Answer(
@@ -146,48 +207,75 @@ class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
             seconds=seconds,
         )
 
-    def _load(self) -> tuple[Weights, Sessions]:
+    def _load(self) -> _Loaded:
         with self._lock:
             if self._loaded is None:
                 weights = Weights.read(self._folder)
-                self._loaded = weights, Sessions(weights, threads=self._threads)
+                sessions = Sessions(weights, threads=self._threads)
+                self._loaded = _Loaded(weights, sessions, Limits.read(weights))
             return self._loaded
 
-    def _logits(self, frame: Frame, questions: Sequence[tuple[int, ...]]) -> Floats:
-        """Logits of questions about a frame; each is worked out once."""
-        weights, sessions = self._load()
+    def _said(self, frame: Frame, questions: Sequence[Tokens]) -> dict[Tokens, Floats | str]:
+        """Logits of questions about a frame, or why none; each is worked out once."""
         picture = hashlib.blake2b(frame.data, digest_size=16).digest()
         with self._lock:
             found = {q: self._known[picture, q] for q in questions if (picture, q) in self._known}
         new = [question for question in questions if question not in found]
         if new:
-            rows = np.zeros((len(new), weights.lexicon.longest), np.int64)
-            for i, tokens in enumerate(new):
-                rows[i, : len(tokens)] = tokens
-            logits = sessions.answer(self._encoded(frame, sessions), rows)
-            found |= dict(zip(new, logits, strict=True))
+            found |= self._logits(frame, new)
             with self._lock:
                 self._known |= {(picture, q): found[q] for q in new}
                 while len(self._known) > _ANSWERS:
                     self._known.popitem(last=False)
-        return np.stack([found[question] for question in questions])
+        return found
 
-    def _encoded(self, frame: Frame, sessions: Sessions) -> Floats:
-        """The map of a frame, kept for the next questions about it."""
+    def _logits(self, frame: Frame, questions: Sequence[Tokens]) -> dict[Tokens, Floats | str]:
+        weights, sessions, _ = self._load()
+        lexicon, view = weights.lexicon, self._view(frame)
+        if view.odds is None:
+            logits = sessions.answer(view.maps, _padded(questions, lexicon))
+            return dict(zip(questions, logits, strict=True))
+        surely = {q: view.odds.surely(_spoken(lexicon, q)) for q in questions}
+        half = weights.temperature / 2
+        return {
+            q: z if isinstance(z, str) else np.array([z * half, -z * half, -_SILENT], np.float32)
+            for q, z in surely.items()
+        }
+
+    def _view(self, frame: Frame) -> _View:
+        """What is made of a frame, kept for the next questions about it."""
         with self._lock:
-            known = self._maps.get(frame.data)
+            known = self._views.get(frame.data)
         if known is not None:
             return known
+        _, sessions, limits = self._load()
         try:
             pixels = frame.pixels
         except PictureError as error:
             raise AnswerError(f"The picture {frame.id!r} cannot be read: it {error}") from error
         maps = sessions.encode(pixels)
+        alike = limits is None or limits.knows(maps)
+        view = _View(maps, None if limits is None or alike else limits.odds(sessions.see(pixels)))
         with self._lock:
-            self._maps[frame.data] = maps
-            while len(self._maps) > self._remember:
-                self._maps.popitem(last=False)
-        return maps
+            self._views[frame.data] = view
+            while len(self._views) > self._remember:
+                self._views.popitem(last=False)
+        return view
+
+
+def _padded(questions: Sequence[Tokens], lexicon: Lexicon) -> NDArray[np.int64]:
+    rows = np.zeros((len(questions), lexicon.longest), np.int64)
+    for row, tokens in zip(rows, questions, strict=True):
+        row[: len(tokens)] = tokens
+    return rows
+
+
+def _spoken(lexicon: Lexicon, tokens: Tokens) -> str:
+    return " ".join(lexicon.vocabulary[token - 1] for token in tokens)
+
+
+def _row(said: Floats | str) -> Floats:
+    return np.array([0.0, 0.0, _SILENT], np.float32) if isinstance(said, str) else said
 
 
 def combine(logits: Floats) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

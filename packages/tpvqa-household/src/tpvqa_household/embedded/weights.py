@@ -12,6 +12,8 @@ from tpvqa_household.embedded.lexicon import Lexicon
 
 SHIPPED = Path(__file__).with_name("weights")
 DESCRIPTION, IMAGE, HEAD = "network.json", "image.onnx", "head.onnx"
+FROZEN, LIMITS = "frozen.onnx", "limits.npz"
+"""What a network has that knows its limits: the frozen branch, and what is compared."""
 
 
 @dataclass(frozen=True)

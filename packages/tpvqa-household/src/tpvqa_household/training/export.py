@@ -8,7 +8,6 @@ import argparse
 import hashlib
 import json
 import sys
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -20,7 +19,7 @@ from tpvqa_household.embedded.weights import DESCRIPTION, HEAD, IMAGE, SHIPPED
 from tpvqa_household.training.asking import Asking
 from tpvqa_household.training.calibrate import temperature
 from tpvqa_household.training.data import Pictures
-from tpvqa_household.training.graphs import tidy
+from tpvqa_household.training.graphs import written
 from tpvqa_household.training.memory import keep_memory
 from tpvqa_household.training.network import SIDE, ImageEncoder, Network, QuestionHead, normalise
 from tpvqa_household.training.reference import write_reference
@@ -62,33 +61,10 @@ def export(network: Network, folder: Path, *, longest: int) -> None:
     image = _Image(network.image).eval()
     with torch.no_grad():
         maps = image(pixels)
-    _graph(image, (pixels,), folder / IMAGE, ["pixels"], "maps", {})
+    written(image, (pixels,), folder / IMAGE, ["pixels"], ["maps"], {})
     head: QuestionHead = network.head
     several = {"tokens": {0: "questions"}, "logits": {0: "questions"}}
-    _graph(head, (maps, tokens), folder / HEAD, ["maps", "tokens"], "logits", several)
-
-
-def _graph(
-    module: nn.Module,
-    inputs: tuple[Tensor, ...],
-    path: Path,
-    names: list[str],
-    output: str,
-    axes: dict[str, dict[int, str]],
-) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        torch.onnx.export(
-            module,
-            inputs,
-            str(path),
-            dynamo=False,
-            opset_version=17,
-            input_names=names,
-            output_names=[output],
-            dynamic_axes=axes,
-        )
-    tidy(path)
+    written(head, (maps, tokens), folder / HEAD, ["maps", "tokens"], ["logits"], several)
 
 
 def describe(

@@ -1,9 +1,46 @@
-"""What is done to an exported graph before it ships."""
+"""Modules as graphs for onnxruntime, and what is done to a graph before it ships."""
 
+import warnings
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+
+def written(
+    module: Any,
+    inputs: tuple[Any, ...],
+    path: Path,
+    names: Sequence[str],
+    outputs: Sequence[str],
+    axes: Mapping[str, Mapping[int, str]],
+) -> None:
+    """Write a module of torch as a graph.
+
+    Args:
+        module: What computes.
+        inputs: Tensors to trace it with.
+        path: Where to.
+        names: Of the inputs.
+        outputs: Their names.
+        axes: Those whose length may differ, with a name each.
+    """
+    import torch
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        torch.onnx.export(
+            module,
+            inputs,
+            str(path),
+            dynamo=False,
+            opset_version=17,
+            input_names=list(names),
+            output_names=list(outputs),
+            dynamic_axes=axes,
+        )
+    tidy(path)
 
 
 def tidy(path: Path) -> None:

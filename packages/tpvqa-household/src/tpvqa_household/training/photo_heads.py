@@ -1,0 +1,215 @@
+"""Heads on the frozen branch: what is in a real photograph, taught by photographs and kitchens.
+
+Logistic regression, as photographs are few: on the branch's features, and on what ImageNet's own
+classes say of the thing. Photographs and rendered kitchens weigh together, yes and no alike, so
+that the odds are those of a thing that is there as often as not.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tpvqa.errors import MissingExtraError
+from tpvqa_household import DISTRIBUTION
+from tpvqa_household.embedded.likeness import Floats
+from tpvqa_household.training.imagenet import CLASSES, Seen
+from tpvqa_household.training.subjects import Subject
+
+KITCHENS = 0.3
+"""What the kitchens weigh, beside photographs that weigh 1."""
+_CLASSES = 0.3
+"""How large ImageNet's classes stand beside the features."""
+_STRENGTH = 10.0
+"""Inverse strength of the regularisation."""
+_FOLDS = 5
+_NEAR = 0.5
+"""How far, as a logarithm, one head's slope is thought to lie from what suits all."""
+
+
+@dataclass(frozen=True)
+class Taught:
+    """Pictures and what is true in them.
+
+    Attributes:
+        seen: By the frozen branch; of photographs several variants, one after the other.
+        labels: n × heads: 1, 0, -1 for not known.
+        groups: Of n photographs; none for kitchens.
+    """
+
+    seen: Seen
+    labels: NDArray[np.int64]
+    groups: NDArray[np.str_] = field(default_factory=lambda: np.array([], np.str_))
+
+
+@dataclass(frozen=True)
+class Heads:
+    """Linear heads, their log odds made as sure as they were right on photographs held back.
+
+    Attributes:
+        features: Heads × features.
+        classes: Heads × classes.
+        bias: Of each head.
+        held_back: n × heads, log odds of every photograph by heads that its group did not teach;
+            nan where it has no label.
+    """
+
+    features: Floats
+    classes: Floats
+    bias: Floats
+    held_back: NDArray[np.float64]
+
+
+class _Space:
+    """Features and classes on one scale, and back to the branch's own."""
+
+    def __init__(self, photographs: Seen):
+        self._mean, self._scale = photographs.features.mean(0), photographs.features.std(0) + 1e-2
+        self._scale = self._scale * np.sqrt(photographs.features.shape[1])
+        self._class_mean = photographs.classes.mean(0)
+        self._class_scale = (photographs.classes.std(0) + 1e-3) / _CLASSES
+
+    @staticmethod
+    def columns(subject: Subject) -> list[int]:
+        """Those of the classes that speak for what a fact says to be there."""
+        thing = subject.arguments[0]
+        if subject.name != "near" or thing not in CLASSES:
+            return []
+        first = 2 * list(CLASSES).index(thing)
+        return [first, first + 1]
+
+    def inputs(self, seen: Seen, subject: Subject) -> NDArray[np.float64]:
+        features = (seen.features - self._mean) / self._scale
+        classes = (seen.classes - self._class_mean) / self._class_scale
+        joined = np.concatenate([features, classes[:, self.columns(subject)]], 1)
+        return np.asarray(joined, np.float64)
+
+    def outputs(
+        self, weights: NDArray[np.float64], bias: float, subject: Subject
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+        """Weights and bias for what the branch gives."""
+        count = len(self._mean)
+        features = weights[:count] / self._scale
+        classes = np.zeros(len(self._class_mean))
+        columns = self.columns(subject)
+        classes[columns] = weights[count:] / self._class_scale[columns]
+        shift = float(features @ self._mean + classes @ self._class_mean)
+        return features, classes, bias - shift
+
+
+def taught(
+    subjects: Sequence[Subject], photographs: Sequence[Taught], kitchens: Sequence[Taught]
+) -> Heads:
+    """Fit a head for every subject.
+
+    Args:
+        subjects: What the heads are about, the columns of all labels.
+        photographs: The photographs as they are, then variants of the same ones, in order.
+        kitchens: Rendered pictures.
+
+    Raises:
+        MissingExtraError: scikit-learn is not installed.
+    """
+    space, plain = _Space(photographs[0].seen), photographs[0]
+    rows = [_Head(space, subject, i, photographs, kitchens) for i, subject in enumerate(subjects)]
+    held_back = np.stack([row.held_back() for row in rows], 1)
+    slopes = _slopes(held_back, plain.labels)
+    parts = [space.outputs(*row.fit(None), row.subject) for row in rows]
+    features, classes, bias = (np.stack(each) for each in zip(*parts, strict=True))
+    return Heads(
+        (features * slopes[:, None]).astype(np.float32),
+        (classes * slopes[:, None]).astype(np.float32),
+        (bias * slopes).astype(np.float32),
+        held_back * slopes,
+    )
+
+
+class _Head:
+    def __init__(
+        self,
+        space: _Space,
+        subject: Subject,
+        column: int,
+        photographs: Sequence[Taught],
+        kitchens: Sequence[Taught],
+    ):
+        self.subject = subject
+        self._photographs = [space.inputs(each.seen, subject) for each in photographs]
+        self._labels = photographs[0].labels[:, column]
+        self._groups = photographs[0].groups
+        self._kitchens = np.concatenate([space.inputs(each.seen, subject) for each in kitchens])
+        self._kitchen_labels = np.concatenate([each.labels[:, column] for each in kitchens])
+
+    def fit(self, left_out: NDArray[np.bool_] | None) -> tuple[NDArray[np.float64], float]:
+        """Weights and bias, without some of the photographs."""
+        try:
+            from sklearn.linear_model import LogisticRegression
+        except ImportError as error:
+            raise MissingExtraError(
+                "scikit-learn", "train", "Fitting heads", distribution=DISTRIBUTION
+            ) from error
+        labelled = self._labels >= 0
+        if left_out is not None:
+            labelled &= ~left_out
+        rendered = self._kitchen_labels >= 0
+        x = np.concatenate(
+            [*(each[labelled] for each in self._photographs), self._kitchens[rendered]]
+        )
+        of_photographs = np.tile(self._labels[labelled], len(self._photographs))
+        of_kitchens = self._kitchen_labels[rendered]
+        count = int(labelled.sum())
+        weight = np.concatenate(
+            [_even(of_photographs, count), _even(of_kitchens, KITCHENS * count)]
+        )
+        y = np.concatenate([of_photographs, of_kitchens])
+        model = LogisticRegression(C=_STRENGTH, max_iter=3000).fit(x, y, sample_weight=weight)
+        return model.coef_[0], float(model.intercept_[0])
+
+    def held_back(self) -> NDArray[np.float64]:
+        """Log odds of each photograph from heads that its group did not teach."""
+        found = np.full(len(self._labels), np.nan)
+        groups = np.unique(self._groups[self._labels >= 0])
+        for fold in range(_FOLDS):
+            out = np.isin(self._groups, groups[fold::_FOLDS]) & (self._labels >= 0)
+            left = self._labels[(self._labels >= 0) & ~out]
+            if not out.any() or len(set(left.tolist())) < 2:
+                continue
+            weights, bias = self.fit(out)
+            found[out] = self._photographs[0][out] @ weights + bias
+        return found
+
+
+def _even(labels: NDArray[np.int64], total: float) -> NDArray[np.float64]:
+    """Weights under which yes and no weigh the same."""
+    weight = np.zeros(len(labels))
+    for value in (0, 1):
+        if (labels == value).any():
+            weight[labels == value] = total / 2 / (labels == value).sum()
+    return weight
+
+
+def _slopes(odds: NDArray[np.float64], labels: NDArray[np.int64]) -> NDArray[np.float64]:
+    """What the log odds of each head are multiplied by, so that those held back are likeliest.
+
+    A head with few photographs of one kind stays near what suits all heads together.
+    """
+    grid = np.exp(np.linspace(np.log(0.1), np.log(10.0), 120))
+    losses = np.array([_losses(odds[:, i], labels[:, i], grid) for i in range(odds.shape[1])])
+    common = grid[losses.sum(0).argmin()]
+    away = (np.log(grid / common) / _NEAR) ** 2 / 2
+    return np.asarray(grid[(losses + away).argmin(1)], np.float64)
+
+
+def _losses(
+    odds: NDArray[np.float64], labels: NDArray[np.int64], grid: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The loss of one head under each slope, as if it had as many yes and no as the fewer."""
+    asked = (labels >= 0) & ~np.isnan(odds)
+    labels, odds = labels[asked], odds[asked]
+    fewer = min(int((labels == 0).sum()), int((labels == 1).sum()))
+    if not fewer:
+        return np.zeros(len(grid))
+    signed = np.where(labels == 1, odds, -odds)
+    loss = np.logaddexp(0, -grid[:, None] * signed)
+    return np.asarray(loss @ _even(labels, 2.0 * fewer), np.float64)
