@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from tpvqa import __version__
 from tpvqa.assembly.answering import answering
+from tpvqa.assembly.lasting import see_lasting, watching
 from tpvqa.assembly.simulating import simulate
 from tpvqa.assembly.told import read_told, stated_bound
 from tpvqa.belief.calibration import Calibration
@@ -145,6 +146,7 @@ class Trial:
         if planner is None:
             planner = make_planner(config.planner.spec)
             self._closing.append(planner.close)
+        planner = watching(self.task, planner, every=config.monitor.watch)
         files = None if config.task.name is None else find_task(config.task.name)
         self.world_spec = config.world.spec or default_world(files)
         self.simulation = self._simulate(planner)
@@ -183,6 +185,7 @@ class Trial:
         }
         self.monitor: Monitor
         self.monitor, by_monitor = make_monitor(config.monitor.named, context)
+        see_lasting(self.task, world, self.monitor)
         self.weighs_answers = "calibration" in by_monitor
         if not self.weighs_answers:
             self.calibration = None

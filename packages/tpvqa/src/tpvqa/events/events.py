@@ -111,6 +111,7 @@ class PlanMade(_Event):
     A plan that is only `considered` is not followed: a monitor wanted to know what it would be.
     `limit` is that of the time, in seconds, where it passed. `without` are actions that it was not
     to have, `towards` facts that it was to bring about instead of the goal, as PDDL writes them.
+    Where actions last, `times` are when the plan's steps come.
     """
 
     kind: Literal["plan made"] = "plan made"
@@ -125,6 +126,7 @@ class PlanMade(_Event):
     considered: bool = False
     without: tuple[str, ...] = ()
     towards: tuple[str, ...] = ()
+    times: tuple[float, ...] | None = None
 
 
 class FrameRecord(_Record):
@@ -290,6 +292,16 @@ class Acted(_Event):
     snapshot: dict[str, Any] | None = None
 
 
+class Waited(_Event):
+    """Time passed while actions ran, until the world's `clock` showed this. `truth` is what a
+    simulated world knows of what happened meanwhile, for judging."""
+
+    kind: Literal["waited"] = "waited"
+    clock: float
+    truth: OutcomeRecord | None = None
+    snapshot: dict[str, Any] | None = None
+
+
 EndedBecause = Literal[
     "goal",
     "limit of repeats",
@@ -356,6 +368,7 @@ Event = (
     | Decided
     | Acting
     | Acted
+    | Waited
     | Resumed
     | ListenerDropped
     | Ended

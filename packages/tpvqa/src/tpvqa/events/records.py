@@ -48,7 +48,8 @@ def plan_record(result: PlanningResult, state: State, book: QuestionBook) -> Pla
     match result:
         case Plan():
             plan = tuple(action_record(action, book) for action in result.actions)
-            return record.model_copy(update={"plan": plan, "cost": result.cost})
+            times = result.times or None
+            return record.model_copy(update={"plan": plan, "cost": result.cost, "times": times})
         case Unsolvable():
             return record.model_copy(update={"result": "unsolvable", "reason": result.reason})
         case TimedOut():
@@ -64,7 +65,7 @@ def plan_from(record: PlanMade, task: Task) -> PlanningResult:
     planner, seconds = record.planner, record.seconds
     if record.result == "plan":
         actions = tuple(task.action(step.name, step.arguments) for step in record.plan)
-        return Plan(actions, record.cost, planner, seconds)
+        return Plan(actions, record.cost, planner, seconds, record.times or ())
     if record.result == "unsolvable":
         return Unsolvable(record.reason, planner, seconds)
     if record.result == "timed out":

@@ -22,6 +22,7 @@ from tpvqa.events.events import (
     PlanMade,
     QuestionRecord,
     Started,
+    Waited,
 )
 from tpvqa.pddl import Atom, State
 from tpvqa.questions import Way
@@ -81,6 +82,8 @@ class TrialState:
         replans: Replans so far.
         over: The limit that was reached; None while there is none.
         time: Seconds since the trial began.
+        clock: What the world's clock showed last, where actions last; None before.
+        began: What it showed when the plan began that is followed.
         ended: The last event.
     """
 
@@ -106,6 +109,8 @@ class TrialState:
     replans: int = 0
     over: EndedBecause | None = None
     time: float = 0.0
+    clock: float | None = None
+    began: float | None = None
     ended: Ended | None = None
     _checked: bool = False
     _deadline: float | None = None
@@ -172,7 +177,10 @@ class TrialState:
             case PlanMade(considered=False, result="plan"):
                 first = len(event.plan) if self.first_plan is None else self.first_plan
                 change = {"plan": event, "first_plan": first, "index": 0, "attempt": 0}
-                change["when"] = "before"
+                change |= {"when": "before", "began": None}
+            case Waited():
+                change = {"clock": event.clock}
+                change["began"] = event.clock if self.began is None else self.began
             case Started():
                 change = {"started": event, "believed": frozenset(map(_atom, event.initial))}
                 change["_deadline"] = event.limits.seconds

@@ -1,0 +1,6 @@
+(define (problem p) (:domain sterile)
+  (:objects scalpel - instrument steel - tray bench - table boiler - autoclave)
+  (:init (at scalpel bench) (in_store steel) (opened boiler) (gripper_free)
+    (= (fetching steel) 12) (= (cycle boiler) 30))
+  (:goal (laid scalpel steel))
+  (:metric minimize (total-time)))
