@@ -44,9 +44,8 @@ from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
 from tpvqa.vlm.making import in_full
 from tpvqa.worlds import Restorable, World
-from tpvqa.worlds.capabilities import has_pictures, is_simulated, truth_of
+from tpvqa.worlds.capabilities import has_pictures, truth_of
 from tpvqa.worlds.making import make_world
-from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 if TYPE_CHECKING:
@@ -149,7 +148,9 @@ class Trial:
         planner = watching(self.task, planner, every=config.monitor.watch)
         files = None if config.task.name is None else find_task(config.task.name)
         self.world_spec = config.world.spec or default_world(files)
-        self.simulation = self._simulate(planner)
+        self.simulation = simulate(
+            self.world_spec, self.task, self.rules, config, planner, self._begun_as, self.priors
+        )
         context = {
             **options,
             "task": self.task,
@@ -200,12 +201,6 @@ class Trial:
         if made is not vlm and isinstance(made, Closing):
             self._closing.append(made.close)
         self.parts = Parts(self.task, self.book, planner, world, made, person)
-
-    def _simulate(self, planner: Planner) -> Simulation | None:
-        """The true state, where the world is one that keeps it."""
-        if not is_simulated(load_spec(Kind.WORLD, self.world_spec)):
-            return None
-        return simulate(self.task, self.rules, self.config, planner, self._begun_as, self.priors)
 
     @property
     def world(self) -> World:

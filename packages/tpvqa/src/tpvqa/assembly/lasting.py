@@ -1,4 +1,4 @@
-"""What a trial needs besides where actions last: an engine that knows time, a world with a clock."""
+"""What a trial needs where actions last: an engine that knows time, a world with a clock."""
 
 from tpvqa.errors import TpvqaError
 from tpvqa.monitors import Monitor
@@ -9,8 +9,6 @@ from tpvqa.planning.protocol import TemporalPlanner
 from tpvqa.planning.watching import Watching
 from tpvqa.worlds import World
 from tpvqa.worlds.capabilities import Timed
-
-REMEDY = "write --monitor tpvqa"
 
 
 def watching(task: Task, planner: Planner, *, every: float | None) -> Planner:
@@ -50,9 +48,8 @@ def see_lasting(task: Task, world: World, monitor: Monitor) -> None:
         )
     if isinstance(monitor, Believing | LooksFirst):
         raise TpvqaError(
-            f"In this domain actions last ({_names(task)}), and the monitor {monitor.name!r}, which "
-            f"goes through a plan in an order of its own, does not keep to times; {REMEDY}, or "
-            "another that follows its plan."
+            f"In this domain actions last ({_names(task)}), and the monitor {monitor.name!r} goes "
+            "through a plan in an order of its own, which keeps to no times. Write --monitor tpvqa."
         )
 
 

@@ -15,7 +15,7 @@ from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
 from tpvqa.errors import CalibrationError
 from tpvqa.events import Ended, Event, Started
-from tpvqa.events.events import Acted
+from tpvqa.events.events import Acted, Waited
 from tpvqa.labelling import LABELS, RecordedEpisode, read_recorded
 from tpvqa.labelling.inferring import inferred_rows, likelier
 from tpvqa.labelling.recorded import said_in_trial

@@ -157,7 +157,9 @@ class Performer:
                 result = Crashed(str(error), parts.planner.name, 0.0)
         elif request.running:
             running = request.running
-            result = called(planner, "plan_meanwhile", object, task, state, running, timeout=timeout)
+            result = called(
+                planner, "plan_meanwhile", object, task, state, running, timeout=timeout
+            )
         else:
             result = called(planner, "plan", object, task, state, timeout=timeout)
         if not isinstance(result, PlanningResult):

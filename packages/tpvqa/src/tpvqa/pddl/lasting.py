@@ -5,19 +5,16 @@ The worker takes a durative action apart into actions without duration (see
 """
 
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from tpvqa.errors import PDDLError
 from tpvqa.pddl.atoms import Atom, Literal, State
 from tpvqa.pddl.conditions import Condition, Conjunction, literals
 from tpvqa.pddl.ground import Action
-
-if TYPE_CHECKING:
-    from tpvqa.pddl.task import Task
 
 _ARITHMETIC: Mapping[str, Callable[[float, float], float]] = {
     "+": operator.add,
@@ -25,6 +22,13 @@ _ARITHMETIC: Mapping[str, Callable[[float, float], float]] = {
     "*": operator.mul,
     "/": operator.truediv,
 }
+
+
+class Actions(Protocol):
+    """A task, as far as it is needed here."""
+
+    def action(self, name: str, arguments: Iterable[str] = ()) -> Action:
+        """The ground action of a name and arguments."""
 
 
 class Phase(StrEnum):
@@ -106,15 +110,15 @@ class Lasting:
         """The fact that the action which an action is a part of is running."""
         return Atom(self.predicate(self._phases[action.name][1]), action.arguments)
 
-    def part(self, task: "Task", action: Action, phase: Phase) -> Action:
+    def part(self, task: Actions, action: Action, phase: Phase) -> Action:
         """Another part of the same durative action."""
         return task.action(f"{phase}-{self._phases[action.name][1]}", action.arguments)
 
-    def meanwhile(self, task: "Task", action: Action) -> Condition:
+    def meanwhile(self, task: Actions, action: Action) -> Condition:
         """What must hold while the action is running that an action is a part of."""
         return without(self.part(task, action, Phase.WHILE).precondition, self.running(action))
 
-    def under_way(self, task: "Task", state: State) -> tuple[Action, ...]:
+    def under_way(self, task: Actions, state: State) -> tuple[Action, ...]:
         """What every action began with that is running in a state."""
         return tuple(
             task.action(f"{Phase.START}-{atom.predicate.removeprefix('running-')}", atom.arguments)

@@ -68,33 +68,28 @@ class Schedule:
         - "running": the numbers of the last two of what is running, and the time that is left,
         - "quickest": whether the quickest plan is asked for.
         """
-        lasting = self._lasting
         number = {(a.name, a.arguments): n for n, a in enumerate(self.ground.actions)}
+        phase_of = self._lasting.phase_of
+
+        def parts(action: Action) -> list[int | None]:
+            name = self._lasting.name_of(action.name)
+            wanted = (Phase.WHILE, Phase.END)
+            return [number.get((f"{phase}-{name}", action.arguments)) for phase in wanted]
+
         durative, running = [], []
-        for (name, arguments), start in number.items():
-            if lasting.phase_of(name) is Phase.START:
-                rest = [
-                    number.get((f"{phase}-{lasting.name_of(name)}", arguments))
-                    for phase in (Phase.WHILE, Phase.END)
-                ]
-                if None not in rest:
-                    duration = lasting.duration(self.ground.actions[start])
-                    durative.append([start, *rest, *duration])
+        for start, action in enumerate(self.ground.actions):
+            if phase_of(action.name) is Phase.START and None not in parts(action):
+                durative.append([start, *parts(action), *self._lasting.duration(action)])
         for each in self.running:
-            name = lasting.name_of(each.action.name)
-            parts = [
-                number.get((f"{phase}-{name}", each.action.arguments))
-                for phase in (Phase.WHILE, Phase.END)
-            ]
-            if None in parts:
+            if None in parts(each.action):
                 raise PlannerError(f"{each.action} is running, and can never end from here")
-            running.append([*parts, each.left])
+            running.append([*parts(each.action), each.left])
         return {
             **self.ground.numbered(),
-            "instant": [n for (name, _), n in number.items() if lasting.phase_of(name) is None],
+            "instant": [n for (name, _), n in number.items() if phase_of(name) is None],
             "lasting": durative,
             "running": running,
-            "quickest": lasting.quickest,
+            "quickest": self._lasting.quickest,
         }
 
     def result(

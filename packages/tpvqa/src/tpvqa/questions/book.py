@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tpvqa.pddl import Action, Atom, Condition, Disjunction, Literal, State, Task, holds, supporting
 from tpvqa.questions import fallback
-from tpvqa.questions.lasting import words_of_parts
+from tpvqa.questions.lasting import questions_of_running, words_of_parts
 from tpvqa.questions.question import ActionQuestion, ActionWay, FactQuestion, FactWay, Way
 from tpvqa.questions.template import Template
 from tpvqa.questions.wordings import Wording, Wordings, parameters_of, read_wordings
@@ -295,6 +295,9 @@ class QuestionBook:
         for name, say, done in words_of_parts(self.task, self._say, self._done):
             self._say.setdefault(name, say)
             self._done.setdefault(name, done)
+        for name, question in questions_of_running(self.task, self._say):
+            if name not in self._given:
+                self._questions[name] = question
 
     def _fall_back(self, sentence: str) -> None:
         self.fallbacks.append(sentence)

@@ -1,6 +1,6 @@
 """How the parts of an action that lasts are said: by the words of the whole action."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from tpvqa.pddl import Task
 from tpvqa.pddl.lasting import Phase
@@ -28,7 +28,7 @@ def parts_of(task: Task, action: str) -> tuple[str, ...]:
 
 
 def words_of_parts(
-    task: Task, say: dict[str, Template], done: dict[str, Template]
+    task: Task, say: Mapping[str, Template], done: Mapping[str, Template]
 ) -> Iterator[tuple[str, Template, Template]]:
     """How each part of an action that lasts is said, before and after.
 
@@ -44,6 +44,14 @@ def words_of_parts(
         if name is not None and phase is not None:
             after = done[name] if phase is Phase.END else _within(_DONE[phase], say[name])
             yield schema.name, _within(_SAY[phase], say[name]), after
+
+
+def questions_of_running(task: Task, say: Mapping[str, Template]) -> Iterator[tuple[str, Template]]:
+    """What is asked of the facts that say that an action runs, where a file gives no words."""
+    if task.lasting is not None:
+        for name in task.lasting.variables:
+            question = Template(("Is it true: ", *say[name].parts, " is under way?"))
+            yield task.lasting.predicate(name), question
 
 
 def _within(words: str, said: Template) -> Template:

@@ -250,7 +250,7 @@ def _never_asked(place: Place, task: Task) -> NeverAsked:
         raise place.wrong("an entry needs 'fact', e.g. fact: \"(free ?h)\"")
     pattern = _pattern(parts["fact"], task)
     names = [*parameters_of(task)[1]]
-    actions = []
+    actions: list[str] = []
     for item in parts["in"].texts() if "in" in parts else []:
         name = item.text().lower()
         if name not in names:

@@ -38,7 +38,8 @@ class Clockwork:
             return
         if state.began is None:
             state = yield Wait()
-        assert state.began is not None and state.clock is not None
+        assert state.began is not None
+        assert state.clock is not None
         due = state.began + plan.times[state.index]
         if due > state.clock:
             yield Wait(due)

@@ -1,20 +1,32 @@
 """What runs in a simulated world, its clock, and what befalls it meanwhile."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from tpvqa.chance import chance
-from tpvqa.pddl import Action, Atom, State, holds, literals
+from tpvqa.pddl import Action, Atom, State, Task, holds, literals
 from tpvqa.pddl.lasting import Lasting, Phase
 from tpvqa.worlds.outcome import Outcome
-
-if TYPE_CHECKING:
-    from tpvqa.worlds.simulation import Simulation
+from tpvqa.worlds.undo import Undoing
 
 _SLACK = 1e-3
 """So much before its time an action may be ended, as times are rounded."""
+
+
+class TrueState(Protocol):
+    """A simulation, as far as it is needed here; see `Simulation`."""
+
+    task: Task
+    state: State
+    ended: list[Atom]
+    undoing: Sequence[Undoing]
+    seed: int
+    episode: int
+
+    def become(self, after: State) -> None:
+        """Change the true state."""
 
 
 @dataclass(slots=True)
@@ -45,7 +57,7 @@ class RunningActions:
         interruption: That probability.
     """
 
-    def __init__(self, simulation: "Simulation", lasting: Lasting, interruption: float):
+    def __init__(self, simulation: TrueState, lasting: Lasting, interruption: float):
         self._simulation, self._lasting = simulation, lasting
         self.interruption = interruption
         self.clock = 0.0
@@ -186,9 +198,7 @@ class RunningActions:
             draws = _finite(which), _finite(how)
             if not all(0 <= draw < 1 for draw in draws):
                 raise ValueError("a draw is not between 0 and 1")
-            runs[action] = _Run(
-                _finite(began), None if breaks is None else _finite(breaks), draws
-            )
+            runs[action] = _Run(_finite(began), None if breaks is None else _finite(breaks), draws)
         clock = _finite(snapshot["clock"])
         self._runs, self.clock = runs, clock
 

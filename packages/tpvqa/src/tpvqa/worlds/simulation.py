@@ -77,7 +77,7 @@ class Simulation:
         self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
         self.moved = moved
         self.redo, self.dead = Redo(redo), dead
-        self.undoing = self.rules.undo if undoing is None else undoing
+        self.undoing: Sequence[Undoing] = self.rules.undo if undoing is None else undoing
         self.start = task.init if start is None else start
         self.seed, self.episode = seed, episode
         self.state: State = self.start
@@ -85,7 +85,9 @@ class Simulation:
         self.attempts: Counter[str] = Counter()
         self.ended: list[Atom] = []
         self._sensors = Sensors(self.rules.sensed, task)
-        self.running = task.lasting and RunningActions(self, task.lasting, interruption)
+        self.running: RunningActions | None = None
+        if task.lasting is not None:
+            self.running = RunningActions(self, task.lasting, interruption)
 
     def undoable(self) -> dict[Atom, list[tuple[str, State]]]:
         """The achieved facts that a disturbance could end now, with what each would lead to."""

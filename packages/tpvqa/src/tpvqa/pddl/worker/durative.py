@@ -15,29 +15,23 @@ How long it lasts is told beside them, see `taken_apart`.
 from collections.abc import Iterator
 from typing import Any
 
-from tpvqa.errors import shown, suggestion_or_list
+from tpvqa.errors import suggestion_or_list
+from tpvqa.pddl.worker.durations import (
+    Duration,
+    DurativeError,
+    blocks,
+    check_functions,
+    quickest,
+    said,
+    sections,
+    values_of,
+)
 from tpvqa.pddl.worker.lisp import Block, Word, line_of
 
 PREFIXES = ("start", "while", "end", "cancel")
 _REQUIREMENTS = (":durative-actions", ":duration-inequalities")
 _TIMES = (("at", "start"), ("over", "all"), ("at", "end"))
-_BOUNDS = {"=": (0, 1), ">=": (0,), "<=": (1,)}
-_ARITHMETIC = ("+", "-", "*", "/")
 _NUMERIC = ("increase", "decrease", "assign", "scale-up", "scale-down", "<", ">", "<=", ">=", "=")
-
-
-class DurativeError(Exception):
-    """A durative action that cannot be read.
-
-    Args:
-        message: What is wrong and what was expected.
-        part: "domain" or "problem".
-        line: The line, where known.
-    """
-
-    def __init__(self, message: str, part: str, line: int | None):
-        super().__init__(message)
-        self.message, self.part, self.line = message, part, line
 
 
 def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
@@ -55,26 +49,29 @@ def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
     Raises:
         DurativeError: They cannot be read, or hold what is not known.
     """
-    found = list(_sections(domain, ":durative-action"))
+    found = list(sections(domain, ":durative-action"))
     if not found:
         return None
-    for section in _sections(domain, ":requirements"):
+    for section in sections(domain, ":requirements"):
         section[:] = [word for word in section if word not in _REQUIREMENTS]
-    taken = {str(each[1]) for each in _sections(domain, ":action") if len(each) > 1}
+    taken = {str(each[1]) for each in sections(domain, ":action") if len(each) > 1}
     declared = [
-        str(each[0]) for part in _sections(domain, ":predicates") for each in part[1:] if each
+        str(each[0])
+        for part in sections(domain, ":predicates")
+        for each in part[1:]
+        if isinstance(each, Block) and each
     ]
     actions = [_Durative(section, taken, declared) for section in found]
     place = next(n for n, section in enumerate(domain) if section is found[0])
     domain[:] = [section for section in domain if all(section is not each for each in found)]
     domain[place:place] = [snap for action in actions for snap in action.snaps()]
     _declare(domain, [action.running for action in actions])
-    functions = {name for action in actions for name in action.functions}
-    _check_functions(domain, problem, functions)
+    functions = {name for action in actions for name in action.duration.functions}
+    check_functions(domain, problem, functions)
     return {
         "actions": [action.described() for action in actions],
-        "values": _values(domain, problem, functions),
-        "quickest": _quickest(problem),
+        "values": values_of(domain, problem, functions),
+        "quickest": quickest(problem),
     }
 
 
@@ -103,8 +100,7 @@ class _Durative:
         variables = [word for word in self._parameters if str(word).startswith("?")]
         self._atom = _block(self.line, f"running-{name}", *variables)
         self.running = _block(self.line, f"running-{name}", *self._parameters)
-        self.functions: set[str] = set()
-        self.duration = self._bounds()
+        self.duration = Duration(name, self._parts[":duration"])
         self._conditions = [self._at(":condition", time) for time in _TIMES]
         self._effects = [self._at(":effect", time) for time in _TIMES]
         if self._effects[1]:
@@ -126,7 +122,7 @@ class _Durative:
             if key not in known:
                 written = f" (it is called {known[2]} here)" * (key == ":precondition")
                 raise self._wrong(
-                    f"{_said(key)} stands in the durative action {self.name}{written}"
+                    f"{said(key)} stands in the durative action {self.name}{written}"
                     + suggestion_or_list(str(key), known),
                     line_of(key),
                 )
@@ -161,7 +157,7 @@ class _Durative:
     def described(self) -> dict[str, Any]:
         """What its parts do not say."""
         variables = [str(word) for word in self._atom[1:]]
-        return {"name": str(self.name), "variables": variables, "duration": self.duration}
+        return {"name": str(self.name), "variables": variables, "duration": self.duration.bounds}
 
     def _at(self, key: str, time: tuple[str, str]) -> list[Block]:
         """The conditions or effects of a time, as parts of a conjunction."""
@@ -171,7 +167,7 @@ class _Durative:
     def _projected(self, block: object, time: tuple[str, str], key: str) -> Iterator[Block]:
         head = block[0] if isinstance(block, Block) and block else None
         if not isinstance(block, Block) or head is None:
-            raise self._wrong(f"{_said(block)} stands in {key} of {self.name}", line_of(block))
+            raise self._wrong(f"{said(block)} stands in {key} of {self.name}", line_of(block))
         if head == "and":
             for part in block[1:]:
                 yield from self._projected(part, time, key)
@@ -188,7 +184,7 @@ class _Durative:
         else:
             self._check_plain(block)
             raise self._wrong(
-                f"{_said(block)} in {key} of {self.name} has no time; expected (at start …), "
+                f"{said(block)} in {key} of {self.name} has no time; expected (at start …), "
                 "(over all …) or (at end …) around it",
                 block.line,
             )
@@ -198,7 +194,9 @@ class _Durative:
         if not effects:
             return
         now = list(self._projected(block[1], time, "(when …)"))
-        all_times = [part for each in _TIMES for part in self._projected(block[1], each, "(when …)")]
+        all_times = [
+            part for each in _TIMES for part in self._projected(block[1], each, "(when …)")
+        ]
         if len(now) != len(all_times):
             raise self._wrong(
                 f"a conditional effect of {self.name} has its condition at another time than its "
@@ -211,7 +209,7 @@ class _Durative:
 
     def _check_plain(self, block: object) -> None:
         """See that there are no numbers in it that change."""
-        for part in _blocks(block):
+        for part in blocks(block):
             head = part[0] if part else ""
             if "#t" in part:
                 raise self._wrong(
@@ -221,158 +219,22 @@ class _Durative:
                 )
             if head in _NUMERIC and any(isinstance(each, Block) for each in part[1:]):
                 raise self._wrong(
-                    f"{_said(part)} in the durative action {self.name} is about numbers, which "
+                    f"{said(part)} in the durative action {self.name} is about numbers, which "
                     "are known in :duration alone; say by a fact what they come to",
                     line_of(part),
                 )
             if head in (">", "<", "<=", ">="):
-                raise self._wrong(f"{_said(part)} in {self.name} is about numbers", line_of(part))
-
-    def _bounds(self) -> list[Any]:
-        """The least and the greatest duration."""
-        bounds: list[Any] = [None, None]
-        block = self._parts[":duration"]
-        for part in block[1:] if block[:1] == ["and"] else [block]:
-            if isinstance(part, Block) and part[:2] == ["at", "start"] and len(part) == 3:
-                part = part[2]
-            said = isinstance(part, Block) and len(part) == 3 and part[1] == "?duration"
-            if not said or str(part[0]) not in _BOUNDS:  # type: ignore[index]
-                raise self._wrong(
-                    f"{_said(part)} does not say how long {self.name} lasts; expected "
-                    "(= ?duration …), (>= ?duration …) or (<= ?duration …)",
-                    line_of(part),
-                )
-            for which in _BOUNDS[str(part[0])]:  # type: ignore[index]
-                bounds[which] = self._number(part[2])  # type: ignore[index]
-        if None in bounds:
-            side = "least" if bounds[0] is None else "most"
-            raise self._wrong(
-                f"{self.name} says not how long it lasts at {side}; expected (= ?duration …), or "
-                "both (>= ?duration …) and (<= ?duration …)",
-                block.line,
-            )
-        return bounds
-
-    def _number(self, said: object) -> Any:
-        if isinstance(said, str) and is_number(said):
-            return float(said)
-        if isinstance(said, Block) and len(said) == 3 and said[0] in _ARITHMETIC:
-            return [str(said[0]), self._number(said[1]), self._number(said[2])]
-        words = said if isinstance(said, Block) else [said]
-        if not words or not all(isinstance(word, str) for word in words) or "?duration" in words:
-            raise self._wrong(
-                f"{_said(said)} is no duration; expected a number, a function or one of "
-                f"{' '.join(_ARITHMETIC)} with two of such",
-                line_of(said),
-            )
-        self.functions.add(str(words[0]))
-        return [*map(str, words)]
+                raise self._wrong(f"{said(part)} in {self.name} is about numbers", line_of(part))
 
 
 def _declare(domain: Block, running: list[Block]) -> None:
-    for section in _sections(domain, ":predicates"):
+    for section in sections(domain, ":predicates"):
         section += running
         return
-    place = next(n for n, part in enumerate(domain) if isinstance(part, Block) and part[0] == ":action")
+    place = next(
+        n for n, part in enumerate(domain) if isinstance(part, Block) and part[0] == ":action"
+    )
     domain.insert(place, _block(domain.line, ":predicates", *running))
-
-
-def _check_functions(domain: Block, problem: Block, functions: set[str]) -> None:
-    declared = {
-        str(each[0])
-        for section in _sections(domain, ":functions")
-        for each in section
-        if isinstance(each, Block) and each
-    }
-    for section in _sections(domain, ":action"):
-        for block in _blocks(section):
-            if block[:1] and block[0] in functions and block[0] in declared:
-                raise DurativeError(
-                    f"{_said(block)} says how long an action lasts, and is spoken of in another "
-                    "action too; take a function of its own for one of them",
-                    "domain",
-                    block.line,
-                )
-    for name in sorted(functions - declared):
-        raise DurativeError(
-            f"a duration speaks of {shown(name)}, which (:functions …) does not declare"
-            + suggestion_or_list(name, declared),
-            "domain",
-            domain.line,
-        )
-    for section in _sections(problem, ":init"):
-        for fact in section[1:]:
-            if isinstance(fact, Block) and fact[:1] == ["at"] and len(fact) == 3:
-                if isinstance(fact[1], str) and is_number(fact[1]) and isinstance(fact[2], Block):
-                    raise DurativeError(
-                        f"{_said(fact)} is a timed initial literal, which is not known; bring it "
-                        "about by a durative action of that duration",
-                        "problem",
-                        fact.line,
-                    )
-
-
-def _values(domain: Block, problem: Block, functions: set[str]) -> list[list[Any]]:
-    """The values of functions; what declares and states them is taken out."""
-    for section in _sections(domain, ":functions"):
-        kept: list[object] = []
-        dropped = False
-        for word in section:
-            if isinstance(word, Block):
-                dropped = bool(word) and word[0] in functions
-                if not dropped:
-                    kept.append(word)
-            elif not dropped or word not in ("-", "number"):
-                kept.append(word)
-        section[:] = kept
-    domain[:] = [part for part in domain if part != [":functions"]]
-    values: list[list[Any]] = []
-    for section in _sections(problem, ":init"):
-        for fact in list(section[1:]):
-            if not isinstance(fact, Block) or fact[:1] != ["="] or len(fact) != 3:
-                continue
-            called = fact[1] if isinstance(fact[1], Block) else [fact[1]]
-            if not called or called[0] not in functions:
-                continue
-            if not isinstance(fact[2], str) or not is_number(fact[2]):
-                raise DurativeError(f"{_said(fact)} gives no number", "problem", fact.line)
-            values.append([[*map(str, called)], float(fact[2])])
-            section[:] = [each for each in section if each is not fact]
-    return values
-
-
-def _quickest(problem: Block) -> bool:
-    """Whether the quickest plan is asked for; that is taken out."""
-    for section in _sections(problem, ":metric"):
-        if any(word == "total-time" for block in _blocks(section) for word in block):
-            if section[1:] not in (["minimize", ["total-time"]], ["minimize", "total-time"]):
-                raise DurativeError(
-                    "(:metric …) speaks of total-time and of more, which is not known; expected "
-                    "(:metric minimize (total-time))",
-                    "problem",
-                    section.line,
-                )
-            problem[:] = [part for part in problem if part is not section]
-            return True
-    return False
-
-
-def is_number(word: str) -> bool:
-    """Whether a word is a number as PDDL writes them."""
-    return word.replace(".", "", 1).isdigit() and word.isascii()
-
-
-def _sections(definition: Block, name: str) -> Iterator[Block]:
-    for part in list(definition):
-        if isinstance(part, Block) and part[:1] == [name]:
-            yield part
-
-
-def _blocks(item: object) -> Iterator[Block]:
-    if isinstance(item, Block):
-        yield item
-        for part in item:
-            yield from _blocks(part)
 
 
 def _block(line: int, *parts: object) -> Block:
@@ -385,10 +247,3 @@ def _opposite(literal: Block) -> Any:
     if literal[:1] == ["not"] and len(literal) == 2:
         return literal[1]
     return _block(literal.line, "not", literal)
-
-
-def _said(item: object) -> str:
-    def text(part: object) -> str:
-        return f"({' '.join(map(text, part))})" if isinstance(part, list) else str(part)
-
-    return shown(text(item))

@@ -10,7 +10,8 @@ from fast_downward.translate.pddl_parser import parsing_functions
 from fast_downward.translate.pddl_parser.parse_error import ParseError
 
 from tpvqa.errors import shown, suggestion_or_list
-from tpvqa.pddl.worker.durative import DurativeError, taken_apart
+from tpvqa.pddl.worker.durations import DurativeError
+from tpvqa.pddl.worker.durative import taken_apart
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
 from tpvqa.pddl.worker.requirements import beyond
 from tpvqa.pddl.worker.typing_check import ill_typed

@@ -122,10 +122,8 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
         missing = problem.kind.features - known
         if missing:
             said = ", ".join(sorted(each.lower().replace("_", " ") for each in missing))
-            return {
-                "kind": "crash",
-                "reason": f"the engine does not know {said}; aries and tamer know actions that last",
-            }
+            reason = f"the engine does not know {said}; aries and tamer know actions that last"
+            return {"kind": "crash", "reason": reason}
         result = _solved(engine, problem, request["seconds"], better=better)
     plan = result.plan
     if plan is not None and result.status in MET:
@@ -152,8 +150,9 @@ def _solved(engine: Any, problem: Any, seconds: float | None, *, better: bool) -
             if result.plan is not None:
                 best = result
         if best is not None:
-            best = PlanGenerationResult(PlanGenerationResultStatus.SOLVED_SATISFICING, best.plan, "")
-            return best
+            return PlanGenerationResult(
+                PlanGenerationResultStatus.SOLVED_SATISFICING, best.plan, ""
+            )
     left = None if seconds is None else max(0.1, seconds - (time.monotonic() - began))
     return engine.solve(problem, timeout=left)
 
