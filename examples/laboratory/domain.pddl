@@ -13,7 +13,7 @@
   (:action open :parameters (?a - autoclave)
     :precondition (and (shut ?a) (gripper_free))
     :effect (and (opened ?a) (not (shut ?a))))
-  (:action shut :parameters (?a - autoclave)
+  (:action close :parameters (?a - autoclave)
     :precondition (and (opened ?a) (gripper_free))
     :effect (and (shut ?a) (not (opened ?a))))
   (:durative-action load :parameters (?i - instrument ?p - table ?a - autoclave)

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import groupby, permutations
 from typing import Any
 
 from tpvqa.errors import PlannerError
@@ -11,6 +12,7 @@ from tpvqa.pddl.lasting import Phase, Running, without
 from tpvqa.planning.propositional import Propositional, propositional
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 
+_MOST_AT_ONCE = 6
 SOON = 0.01
 """The time that is left to an action whose time is over and that has not been ended yet."""
 
@@ -51,6 +53,11 @@ class Schedule:
             goal=Conjunction((ground.goal, *ends)),
             actions=tuple(map(self._stripped, ground.actions)),
         )
+
+    def _own(self, number: int) -> Action:
+        """An action as its author wrote it."""
+        action = self.ground.actions[number]
+        return self.task.action(action.name, action.arguments)
 
     def _stripped(self, action: Action) -> Action:
         """A part of a durative action without what holds anyhow where it comes."""
@@ -106,13 +113,14 @@ class Schedule:
         seconds = time.perf_counter() - start
         match reply["kind"]:
             case "plan":
-                chosen = [self.ground.actions[number] for _, number in reply["happenings"]]
-                actions = tuple(self.task.action(each.name, each.arguments) for each in chosen)
-                times = tuple(float(at) for at, _ in reply["happenings"])
+                happenings = [(float(at), number) for at, number in reply["happenings"]]
+                steps = [(at, self._own(number)) for at, number in happenings]
+                actions = in_order(self.task, steps, self.state)
                 wrong = flaw(self.task, actions, self.state)
                 if wrong is not None:
                     reason = f"the plan that came back does not work: {wrong}"
                     return Crashed(reason, name, seconds)
+                times = tuple(at for at, _ in steps)
                 return Plan(actions, sum(a.cost for a in actions), name, seconds, times)
             case "timeout":
                 return TimedOut(limit or 0.0, name, seconds)
@@ -121,11 +129,27 @@ class Schedule:
         return Crashed(reply.get("reason", reply["kind"]), name, seconds)
 
 
-def flaw(task: Task, actions: Sequence[Action], state: State) -> str | None:
-    """Why parts of actions that last, in their order, do not lead to the goal; None if they do.
+def in_order(task: Task, steps: Sequence[tuple[float, Action]], state: State) -> tuple[Action, ...]:
+    """Actions with their times in an order in which they can be done one after the other.
 
-    What must hold while an action runs has to hold after everything that comes until its end; all
-    actions have to have ended.
+    What comes at one time may come in any order for an engine, unless it bears on each other; but
+    one may begin what another has to hold for meanwhile.
+    """
+    found: list[Action] = []
+    for _, group in groupby(steps, key=lambda step: step[0]):
+        actions = [action for _, action in group]
+        orders = permutations(actions) if len(actions) <= _MOST_AT_ONCE else [tuple(actions)]
+        order = next((o for o in orders if misstep(task, o, state) is None), tuple(actions))
+        for action in order:
+            state = task.apply(state, action)
+        found += order
+    return tuple(found)
+
+
+def misstep(task: Task, actions: Sequence[Action], state: State) -> str | None:
+    """What cannot be done of some parts of actions that last, or breaks what runs; None if nothing.
+
+    What must hold while an action runs has to hold after everything that comes until its end.
     """
     lasting = task.lasting
     assert lasting is not None
@@ -138,8 +162,21 @@ def flaw(task: Task, actions: Sequence[Action], state: State) -> str | None:
             if not holds(lasting.meanwhile(task, running), extended):
                 name = lasting.name_of(running.name)
                 return f"after step {place}, {action}, {name} lacks what must hold meanwhile"
+    return None
+
+
+def flaw(task: Task, actions: Sequence[Action], state: State) -> str | None:
+    """Why parts of actions that last, in their order, do not lead to the goal; None if they do.
+
+    All actions have to have ended then.
+    """
+    wrong = misstep(task, actions, state)
+    if wrong is not None:
+        return wrong
+    for action in actions:
+        state = task.apply(state, action)
     if not task.goal_holds(state):
         return "the goal does not hold at its end"
-    if lasting.under_way(task, state):
+    if task.lasting is not None and task.lasting.under_way(task, state):
         return "an action is still running at its end"
     return None
