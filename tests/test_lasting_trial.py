@@ -14,7 +14,7 @@ from tpvqa.episodes.log import LOG
 from tpvqa.errors import TpvqaError
 from tpvqa.events import Event, Started
 from tpvqa.events.events import Acted, Acting, Asked, Decided, Ended, PlanMade, Waited
-from tpvqa.planning import Plan, Planner, PlanningResult
+from tpvqa.planning import Planner, PlanningResult
 from tpvqa.planning.unified_engine import UnifiedEngine
 from tpvqa.resuming import trial_of
 
@@ -121,7 +121,9 @@ def test_actions_overlap_and_come_at_their_times(planner: Planner) -> None:
     assert order == names
     assert began == pytest.approx(dict(zip(names, plan.times, strict=True)))
     assert began["end-sterilise"] - began["start-sterilise"] == pytest.approx(30, abs=1e-3)
-    assert order.index("start-sterilise") < order.index("start-fetch") < order.index("end-sterilise")
+    assert (
+        order.index("start-sterilise") < order.index("start-fetch") < order.index("end-sterilise")
+    )
 
 
 def test_what_fails_while_it_runs_is_mended_by_looking(planner: Planner) -> None:

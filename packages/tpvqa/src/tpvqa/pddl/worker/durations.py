@@ -1,6 +1,6 @@
 """How long actions last: the durations of a domain, and what its problem says of them."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from tpvqa.errors import shown, suggestion_or_list
@@ -34,7 +34,7 @@ class Duration:
     Attributes:
         bounds: The least and the greatest duration, each a number, `[function, argument, …]` or an
             operator with two of such.
-        functions: The functions that it speaks of.
+        functions: The functions that it speaks of, and where.
 
     Raises:
         DurativeError: It says something else.
@@ -42,7 +42,7 @@ class Duration:
 
     def __init__(self, name: str, written: Block):
         self._name = name
-        self.functions: set[str] = set()
+        self.functions: dict[str, int | None] = {}
         self.bounds = self._read(written)
 
     def _wrong(self, message: str, line: int | None) -> DurativeError:
@@ -83,11 +83,11 @@ class Duration:
                 f"{' '.join(_ARITHMETIC)} with two of such",
                 line_of(item),
             )
-        self.functions.add(str(words[0]))
+        self.functions[str(words[0])] = line_of(words)
         return [*map(str, words)]
 
 
-def check_functions(domain: Block, problem: Block, functions: set[str]) -> None:
+def check_functions(domain: Block, problem: Block, functions: Mapping[str, int | None]) -> None:
     """See that durations speak of what is declared, and that nothing else is about time.
 
     Raises:
@@ -108,12 +108,12 @@ def check_functions(domain: Block, problem: Block, functions: set[str]) -> None:
                     "domain",
                     block.line,
                 )
-    for name in sorted(functions - declared):
+    for name in sorted(functions.keys() - declared):
         raise DurativeError(
             f"a duration speaks of {shown(name)}, which (:functions …) does not declare"
             + suggestion_or_list(name, declared),
             "domain",
-            domain.line,
+            functions[name],
         )
     for section in sections(problem, ":init"):
         for fact in section[1:]:
@@ -133,7 +133,7 @@ def _is_timed(fact: Block) -> bool:
     return isinstance(fact[1], str) and is_number(fact[1])
 
 
-def values_of(domain: Block, problem: Block, functions: set[str]) -> list[list[Any]]:
+def values_of(domain: Block, problem: Block, functions: Collection[str]) -> list[list[Any]]:
     """The values of functions; what declares and states them is taken out."""
     for section in sections(domain, ":functions"):
         kept: list[object] = []

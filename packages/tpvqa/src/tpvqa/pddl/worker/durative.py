@@ -66,7 +66,7 @@ def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
     domain[:] = [section for section in domain if all(section is not each for each in found)]
     domain[place:place] = [snap for action in actions for snap in action.snaps()]
     _declare(domain, [action.running for action in actions])
-    functions = {name for action in actions for name in action.duration.functions}
+    functions = {k: line for each in actions for k, line in each.duration.functions.items()}
     check_functions(domain, problem, functions)
     return {
         "actions": [action.described() for action in actions],
