@@ -1,6 +1,7 @@
 """Plans of what lasts, beside unified-planning's own reader of PDDL and its own validator."""
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -87,13 +88,14 @@ def valid(texts: tuple[str, str], task: Task, steps: Sequence[Step]) -> bool:
     problem = PDDLReader().parse_problem_string(*texts)
     problem.clear_quality_metrics()
     lasting, timed = task.lasting, []
+    said = problem.environment.expression_manager.ObjectExp
     assert lasting is not None
     for place, (at, action) in enumerate(steps):
         phase, name = lasting.phase_of(action.name), lasting.name_of(action.name) or action.name
         if phase in (Phase.END, Phase.WHILE):
             continue
         objects = [problem.object(word) for word in action.arguments]
-        instance = ActionInstance(problem.action(name), tuple(map(_expression(problem), objects)))
+        instance = ActionInstance(problem.action(name), tuple(map(said, objects)))
         lasts = None
         if phase is Phase.START:
             end = lasting.part(task, action, Phase.END)
@@ -104,13 +106,7 @@ def valid(texts: tuple[str, str], task: Task, steps: Sequence[Step]) -> bool:
     return bool(validator.validate(problem, TimeTriggeredPlan(timed, problem.environment)))
 
 
-def _expression(problem):  # type: ignore[no-untyped-def]
-    return problem.environment.expression_manager.ObjectExp
-
-
-def _exact(number: float):  # type: ignore[no-untyped-def]
-    from fractions import Fraction
-
+def _exact(number: float) -> Fraction:
     return Fraction(number).limit_denominator(10_000)
 
 
@@ -145,3 +141,18 @@ def test_plans_are_right_also_from_the_midst_of_what_runs(
     if isinstance(rest, Plan):
         later = [(now + at, a) for at, a in zip(rest.times, rest.actions, strict=True)]
         assert valid(texts, task, done + later)
+
+
+def test_a_shipped_domain_is_planned_with_what_overlaps(engine: UnifiedEngine) -> None:
+    files = LABORATORY / "domain.pddl", LABORATORY / "problem.pddl"
+    task, texts = load_task(*files), tuple(file.read_text(encoding="utf-8") for file in files)
+    plan = engine.plan(task)
+    assert isinstance(plan, Plan), plan
+    steps = list(zip(plan.times, plan.actions, strict=True))
+    assert valid((texts[0], texts[1]), task, steps)
+    looking = Watching(engine).plan(task)
+    assert isinstance(looking, Plan)
+    assert flaw(task, looking.actions, task.init) is None
+    assert [*looking.times] == sorted(looking.times)
+    names = [action.name for action in looking.actions]
+    assert names.count("while-sterilise") == names.count("while-load") == 3

@@ -122,7 +122,7 @@ def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
         yield Finding(
             "plan-not-sought",
             Severity.NOTE,
-            f"whether there is a plan was not tried: {planner.name} does not know actions that last",
+            f"whether there is a plan was not tried: {planner.name} does not know what lasts",
             "Run `tpvqa plan --planner up:aries` on the same files.",
             file,
             line,

@@ -5,7 +5,7 @@ The worker takes a durative action apart into actions without duration (see
 """
 
 import operator
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -117,6 +117,12 @@ class Lasting:
     def meanwhile(self, task: Actions, action: Action) -> Condition:
         """What must hold while the action is running that an action is a part of."""
         return without(self.part(task, action, Phase.WHILE).precondition, self.running(action))
+
+    def looks(self, task: Actions, actions: Iterable[Action]) -> Iterator[Action]:
+        """The look at each action that lasts whose start is among some actions."""
+        for action in actions:
+            if self.phase_of(action.name) is Phase.START:
+                yield self.part(task, action, Phase.WHILE)
 
     def under_way(self, task: Actions, state: State) -> tuple[Action, ...]:
         """What every action began with that is running in a state."""

@@ -168,7 +168,8 @@ class Task:
 
     @cached_property
     def _ground_actions(self) -> tuple[Action, ...]:
-        return tuple(self.action(words[0], words[1:]) for words in self.reachable_actions)
+        actions = tuple(self.action(words[0], words[1:]) for words in self.reachable_actions)
+        return actions if self.lasting is None else (*actions, *self.lasting.looks(self, actions))
 
     def atoms(self) -> frozenset[Atom]:
         """The atoms that change or are derived, and are reachable as `ground_actions` are."""

@@ -5,8 +5,8 @@ What a durative action `heat` says becomes four actions over the same parameters
 - `start-heat` needs the conditions at start and has the effects at start;
 - `while-heat` needs the conditions over all, and changes nothing: it stands for a look at them;
 - `end-heat` needs the conditions over all and at end and has the effects at end;
-- `cancel-heat` stops it and takes back its effects at start, but for conditional and quantified
-  ones; nothing of its end comes to pass;
+- `cancel-heat` stops it and takes back its effects at start where they are all still as it left
+  them, but for conditional and quantified ones; nothing of its end comes to pass;
 - `(running-heat …)` holds in between.
 
 How long it lasts is told beside them, see `taken_apart`.
@@ -29,6 +29,7 @@ from tpvqa.pddl.worker.durations import (
 from tpvqa.pddl.worker.lisp import Block, Word, line_of
 
 PREFIXES = ("start", "while", "end", "cancel")
+_UNPLANNED = ("while", "cancel")
 _REQUIREMENTS = (":durative-actions", ":duration-inequalities")
 _TIMES = (("at", "start"), ("over", "all"), ("at", "end"))
 _NUMERIC = ("increase", "decrease", "assign", "scale-up", "scale-down", "<", ">", "<=", ">=", "=")
@@ -73,6 +74,19 @@ def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
         "values": values_of(domain, problem, functions),
         "quickest": quickest(problem),
     }
+
+
+def leave_out_unplanned(task: Any) -> None:
+    """Take what no plan is made of out of a translator's task: looks, and what is cancelled.
+
+    They reach nothing that is not reached without them. But they keep mutex groups from being
+    found: what is cancelled takes back facts that its precondition does not name.
+    """
+    if task.durative is not None:
+        names = {
+            f"{part}-{each['name']}" for each in task.durative["actions"] for part in _UNPLANNED
+        }
+        task.actions = [action for action in task.actions if action.name not in names]
 
 
 class _Durative:
@@ -141,7 +155,9 @@ class _Durative:
         start, during, end = self._conditions
         begins, _, ends = self._effects
         runs, stopped = self._atom, _block(self.line, "not", self._atom)
-        undone = [_opposite(each) for each in begins if each[:1] not in (["forall"], ["when"])]
+        plain = [each for each in begins if each[:1] not in (["forall"], ["when"])]
+        as_left = _block(self.line, "and", *plain)
+        undone = [_block(self.line, "when", as_left, _opposite(each)) for each in plain]
         for prefix, needs, does in (
             ("start", [stopped, *start], [runs, *begins]),
             ("while", [runs, *during], [runs]),
