@@ -8,11 +8,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tpvqa.pddl import Action, State, Task, task_from_text
+from tpvqa.pddl import Action, State, Task, load_task, task_from_text
 from tpvqa.pddl.lasting import Phase, Running
 from tpvqa.planning import Plan
 from tpvqa.planning.temporal import flaw
 from tpvqa.planning.unified_engine import UnifiedEngine
+from tpvqa.planning.watching import Watching
 
 pytest.importorskip("up_aries")
 

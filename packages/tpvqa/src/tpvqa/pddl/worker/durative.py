@@ -89,6 +89,27 @@ def leave_out_unplanned(task: Any) -> None:
         task.actions = [action for action in task.actions if action.name not in names]
 
 
+Groups = list[tuple[list[tuple[str, ...]], bool]]
+
+
+def without_running(task: Any, groups: Groups) -> Groups:
+    """Mutex groups of what is seen alone: no fact that is denied says that an action has stopped,
+    which the robot knows of itself.
+
+    Args:
+        task: The translator's task.
+        groups: The atoms of each, and whether exactly one of them holds.
+    """
+    if task.durative is None:
+        return groups
+    running, found = {f"running-{each['name']}" for each in task.durative["actions"]}, []
+    for atoms, exactly_one in groups:
+        kept = [atom for atom in atoms if atom[0] not in running]
+        if len(kept) > 1:
+            found.append((kept, exactly_one and len(kept) == len(atoms)))
+    return found
+
+
 class _Durative:
     """One durative action as its author wrote it."""
 

@@ -9,7 +9,7 @@ from typing import Any
 from fast_downward.translate import normalize, options, pddl
 
 from tpvqa.pddl.worker.describing import static_description
-from tpvqa.pddl.worker.durative import leave_out_unplanned
+from tpvqa.pddl.worker.durative import leave_out_unplanned, without_running
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
 from tpvqa.pddl.worker.inductive import First
 from tpvqa.pddl.worker.invariants import described_groups, lawful_groups
@@ -149,7 +149,7 @@ class KnownTask:
             "ground_actions": sorted(
                 {tuple(action.name.strip("()").split()) for action in here.actions}
             ),
-            "mutex_groups": groups,
+            "mutex_groups": without_running(self._task, groups),
             "left_out": sorted(self._names - there.names),
         }
 
