@@ -20,7 +20,7 @@ from tpvqa.resuming import trial_of
 
 pytest.importorskip("up_aries")
 
-LABORATORY = Path(__file__).parents[1] / "examples/laboratory"
+LABORATORY = Path(__file__).parents[1] / "examples/timed/laboratory"
 CONFIG = configured(
     domain=str(LABORATORY / "domain.pddl"),
     problem=str(LABORATORY / "problem.pddl"),
@@ -104,7 +104,7 @@ def test_every_condition_and_effect_is_asked_at_its_moment(planner: Planner) -> 
     assert (f"(end-{load})", "after", {"(held scalpel)", "(at scalpel boiler)"}) in asked
     needed = {"(at scalpel boiler)", "(shut boiler)"}
     assert asked.count((f"(while-{cycle})", "before", needed)) == 3
-    assert (f"(end-{cycle})", "after", {"(sterile scalpel)"}) in asked
+    assert (f"(end-{cycle})", "after", {"(sterilised scalpel)"}) in asked
     assert not any("running" in fact for *_, facts in asked for fact in facts)
 
 

@@ -17,7 +17,7 @@ from tpvqa.planning.watching import Watching
 
 pytest.importorskip("up_aries")
 
-LABORATORY = Path(__file__).parents[2] / "examples/laboratory"
+LABORATORY = Path(__file__).parents[2] / "examples/timed/laboratory"
 FACTS = tuple(f"f{n}" for n in range(4))
 SPACE = 0.1
 """Between what was done and what is planned from there."""

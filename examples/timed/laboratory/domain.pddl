@@ -10,7 +10,7 @@
     (gripper_free)
     (shut ?a - autoclave)
     (opened ?a - autoclave)
-    (sterile ?i - instrument)
+    (sterilised ?i - instrument)
     (laid ?i - instrument ?t - tray))
   (:functions (way ?t - tray) (cycle ?a - autoclave))
 
@@ -36,7 +36,7 @@
   (:durative-action sterilise :parameters (?i - instrument ?a - autoclave)
     :duration (= ?duration (cycle ?a))
     :condition (and (over all (at ?i ?a)) (over all (shut ?a)))
-    :effect (at end (sterile ?i)))
+    :effect (at end (sterilised ?i)))
 
   (:durative-action fetch :parameters (?t - tray ?p - table)
     :duration (= ?duration (* 2 (way ?t)))
@@ -47,7 +47,7 @@
 
   (:durative-action lay :parameters (?i - instrument ?a - autoclave ?t - tray ?p - table)
     :duration (= ?duration 4)
-    :condition (and (at start (at ?i ?a)) (at start (sterile ?i)) (at start (gripper_free))
+    :condition (and (at start (at ?i ?a)) (at start (sterilised ?i)) (at start (gripper_free))
                     (over all (held ?i)) (over all (opened ?a)) (over all (at ?t ?p)))
     :effect (and (at start (not (at ?i ?a))) (at start (not (gripper_free))) (at start (held ?i))
                  (at end (not (held ?i))) (at end (gripper_free)) (at end (laid ?i ?t)))))
