@@ -50,11 +50,11 @@ def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
     Raises:
         DurativeError: They cannot be read, or hold what is not known.
     """
+    for section in sections(domain, ":requirements"):
+        section[:] = [word for word in section if word not in _REQUIREMENTS]
     found = list(sections(domain, ":durative-action"))
     if not found:
         return None
-    for section in sections(domain, ":requirements"):
-        section[:] = [word for word in section if word not in _REQUIREMENTS]
     taken = {str(each[1]) for each in sections(domain, ":action") if len(each) > 1}
     declared = [
         str(each[0])
