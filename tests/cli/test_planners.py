@@ -35,7 +35,13 @@ def test_a_trial_in_which_something_fails_while_it_runs(
     monitor: str, code: int, tmp_path: Path
 ) -> None:
     files = Path(__file__).parents[2] / "examples/timed/laboratory"
-    words = ["run", "--domain", files / "domain.pddl", "--problem", files / "problem.pddl"]
+    words: list[str | Path] = [
+        "run",
+        "--domain",
+        files / "domain.pddl",
+        "--problem",
+        files / "problem.pddl",
+    ]
     words += ["--planner", "up:aries", "--vlm", "oracle:1.0", "--failure", "0", "--seed", "7"]
     done = subprocess.run(
         [sys.executable, "-m", "tpvqa", *words, "--monitor", monitor, "--out", "trial"],
