@@ -52,7 +52,7 @@ class PaperSimulation(Simulation):
         choice = [state for state in self.earlier if state != before]
         if not choice:
             return None, ""
-        self._become(choice[int(which * len(choice))])
+        self.become(choice[int(which * len(choice))])
         lost = sorted(before - self.state)
         return (lost[0] if lost else None), "what was so after an earlier action is so again"
 

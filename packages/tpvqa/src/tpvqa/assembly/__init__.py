@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from tpvqa import __version__
 from tpvqa.assembly.answering import answering
+from tpvqa.assembly.lasting import see_lasting, watching
 from tpvqa.assembly.simulating import simulate
 from tpvqa.assembly.told import read_told, see_fitting, stated_bound
 from tpvqa.belief.calibration import Calibration
@@ -43,9 +44,8 @@ from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, parameters_of
 from tpvqa.vlm.making import in_full
 from tpvqa.worlds import Restorable, World
-from tpvqa.worlds.capabilities import has_pictures, is_simulated, truth_of
+from tpvqa.worlds.capabilities import has_pictures, truth_of
 from tpvqa.worlds.making import make_world
-from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 if TYPE_CHECKING:
@@ -145,9 +145,12 @@ class Trial:
         if planner is None:
             planner = make_planner(config.planner.spec)
             self._closing.append(planner.close)
+        planner = watching(self.task, planner, every=config.monitor.watch)
         files = None if config.task.name is None else find_task(config.task.name)
         self.world_spec = config.world.spec or default_world(files)
-        self.simulation = self._simulate(planner)
+        self.simulation = simulate(
+            self.world_spec, self.task, self.rules, config, planner, self._begun_as, self.priors
+        )
         context = {
             **options,
             "task": self.task,
@@ -183,6 +186,7 @@ class Trial:
         }
         self.monitor: Monitor
         self.monitor, by_monitor = make_monitor(config.monitor.named, context)
+        see_lasting(self.task, world, self.monitor)
         self.weighs_answers = "calibration" in by_monitor
         if not self.weighs_answers:
             self.calibration = None
@@ -193,12 +197,6 @@ class Trial:
         if made is not vlm and isinstance(made, Closing):
             self._closing.append(made.close)
         self.parts = Parts(self.task, self.book, planner, world, made, person)
-
-    def _simulate(self, planner: Planner) -> Simulation | None:
-        """The true state, where the world is one that keeps it."""
-        if not is_simulated(load_spec(Kind.WORLD, self.world_spec)):
-            return None
-        return simulate(self.task, self.rules, self.config, planner, self._begun_as, self.priors)
 
     @property
     def world(self) -> World:

@@ -11,6 +11,8 @@ from tpvqa.events import Started
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.pddl.state_file import read_state
 from tpvqa.planning import Plan, Planner
+from tpvqa.plugins import Kind, load_spec
+from tpvqa.worlds.capabilities import is_simulated
 from tpvqa.worlds.dead import Dead
 from tpvqa.worlds.elsewhere import elsewhere
 from tpvqa.worlds.simulation import Simulation
@@ -18,19 +20,21 @@ from tpvqa.worlds.world_file import WorldRules
 
 
 def simulate(
+    world: str,
     task: Task,
     rules: WorldRules,
     config: TrialConfig,
     planner: Planner,
     begun_as: Started | None,
     priors: Priors,
-) -> Simulation:
-    """The simulation of a trial.
+) -> Simulation | None:
+    """The simulation of a trial; None where the world keeps no true state.
 
     Where no world file says what comes undone, an undone fact gives way to what held before it, as
     the belief takes it to.
 
     Args:
+        world: The specification of the world.
         task: The task.
         rules: What its world file says.
         config: What the trial is.
@@ -41,6 +45,8 @@ def simulate(
     Raises:
         TpvqaError: A skill or a first state that is named does not fit the task.
     """
+    if not is_simulated(load_spec(Kind.WORLD, world)):
+        return None
     faults = config.simulation or SimulationConfig()
     if begun_as is not None:
         told = begun_as.true_start

@@ -15,7 +15,7 @@ from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
 from tpvqa.errors import CalibrationError
 from tpvqa.events import Ended, Event, Started
-from tpvqa.events.events import Acted
+from tpvqa.events.events import Acted, Waited
 from tpvqa.labelling import LABELS, RecordedEpisode, read_recorded
 from tpvqa.labelling.inferring import inferred_rows, likelier
 from tpvqa.labelling.recorded import said_in_trial
@@ -138,7 +138,7 @@ def _label(events: list[Event], started: Started, name: str) -> Labeller:
     simulation.state = frozenset(map(Atom.parse, started.true_start or started.initial))
     labeller = Labeller(simulation, WrittenActions(task), name)
     for event in events:
-        if not isinstance(event, Acted):
+        if not isinstance(event, Acted | Waited):
             labeller(event)
             continue
         if event.truth is not None:
@@ -147,7 +147,7 @@ def _label(events: list[Event], started: Started, name: str) -> Labeller:
                 for part in (event.truth.removed, event.truth.added)
             )
             simulation.state = (simulation.state - gone) | new
-        elif event.report in (Report.DONE, Report.FAILED):
+        elif isinstance(event, Acted) and event.report in (Report.DONE, Report.FAILED):
             raise _untold(name)
         labeller(event)
     return labeller

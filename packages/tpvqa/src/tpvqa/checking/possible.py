@@ -11,6 +11,7 @@ from tpvqa.pddl.conditions import Condition
 from tpvqa.pddl.schema import ActionSchema, ConditionSchema, Junction, LiteralSchema, Quantified
 from tpvqa.planning import Plan, Planner, TimedOut, Unsolvable
 from tpvqa.planning.obstacles import obstacle
+from tpvqa.planning.protocol import TemporalPlanner
 
 
 def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Finding]:
@@ -117,6 +118,16 @@ def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
                 line,
             )
             return
+    if task.lasting is not None and not isinstance(planner, TemporalPlanner):
+        yield Finding(
+            "plan-not-sought",
+            Severity.NOTE,
+            f"whether there is a plan was not tried: {planner.name} does not know what lasts",
+            "Run `tpvqa plan --planner up:aries` on the same files.",
+            file,
+            line,
+        )
+        return
     result = planner.plan(task, timeout=timeout)
     match result:
         case Plan():
@@ -194,8 +205,11 @@ def needed_predicates(task: Task) -> Mapping[str, str]:
     found: dict[str, str] = {}
     for literal in literals(task.goal):
         found.setdefault(literal.atom.predicate, "the goal")
+    running = frozenset[str]() if task.lasting is None else task.lasting.predicates
     for schema in task.schemas:
         for predicate in _predicates(schema.precondition):
+            if predicate in running:
+                continue
             found.setdefault(predicate, f"the action {schema.name}")
     return found
 

@@ -7,6 +7,7 @@ from tpvqa.checking.finding import Finding, Severity, named
 from tpvqa.checking.places import line_of_action, line_of_predicate
 from tpvqa.checking.possible import atoms_of, needed_predicates
 from tpvqa.pddl import Action, Atom, Literal, Task
+from tpvqa.pddl.lasting import Phase
 from tpvqa.questions import QuestionBook
 from tpvqa.worlds.sensing import SensedRule
 from tpvqa.worlds.world_file import WorldRules
@@ -102,7 +103,7 @@ class Telling:
             shown[action.name] = not changed or any(
                 self.asked(each, action) or self.sensed(each.atom) for each in changed
             )
-        for name in [name for name, seen in shown.items() if not seen]:
+        for name in [name for name, seen in shown.items() if not (seen or self._quiet(name))]:
             (schema,) = (each for each in self.task.schemas if each.name == name)
             predicates = list(dict.fromkeys(e.literal.predicate for e in schema.effects))
             paste = [
@@ -127,11 +128,18 @@ class Telling:
                 self.into,
             )
 
+    def _quiet(self, action: str) -> bool:
+        """Whether an action is a part of one that lasts, of which its end tells enough."""
+        lasting = self.task.lasting
+        return lasting is not None and lasting.phase_of(action) not in (None, Phase.END)
+
     def _alike_in_what_shows(self) -> Iterator[Finding]:
         """Actions that differ in what they do and not in what shows."""
         signatures: dict[frozenset[tuple[str, bool]], tuple[Action, frozenset[Literal]]] = {}
         told: set[frozenset[str]] = set()
         for action in islice(self.task.ground_actions(), _LOOKED_AT):
+            if self._quiet(action.name):
+                continue
             effects = frozenset(e.literal for e in action.effects)
             shown = frozenset(
                 (self.book.fact(each).text if self.asked(each, action) else each.atom.pddl(),

@@ -14,6 +14,7 @@ from tpvqa.checking.places import (
 from tpvqa.checking.possible import atoms_of
 from tpvqa.drafting import Words
 from tpvqa.pddl import Action, Atom, Literal, Task
+from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import QuestionBook
 from tpvqa.questions.wordings import Wordings
 
@@ -31,9 +32,8 @@ def without_words(task: Task, given: Wordings, drafted: Words, into: str) -> Ite
         into: The questions file's name.
     """
     never = {each.fact.predicate for each in given.never_asked if each.everywhere}
-    for name in task.predicates:
-        changes = name in task.fluents | task.derived
-        if changes and name not in given.predicates and name not in never:
+    for name in seen_predicates(task):
+        if name not in given.predicates and name not in never:
             said = drafted.questions[name]
             yield Finding(
                 "fact-without-question",
@@ -45,7 +45,7 @@ def without_words(task: Task, given: Wordings, drafted: Words, into: str) -> Ite
                 ("predicates:", f'  {_key(name)}: "{said}"'),
                 into,
             )
-    for schema in task.schemas:
+    for schema in whole_actions(task):
         if schema.name not in given.say:
             say, done = drafted.actions[schema.name]
             yield Finding(

@@ -145,7 +145,8 @@ def _as_json(result: "PlanningResult") -> dict[str, Any]:
     match result:
         case Plan(actions, cost):
             steps = [{"name": step.name, "arguments": list(step.arguments)} for step in actions]
-            return {"plan": steps, "cost": cost, **who}
+            timed = {"times": list(result.times)} if result.times else {}
+            return {"plan": steps, "cost": cost, **timed, **who}
         case TimedOut(limit):
             return {"plan": None, "result": "timed out", "limit": limit, **who}
         case Unsolvable(reason):
@@ -160,6 +161,11 @@ def _as_text(result: "PlanningResult") -> str:
     match result:
         case Plan(actions, cost):
             lines = [f"{number:3d}. {step}" for number, step in enumerate(actions, start=1)]
+            if result.times:
+                width = max(len(f"{at:g}") for at in result.times)
+                lines = [
+                    f"{at:>{width}g}  {line}" for at, line in zip(result.times, lines, strict=True)
+                ]
             lines = lines or ["The goal already holds: there is nothing to do."]
             took = f"{result.seconds * 1000:.0f} ms"
             return "\n".join([*lines, f"cost {cost}, {result.planner}, {took}"])

@@ -26,9 +26,11 @@ from tpvqa.events.events import (
     Decided,
     ListenerDropped,
     Observed,
+    OutcomeRecord,
     PlanMade,
     Resumed,
     Started,
+    Waited,
 )
 from tpvqa.questions import FactWords, QuestionBook
 from tpvqa.vlm import Reply
@@ -149,6 +151,8 @@ class EpisodeView:
                 self._line(f"  [blue]▶ {marked(event.action.said)}[/]")
             case Acted():
                 self._show_outcome(event)
+            case Waited():
+                self._show_waited(event)
             case Resumed():
                 self._line("  [yellow]gone on after an interruption: looking anew[/]")
             case ListenerDropped():
@@ -235,12 +239,18 @@ class EpisodeView:
             why = f": {marked(event.message)}" if event.message else ""
             self._line(f"  [dim]the robot reports {event.report}{why}[/]")
         self._show_sensed(event)
-        if not self._truth or event.truth is None:
+        self._show_truth(event.truth)
+
+    def _show_waited(self, event: Waited) -> None:
+        self._line(f"[dim]at {event.clock:g}[/]")
+        self._show_truth(event.truth)
+
+    def _show_truth(self, truth: OutcomeRecord | None) -> None:
+        if not self._truth or truth is None:
             return
-        failure, undone = event.truth.failure, event.truth.undone
-        parts = [] if failure is None else [failure.said]
-        if undone is not None:
-            parts.append(f"{self._say(undone)} ended: {event.truth.undoing}")
+        parts = [] if truth.failure is None else [truth.failure.said]
+        if truth.undone is not None:
+            parts.append(f"{self._say(truth.undone)} ended: {truth.undoing}")
         if parts:
             self._line(f"  [dim italic]in truth: {marked('; '.join(parts))}[/]")
 

@@ -82,6 +82,12 @@ class MonitorConfig(Part):
         "(question, look, action, person, failure; with a cost of person you are asked, too).",
         min_length=1,
     )
+    watch: float | None = setting(
+        "--watch",
+        "While an action lasts, look at what must hold meanwhile each time so much of the domain's "
+        "time has passed. Default: a quarter of the action's time.",
+        gt=0,
+    )
     majority: str | None = setting(
         "--majority", "tie (at least half deny, the default) or strict (more than half)."
     )
@@ -196,6 +202,13 @@ class SimulationConfig(Part):
         "--spontaneous", "P(something is undone after a success).", 0.0, ge=0, le=1
     )
     moved: float = setting("--moved", "P(somebody moves a thing after an action).", 0.0, ge=0, le=1)
+    interruption: float = setting(
+        "--interruption",
+        "P(what an action that lasts needs meanwhile is undone while it runs).",
+        0.25,
+        ge=0,
+        le=1,
+    )
     redo: Literal["free", "risky", "refused"] = setting(
         "--redo",
         "What comes of an action whose effects hold already: free (nothing happens), risky (it "

@@ -10,6 +10,7 @@ from tpvqa.drafting.facts import Facts, Said
 from tpvqa.drafting.lexicon import HANDS
 from tpvqa.drafting.things import Label, Things
 from tpvqa.pddl import Task
+from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import fallback
 
 _FELT = ("free", "empty", "full", "busy", "clean", "available", "handempty", "handsfree")
@@ -41,8 +42,8 @@ def words(task: Task) -> Words:
     """Words that rely on no attribute of objects: to be put into a file that is there."""
     phrases = Phrases(Things(task), plain=True)
     facts, actions = Facts(phrases), Actions(phrases)
-    asked = (n for n in task.predicates if n in task.fluents | task.derived)
-    spoken = {schema.name: actions.said(schema) for schema in task.schemas}
+    asked = seen_predicates(task)
+    spoken = {schema.name: actions.said(schema) for schema in whole_actions(task)}
     return Words(
         {name: facts.said(name).wordings[0] for name in asked},
         {name: (each.say, each.done) for name, each in spoken.items()},
@@ -58,9 +59,9 @@ def draft(task: Task) -> str:
     things = Things(task)
     phrases = Phrases(things)
     facts, actions = Facts(phrases), Actions(phrases)
-    asked = [n for n in task.predicates if n in task.fluents | task.derived]
+    asked = seen_predicates(task)
     said = {name: facts.said(name) for name in asked}
-    spoken = {schema.name: actions.said(schema) for schema in task.schemas}
+    spoken = {schema.name: actions.said(schema) for schema in whole_actions(task)}
     lines = [_HEAD.format(domain=task.domain_name).rstrip(), "", "predicates:"]
     for name in asked:
         lines += _predicate(name, said[name])

@@ -9,7 +9,7 @@ from tpvqa.drivers.freshness import Freshness
 from tpvqa.drivers.plugged import MALFORMED, called, malformed
 from tpvqa.drivers.sensed import checked
 from tpvqa.errors import PlannerError, PluginError
-from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade
+from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade, Waited
 from tpvqa.events.records import (
     answered_record,
     frame_record,
@@ -24,7 +24,7 @@ from tpvqa.planning import Crashed, Planner, PlanningResult
 from tpvqa.planning.towards import plan_towards
 from tpvqa.planning.without import plan_without
 from tpvqa.questions import Question, QuestionBook
-from tpvqa.trial import Act, Pending
+from tpvqa.trial import Act, Pending, Wait
 from tpvqa.vlm import VLM, Answer, Reply
 from tpvqa.vlm.capabilities import metered, sees_before
 from tpvqa.vlm.checking import checked_answers
@@ -57,7 +57,7 @@ class Performed:
     """What came of a request: for the trial a value, for the log an event."""
 
     value: Any
-    event: PlanMade | Observed | Answered | Acted
+    event: PlanMade | Observed | Answered | Acted | Waited
 
 
 class Performer:
@@ -108,6 +108,8 @@ class Performer:
                 return self._plan(pending.request, pending.seconds)
             case Act(action):
                 return self._act(action, pending.seconds)
+            case Wait(until):
+                return self._wait(until)
 
     def goal_holds(self) -> bool | None:
         """Whether the goal holds in truth; None in a world that does not know."""
@@ -157,6 +159,11 @@ class Performer:
                 )
             except PlannerError as error:  # it was wished for, no more
                 result = Crashed(str(error), parts.planner.name, 0.0)
+        elif request.running:
+            running = request.running
+            result = called(
+                planner, "plan_meanwhile", object, task, state, running, timeout=timeout
+            )
         else:
             result = called(planner, "plan", object, task, state, timeout=timeout)
         if not isinstance(result, PlanningResult):
@@ -237,6 +244,21 @@ class Performer:
         except MALFORMED as error:
             raise malformed(world, "execute", error) from error
         return Performed(replace(execution, facts=facts), acted)
+
+    def _wait(self, until: float | None) -> Performed:
+        """Let time pass in a world in which actions last."""
+        world, before = self.parts.world, self._last_outcome()
+        clock = called(world, "wait", float, until, cancel=self.cancel)
+        outcome = self._last_outcome()
+        try:
+            waited = Waited(
+                clock=clock,
+                truth=None if outcome is before else outcome_record(outcome),
+                snapshot=self._snapshot(world),
+            )
+        except MALFORMED as error:
+            raise malformed(world, "wait", error) from error
+        return Performed(clock, waited)
 
     def _last_outcome(self) -> Outcome | None:
         return None if self._telling is None else self._telling.last_outcome

@@ -17,11 +17,12 @@ from tpvqa.events.events import (
     ListenerDropped,
     Observed,
     PlanMade,
+    Waited,
 )
 from tpvqa.events.records import answers_from, execution_from, observation_from, plan_from
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.pddl import Atom, Task
-from tpvqa.trial import Act, Pending
+from tpvqa.trial import Act, Pending, Wait
 
 E = TypeVar("E", bound=Event)
 
@@ -78,7 +79,7 @@ class Recording:
                 f"{getattr(event, 'kind', 'missing')!r} where this version would write "
                 f"{kind.model_fields['kind'].default!r}: it cannot be resumed, only shown"
             )
-        if isinstance(event, Observed | Answered | Acted) and event.snapshot is not None:
+        if isinstance(event, Observed | Answered | Acted | Waited) and event.snapshot is not None:
             self.snapshots["vlm" if isinstance(event, Answered) else "world"] = event.snapshot
         self._take(event)
         while self._events and _beside(self._events[0]):
@@ -117,6 +118,8 @@ class Recording:
                 acted = self.event(Acted)
                 self._see_known(acted)
                 return execution_from(acted)
+            case Wait():
+                return self.event(Waited).clock
 
     def _see_known(self, event: Observed | Acted) -> None:
         for each in event.facts:

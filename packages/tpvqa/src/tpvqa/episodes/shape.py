@@ -15,10 +15,12 @@ from tpvqa.events.events import (
     Event,
     ListenerDropped,
     Observed,
+    OutcomeRecord,
     PlanMade,
     QuestionRecord,
     Resumed,
     Started,
+    Waited,
 )
 from tpvqa.pddl import Atom
 
@@ -116,9 +118,9 @@ class LogShape:
             case Acted():
                 self._acting = None
                 _atoms(*(each.atom for each in event.facts))
-                if event.truth is not None:
-                    _atoms(*event.truth.added, *event.truth.removed)
-                    _atoms(*(() if event.truth.undone is None else (event.truth.undone,)))
+                _truth(event.truth)
+            case Waited():
+                _truth(event.truth)
 
     def _step(self, step: int, action: str) -> None:
         if self._plan is None or not 0 <= step < len(self._plan):
@@ -140,6 +142,12 @@ class LogShape:
                 seen.keys() != _INTRINSICS or any(abs(value) > _LARGEST for value in seen.values())
             ):
                 raise _wrong("the intrinsics of a camera are incomplete or beyond measure")
+
+
+def _truth(truth: OutcomeRecord | None) -> None:
+    if truth is not None:
+        _atoms(*truth.added, *truth.removed)
+        _atoms(*(() if truth.undone is None else (truth.undone,)))
 
 
 def _interrupted(event: Event, count: int) -> bool:

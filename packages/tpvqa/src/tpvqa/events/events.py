@@ -2,10 +2,11 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, field_serializer
+from pydantic import Field, TypeAdapter, field_serializer
 
 from tpvqa.config import Limits, TrialConfig
 from tpvqa.events.decision import Decision
+from tpvqa.events.usage import Record, UsageRecord
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 from tpvqa.worlds import Report
@@ -15,13 +16,7 @@ SCHEMA: Literal[2] = 2
 """Of the log. That of tpvqa 0.1, which did not say its number, was 1."""
 
 
-class _Record(BaseModel):
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, populate_by_name=True, allow_inf_nan=False
-    )
-
-
-class _Event(_Record):
+class _Event(Record):
     number: int = -1
     time: float = 0.0
 
@@ -96,7 +91,7 @@ class Started(_Event):
         return self.config.limits
 
 
-class ActionRecord(_Record):
+class ActionRecord(Record):
     """A ground action, and how it is said."""
 
     name: str
@@ -114,6 +109,7 @@ class PlanMade(_Event):
     A plan that is only `considered` is not followed: a monitor wanted to know what it would be.
     `limit` is that of the time, in seconds, where it passed. `without` are actions that it was not
     to have, `towards` facts that it was to bring about instead of the goal, as PDDL writes them.
+    Where actions last, `times` are when the plan's steps come.
     """
 
     kind: Literal["plan made"] = "plan made"
@@ -128,9 +124,10 @@ class PlanMade(_Event):
     considered: bool = False
     without: tuple[str, ...] = ()
     towards: tuple[str, ...] = ()
+    times: tuple[float, ...] | None = None
 
 
-class FrameRecord(_Record):
+class FrameRecord(Record):
     """A camera image that was saved beside the log; see `observation.Frame`.
 
     Attributes:
@@ -147,7 +144,7 @@ class FrameRecord(_Record):
     depth: str | None = None
 
 
-class SensedRecord(_Record):
+class SensedRecord(Record):
     """A fact that the robot measured itself, and how probable the reading makes it."""
 
     atom: str
@@ -169,7 +166,7 @@ class Observed(_Event):
     snapshot: dict[str, Any] | None = None
 
 
-class QuestionRecord(_Record):
+class QuestionRecord(Record):
     """A question as it was asked."""
 
     text: str
@@ -191,31 +188,7 @@ class Asked(_Event):
     before: int | None = None
 
 
-class UsageRecord(_Record):
-    """What asking a server took; `untold` replies did not say how many tokens."""
-
-    requests: int = Field(default=0, ge=0)
-    prompt_tokens: int = Field(default=0, ge=0)
-    completion_tokens: int = Field(default=0, ge=0)
-    untold: int = Field(default=0, ge=0)
-
-    def plus(self, other: "UsageRecord | None") -> "UsageRecord":
-        """Both together."""
-        if other is None:
-            return self
-        names = type(self).model_fields
-        return UsageRecord(**{n: getattr(self, n) + getattr(other, n) for n in names})
-
-    @property
-    def said(self) -> str:
-        """In words."""
-        tokens = f"{self.prompt_tokens:,} + {self.completion_tokens:,} tokens"
-        if self.untold:
-            tokens += f", {self.untold} replies without a count"
-        return f"{self.requests} requests, {tokens}"
-
-
-class AnswerRecord(_Record):
+class AnswerRecord(Record):
     """An answer as it came."""
 
     reply: Reply
@@ -292,7 +265,7 @@ class Acting(_Event):
     attempt: int
 
 
-class OutcomeRecord(_Record):
+class OutcomeRecord(Record):
     """What truly came of an action, for judging; see `worlds.outcome.Outcome`."""
 
     failure: Failure | None = None
@@ -316,6 +289,16 @@ class Acted(_Event):
     seconds: float
     message: str = ""
     facts: tuple[SensedRecord, ...] = ()
+    truth: OutcomeRecord | None = None
+    snapshot: dict[str, Any] | None = None
+
+
+class Waited(_Event):
+    """Time passed while actions ran, until the world's `clock` showed this. `truth` is what a
+    simulated world knows of what happened meanwhile, for judging."""
+
+    kind: Literal["waited"] = "waited"
+    clock: float
     truth: OutcomeRecord | None = None
     snapshot: dict[str, Any] | None = None
 
@@ -391,6 +374,7 @@ Event = (
     | Decided
     | Acting
     | Acted
+    | Waited
     | Resumed
     | ListenerDropped
     | Ended

@@ -17,8 +17,8 @@ from tpvqa.events.events import (
     PlanMade,
     QuestionRecord,
     SensedRecord,
-    UsageRecord,
 )
+from tpvqa.events.usage import UsageRecord
 from tpvqa.observation import NPY, PNG, Depth, Frame, Intrinsics, Observation, SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.pictures import read_file
@@ -50,7 +50,8 @@ def plan_record(result: PlanningResult, state: State, book: QuestionBook) -> Pla
     match result:
         case Plan():
             plan = tuple(action_record(action, book) for action in result.actions)
-            return record.model_copy(update={"plan": plan, "cost": result.cost})
+            times = result.times or None
+            return record.model_copy(update={"plan": plan, "cost": result.cost, "times": times})
         case Unsolvable():
             return record.model_copy(update={"result": "unsolvable", "reason": result.reason})
         case TimedOut():
@@ -66,7 +67,7 @@ def plan_from(record: PlanMade, task: Task) -> PlanningResult:
     planner, seconds = record.planner, record.seconds
     if record.result == "plan":
         actions = tuple(task.action(step.name, step.arguments) for step in record.plan)
-        return Plan(actions, record.cost, planner, seconds)
+        return Plan(actions, record.cost, planner, seconds, record.times or ())
     if record.result == "unsolvable":
         return Unsolvable(record.reason, planner, seconds)
     if record.result == "timed out":

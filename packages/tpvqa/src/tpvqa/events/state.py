@@ -22,8 +22,9 @@ from tpvqa.events.events import (
     PlanMade,
     QuestionRecord,
     Started,
-    UsageRecord,
+    Waited,
 )
+from tpvqa.events.usage import UsageRecord
 from tpvqa.pddl import Atom, State
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
@@ -82,6 +83,8 @@ class TrialState:
         replans: Replans so far.
         over: The limit that was reached; None while there is none.
         time: Seconds since the trial began.
+        clock: What the world's clock showed last, where actions last; None before.
+        began: What it showed when the plan began that is followed.
         ended: The last event.
         usage: What asking a server took so far; None where nothing was told of it.
     """
@@ -108,6 +111,8 @@ class TrialState:
     replans: int = 0
     over: EndedBecause | None = None
     time: float = 0.0
+    clock: float | None = None
+    began: float | None = None
     ended: Ended | None = None
     usage: UsageRecord | None = None
     _checked: bool = False
@@ -175,7 +180,10 @@ class TrialState:
             case PlanMade(considered=False, result="plan"):
                 first = len(event.plan) if self.first_plan is None else self.first_plan
                 change = {"plan": event, "first_plan": first, "index": 0, "attempt": 0}
-                change["when"] = "before"
+                change |= {"when": "before", "began": None}
+            case Waited():
+                change = {"clock": event.clock}
+                change["began"] = event.clock if self.began is None else self.began
             case Started():
                 change = {"started": event, "believed": frozenset(map(_atom, event.initial))}
                 change["_deadline"] = event.limits.seconds

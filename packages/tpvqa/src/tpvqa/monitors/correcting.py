@@ -11,6 +11,7 @@ from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.pddl import Atom, Literal, State
+from tpvqa.pddl.lasting import Phase
 from tpvqa.questions import FactQuestion, Way
 from tpvqa.vlm import Answer, Reply
 
@@ -34,7 +35,7 @@ class CorrectingMonitor:
         denied, answers = yield from self._asker.ask(questions)
         if denied is None:
             return give_up(questions)
-        if not denied:
+        if not denied and not (_looks_meanwhile(step) and _denied(answers)):
             return Verdict(Decision.GO_ON, tally("preconditions", answers))
         corrected = yield from self._correct(step, answers)
         if corrected == step.state:
@@ -127,6 +128,12 @@ class CorrectingMonitor:
         if self._memory is None:
             self._memory = FactMemory(step.task)
         return self._memory
+
+
+def _looks_meanwhile(step: Step) -> bool:
+    """Whether it is a look at what runs: each single fact is needed, and none outvotes another."""
+    lasting = step.task.lasting
+    return lasting is not None and lasting.phase_of(step.action.name) is Phase.WHILE
 
 
 def _denied(answers: Sequence[Answer]) -> list[Literal]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from tpvqa.pddl import Action, Atom, State
+from tpvqa.pddl.lasting import Running
 from tpvqa.questions import Question
 
 
@@ -29,12 +30,14 @@ class PlanFrom:
         followed: Whether it is to be followed, or only considered.
         without: Actions that must not be in it.
         towards: Facts that it is to bring about; none for the task's goal.
+        running: What is running meanwhile, and how much longer.
     """
 
     state: State
     followed: bool = False
     without: frozenset[Action] = frozenset()
     towards: frozenset[Atom] = frozenset()
+    running: tuple[Running, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from typing import Any
 
 from tpvqa.errors import PDDLError
 from tpvqa.pddl.description import MEMORY, described, grounded_fields, unsure_fields
+from tpvqa.pddl.lasting import Lasting
 from tpvqa.pddl.programs.loading import SUFFIX, pddl_of
 from tpvqa.pddl.schema import (
     ActionSchema,
@@ -124,6 +125,7 @@ def task_from_text(
         problem_path=problem_path,
         domain_text=domain,
         problem_text=problem,
+        lasting=Lasting.of(description["durative"]),
         **grounded_fields(description),
         **unsure_fields(description),
     )

@@ -12,6 +12,7 @@ from tpvqa.pddl.conditions import Condition, holds
 from tpvqa.pddl.derivation import Derivation
 from tpvqa.pddl.description import described, grounded_fields, key_of
 from tpvqa.pddl.ground import Action, Effect, MutexGroup
+from tpvqa.pddl.lasting import Lasting
 from tpvqa.pddl.schema import ActionSchema, AxiomSchema, ground_action
 
 __all__ = ["Action", "Effect", "MutexGroup", "Task"]
@@ -52,6 +53,7 @@ class Task:
         oneof: Facts of which exactly one holds at first: `(oneof …)`.
         clauses: Literals of which at least one holds at first: `(or …)`.
         besides: Further facts that may hold at first, see `opened_to`.
+        lasting: Its durative actions; None for a domain without any.
     """
 
     name: str
@@ -80,6 +82,7 @@ class Task:
     oneof: tuple[frozenset[Atom], ...] = field(default=(), repr=False)
     clauses: tuple[tuple[Literal, ...], ...] = field(default=(), repr=False)
     besides: frozenset[Atom] = field(default=frozenset(), repr=False)
+    lasting: Lasting | None = field(default=None, repr=False)
 
     @cached_property
     def key(self) -> str:
@@ -165,7 +168,8 @@ class Task:
 
     @cached_property
     def _ground_actions(self) -> tuple[Action, ...]:
-        return tuple(self.action(words[0], words[1:]) for words in self.reachable_actions)
+        actions = tuple(self.action(words[0], words[1:]) for words in self.reachable_actions)
+        return actions if self.lasting is None else (*actions, *self.lasting.looks(self, actions))
 
     def atoms(self) -> frozenset[Atom]:
         """The atoms that change or are derived, and are reachable as `ground_actions` are."""

@@ -11,6 +11,7 @@ from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.propositional import propositional
 from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
+from tpvqa.planning.temporal import no_time
 from tpvqa.plugins import PlainArguments
 
 _MODULE = "tpvqa.planning.engines.clingo_solving"
@@ -68,6 +69,8 @@ class ClingoPlanner(PlainArguments):
         limit = limit_of(self.timeout if timeout is None else timeout)
         state = task.init if state is None else state
         task.check_state(state)
+        if task.lasting is not None:
+            return no_time(task, self.name)
         try:
             ground = propositional(task, state)
         except PlannerError as error:

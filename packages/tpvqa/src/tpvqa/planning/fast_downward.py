@@ -12,6 +12,7 @@ from tpvqa.pddl.time_limit import limit_of
 from tpvqa.pddl.validation import Validation
 from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
+from tpvqa.planning.temporal import no_time
 from tpvqa.plugins import PlainArguments
 
 SEARCHES = ("optimal", "lama", "anytime")
@@ -136,6 +137,8 @@ class FastDownward(PlainArguments):
             state = task.init
         else:
             task.check_state(state)
+        if task.lasting is not None:
+            return no_time(task, self.name)
         leaving: dict[str, Any] | None = None
         if self.search != "optimal":
             leaving = {"keep": [], "effort": 0}

@@ -1,9 +1,11 @@
 """What a planner returns, and the seam behind which every planner stands."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from tpvqa.pddl import Action, State, Task
+from tpvqa.pddl.lasting import Running
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,12 +17,15 @@ class Plan:
         cost: Their total cost, where the problem minimises it; else their number.
         planner: Which planner and search found it.
         seconds: Wall time of the call.
+        times: When each action comes, from the plan's beginning, in the domain's units of time;
+            empty where actions take no time.
     """
 
     actions: tuple[Action, ...]
     cost: int
     planner: str
     seconds: float
+    times: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,3 +79,25 @@ class Planner(Protocol):
 
     def close(self) -> None:
         """End the processes behind it. Can be called twice."""
+
+
+@runtime_checkable
+class TemporalPlanner(Planner, Protocol):
+    """A planner that also knows how long actions last, and that they may overlap."""
+
+    def plan_meanwhile(
+        self,
+        task: Task,
+        state: State,
+        running: Sequence[Running],
+        *,
+        timeout: float | None = None,
+    ) -> PlanningResult:
+        """A plan from a state in which actions are running, whose ends are in the plan.
+
+        Args:
+            task: The task.
+            state: The atoms that hold.
+            running: What is running, and how much longer.
+            timeout: Seconds; None for the planner's default.
+        """

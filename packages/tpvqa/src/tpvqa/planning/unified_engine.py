@@ -1,17 +1,20 @@
 """Every engine of unified-planning as the planner: `up:NAME`."""
 
 import time
+from collections.abc import Sequence
 from importlib.util import find_spec
 
-from tpvqa.errors import MissingExtraError, PlannerError, PluginError, suggestion_or_list
+from tpvqa.errors import MissingExtraError, PDDLError, PlannerError, PluginError, suggestion_or_list
 from tpvqa.pddl import State, Task
 from tpvqa.pddl.description import MEMORY
+from tpvqa.pddl.lasting import Running
 from tpvqa.pddl.outside.asking import ask_engine, end_engines
 from tpvqa.pddl.outside.engines import PACKAGES, is_there
 from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.propositional import propositional
 from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
+from tpvqa.planning.temporal import Schedule
 from tpvqa.plugins import PlainArguments
 
 _MODULE = "tpvqa.planning.engines.unified_solving"
@@ -79,6 +82,8 @@ class UnifiedEngine(PlainArguments):
         limit = limit_of(self.timeout if timeout is None else timeout)
         state = task.init if state is None else state
         task.check_state(state)
+        if task.lasting is not None:
+            return self.plan_meanwhile(task, state, (), timeout=timeout)
         try:
             ground = propositional(task, state)
         except PlannerError as error:
@@ -97,6 +102,40 @@ class UnifiedEngine(PlainArguments):
         request = {"do": "plan", "engine": self.engine, "task": ground.numbered()}
         reply = ask_engine(_MODULE, request, seconds=left, memory=self.memory)
         return result_of(reply, task, state, ground, limit, self.name, start)
+
+    def plan_meanwhile(
+        self,
+        task: Task,
+        state: State,
+        running: Sequence[Running],
+        *,
+        timeout: float | None = None,
+    ) -> PlanningResult:
+        """A plan of a task whose actions last, from a state in which some are running.
+
+        Args:
+            task: The task; it has durative actions.
+            state: The atoms that hold.
+            running: What is running, and how much longer.
+            timeout: As of `plan`.
+        """
+        start = time.perf_counter()
+        limit = limit_of(self.timeout if timeout is None else timeout)
+        try:
+            schedule = Schedule(task, state, running)
+            request = {"do": "schedule", "engine": self.engine, "task": schedule.request()}
+        except (PDDLError, PlannerError) as error:
+            return Crashed(str(error), self.name, time.perf_counter() - start)
+        ground = schedule.ground
+        if not ground.in_reach and ground.whole:
+            reason = "the goal is out of reach even where nothing is ever undone"
+            return Unsolvable(reason, self.name, time.perf_counter() - start)
+        if ground.rules:
+            reason = "durative actions are not planned together with derived predicates"
+            return Crashed(reason, self.name, time.perf_counter() - start)
+        left = None if limit is None else max(0.0, limit - (time.perf_counter() - start))
+        reply = ask_engine(_MODULE, request, seconds=left, memory=self.memory)
+        return schedule.result(reply, limit, self.name, start)
 
     def close(self) -> None:
         """End its idle processes. Planning again starts new ones."""

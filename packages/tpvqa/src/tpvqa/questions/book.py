@@ -6,11 +6,13 @@ from pathlib import Path
 
 from tpvqa.pddl import Action, Atom, Condition, Disjunction, Literal, State, Task, holds, supporting
 from tpvqa.questions import fallback
+from tpvqa.questions.lasting import questions_of_running, words_of_parts
 from tpvqa.questions.question import ActionQuestion, ActionWay, FactQuestion, FactWay, Way
 from tpvqa.questions.template import Template
 from tpvqa.questions.wordings import Wording, Wordings, parameters_of, read_wordings
 
 STATIC = "no action changes it"
+UNSEEN = "that an action runs is not seen; give a question for it where it is"
 
 
 class QuestionBook:
@@ -39,6 +41,7 @@ class QuestionBook:
         self._wordings = wordings
         self._predicates, self._actions = parameters_of(task)
         self._questions = dict(wordings.predicates)
+        self._given = frozenset(wordings.predicates)
         self._say, self._done = dict(wordings.say), dict(wordings.done)
         self.fallbacks: list[str] = []
         self._texts: dict[Atom, tuple[str, tuple[Atom, ...]]] = {}
@@ -109,6 +112,8 @@ class QuestionBook:
         for pattern in self._wordings.never_asked:
             if pattern.matches(literal, name, arguments, self.task):
                 return pattern.because or "the questions file says so"
+        if self._runs(literal.atom.predicate) and literal.atom.predicate not in self._given:
+            return UNSEEN
         if self.task.changes(literal.atom):
             return None
         doubted = (p.matches(literal, None, {}, self.task) for p in self._wordings.in_doubt)
@@ -246,6 +251,10 @@ class QuestionBook:
                 )
         return tuple(each for text, each in questions.items() if text not in contradictory)
 
+    def _runs(self, predicate: str) -> bool:
+        """Whether a predicate says that an action is running."""
+        return self.task.lasting is not None and predicate in self.task.lasting.predicates
+
     # Fallbacks
 
     def _may_be_asked(self, predicate: str) -> bool:
@@ -262,11 +271,14 @@ class QuestionBook:
                 continue
             text = fallback.question_about(name, parameters)
             self._questions[name] = Template.parse(text)
-            if name not in never and self._may_be_asked(name):
+            if name not in never and not self._runs(name) and self._may_be_asked(name):
                 self._fall_back(
                     f"No question is given for the predicate {name}; asked as {text!r}."
                 )
+        lasting = self.task.lasting
         for name, parameters in self._actions.items():
+            if lasting is not None and lasting.name_of(name) is not None:
+                continue
             said = name in self._say
             if not said:
                 self._say[name] = Template.parse(fallback.say(name, parameters))
@@ -280,6 +292,12 @@ class QuestionBook:
                         f"The action {name} has no words for when it is done; said as "
                         f"{str(self._done[name])!r}."
                     )
+        for name, say, done in words_of_parts(self.task, self._say, self._done):
+            self._say.setdefault(name, say)
+            self._done.setdefault(name, done)
+        for name, question in questions_of_running(self.task, self._say):
+            if name not in self._given:
+                self._questions[name] = question
 
     def _fall_back(self, sentence: str) -> None:
         self.fallbacks.append(sentence)

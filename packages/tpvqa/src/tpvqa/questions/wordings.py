@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias, TypeVar
 
 from tpvqa.errors import PDDLError, QuestionsError, suggestion
 from tpvqa.pddl import Task
+from tpvqa.questions.lasting import parts_of
 from tpvqa.questions.never import NeverAsked
 from tpvqa.questions.question import ActionWay, Way
 from tpvqa.questions.template import Template
@@ -69,6 +70,9 @@ def parameters_of(task: Task) -> tuple[Mapping[str, list[str]], Mapping[str, lis
         schema.name: [parameter.name.lstrip("?") for parameter in schema.parameters]
         for schema in task.schemas
     }
+    if task.lasting is not None:
+        for name, variables in task.lasting.variables.items():
+            actions[name] = [variable.lstrip("?") for variable in variables]
     return predicates, actions
 
 
@@ -245,12 +249,12 @@ def _never_asked(place: Place, task: Task) -> NeverAsked:
     if "fact" not in parts:
         raise place.wrong("an entry needs 'fact', e.g. fact: \"(free ?h)\"")
     pattern = _pattern(parts["fact"], task)
-    names = [schema.name for schema in task.schemas]
-    actions = []
+    names = [*parameters_of(task)[1]]
+    actions: list[str] = []
     for item in parts["in"].texts() if "in" in parts else []:
         name = item.text().lower()
         if name not in names:
             raise item.wrong(f"the domain has no action {name!r}{suggestion(name, names)}")
-        actions.append(name)
+        actions += parts_of(task, name)
     because = parts["because"].text() if "because" in parts else ""
     return replace(pattern, actions=frozenset(actions), because=because)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Generator
 from dataclasses import replace
+from functools import partial
 from typing import Any, Literal
 
 from tpvqa.errors import PluginError
@@ -14,7 +15,8 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import State, Task
 from tpvqa.planning import Crashed, Plan, TimedOut
 from tpvqa.questions import Question, QuestionBook, Way
-from tpvqa.trial.pending import Act, Conclusion, Pending, Result, Steps, Unwatched
+from tpvqa.trial.clockwork import Clockwork
+from tpvqa.trial.pending import Act, Conclusion, Pending, Result, Steps, Unwatched, Wait
 from tpvqa.worlds import Execution, Report
 
 INTERRUPTED = "interrupted"
@@ -53,6 +55,7 @@ class _Loop:
         self.plan: Plan | None = None
         self._seen: Observation | None = None
         self._before: Observation | None = None
+        self._clockwork = Clockwork(task)
         self._records: dict[Question, QuestionRecord] = {}
 
     def run(self) -> Steps:
@@ -62,6 +65,7 @@ class _Loop:
             return Conclusion("gave up", first.reason)
         failed = yield from self._replan(None if first is None else first.plan)
         while failed is None and self.plan is not None and self._index < len(self.plan.actions):
+            yield from self._await()
             step = self._step()
             verdict = yield from self._check(self.monitor.before, step, "before")
             decided = self.state.decided
@@ -136,13 +140,29 @@ class _Loop:
             repeats_left=state.repeats_left,
         )
 
+    def _await(self) -> Generator[Any, Any, None]:
+        """Let time pass until the plan's step is due, where it has a time.
+
+        Raises:
+            _Over: The limit of time was reached meanwhile.
+        """
+        assert self.plan is not None
+        waiting = self._clockwork.due(self.plan, self.state)
+        wait = next(waiting, None)
+        while wait is not None:
+            yield from self._persist(partial(self._do, wait))
+            try:
+                wait = waiting.send(self.state)
+            except StopIteration:
+                wait = None
+
     def emit(self, event: Event) -> Generator[Event, TrialState, None]:
         """Say that something happened."""
         self.state = yield event
 
     def _do(
         self,
-        request: Request | Act,
+        request: Request | Act | Wait,
         announced: Asked | Acting | None = None,
         seen: Observation | None = None,
     ) -> Generator[Pending, Result, Any]:
@@ -180,6 +200,8 @@ class _Loop:
     ) -> Generator[Any, Any, Verdict]:
         """What the monitor decides of a step."""
         verdict: Verdict = yield from self._persist(lambda: self._perform(of(step)))
+        if when == "after":
+            verdict = self._clockwork.judged(verdict, step)
         yield from self.emit(
             Decided(
                 when=when,
@@ -221,7 +243,7 @@ class _Loop:
                 case AskPerson(question):
                     value = yield from self._ask(request, (question,))
                 case PlanFrom():
-                    value = yield from self._do(request)
+                    value = yield from self._do(self._meanwhile(request))
                 case _:
                     raise PluginError(
                         f"The monitor {self.monitor.name} asked for {request!r}; it can ask for "
@@ -270,6 +292,7 @@ class _Loop:
         """
         self._before = self._seen
         said = action_record(step.action, self.book)
+        self._clockwork.begun(step, self.state)
         acting = Acting(step=step.index, action=said, attempt=step.attempt)
         try:
             execution: Execution = yield from self._do(Act(step.action), acting)
@@ -298,7 +321,7 @@ class _Loop:
             self.plan = known
             return None
         result = yield from self._persist(
-            lambda: self._do(PlanFrom(self.state.believed, followed=True))
+            lambda: self._do(self._meanwhile(PlanFrom(self.state.believed, followed=True)))
         )
         if isinstance(result, Plan):
             self.plan = result
@@ -310,6 +333,9 @@ class _Loop:
             return Conclusion("planner timed out", message)
         crashed = isinstance(result, Crashed)
         return Conclusion("planner crashed" if crashed else "no plan", result.reason)
+
+    def _meanwhile(self, request: PlanFrom) -> PlanFrom:
+        return replace(request, running=self._clockwork.running(self.state))
 
     def _believe(self, state: State | None) -> Generator[Event, TrialState, None]:
         before = self.state.believed

@@ -19,6 +19,17 @@ class Act:
 
 
 @dataclass(frozen=True, slots=True)
+class Wait:
+    """Time is to pass while actions run; answered with what the world's clock shows then.
+
+    Attributes:
+        until: What it is to show; None for no time at all, to read it.
+    """
+
+    until: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Pending:
     """Something that a trial wants done, before it can go on.
 
@@ -30,7 +41,7 @@ class Pending:
         seconds: What the limit of time leaves for it; None for any time.
     """
 
-    request: Request | Act
+    request: Request | Act | Wait
     announced: Asked | Acting | None = None
     look: int = 0
     seen: Observation | None = None
@@ -42,7 +53,8 @@ class Result:
     """What came of what was pending.
 
     Attributes:
-        value: An `Observation`, answers, a `PlanningResult`, an `Answer` or an `Execution`.
+        value: An `Observation`, answers, a `PlanningResult`, an `Answer`, an `Execution`
+            or a time.
         state: Where the trial stands with it.
     """
 

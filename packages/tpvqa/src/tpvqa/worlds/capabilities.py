@@ -6,6 +6,7 @@ is made.
 """
 
 from collections.abc import Collection, Mapping
+from threading import Event
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from tpvqa.errors import WorldError
@@ -52,6 +53,24 @@ class Sensing(Protocol):
 
     def senses(self) -> Collection[str]:
         """The predicates of the facts that `execute` or `observe` tell of."""
+
+
+@runtime_checkable
+class Timed(Protocol):
+    """It has a clock by which actions last: it can begin one, go on, and end it later.
+
+    Of a durative action `heat` it executes `start-heat`, which begins it and comes back at once,
+    `end-heat`, which comes back when it has ended, and `cancel-heat`, which stops it;
+    `while-heat` is nothing but a look that was due.
+    """
+
+    def wait(self, until: float | None, *, cancel: Event | None = None) -> float:
+        """Let time pass, and tell what the clock shows then.
+
+        Args:
+            until: What it is to show; None for no time at all, as where it shows more already.
+            cancel: Set from another thread to stop waiting.
+        """
 
 
 class Simulated:

@@ -42,7 +42,7 @@ class _ScriptedSimulation(Simulation):
             outcome = Outcome(Failure.SCRIPT, None, "", before, before)
         if fault is None:
             return outcome
-        self._become((self.state - fault.delete) | fault.add)
+        self.become((self.state - fault.delete) | fault.add)
         gone = next(iter(sorted(fault.delete)), None)
         return Outcome(outcome.failure, gone, _UNDOING, before, self.state)
 

@@ -19,6 +19,7 @@ from tpvqa.worlds.dead import NOTHING_DEAD, Dead
 from tpvqa.worlds.earlier_truth import EarlierTruth, fingerprint
 from tpvqa.worlds.outcome import Failure, Outcome
 from tpvqa.worlds.people import somebody_moves
+from tpvqa.worlds.running import RunningActions
 from tpvqa.worlds.sensing import Sensors
 from tpvqa.worlds.shown import shown
 from tpvqa.worlds.undo import Undoing
@@ -46,6 +47,7 @@ class Simulation:
         disturbance: Probability that a failure also undoes an achieved fact.
         spontaneous: Probability that an achieved fact is undone after a success.
         moved: Probability that somebody moves a thing after an action that disturbed nothing.
+        interruption: Probability that what an action needs while it runs is undone meanwhile.
         redo: What comes of an action whose effects hold already.
         dead: Skills that never work.
         undoing: What disturbances undo; by default what the rules say.
@@ -63,6 +65,7 @@ class Simulation:
         disturbance: float = DISTURBANCE,
         spontaneous: float = 0.0,
         moved: float = 0.0,
+        interruption: float = 0.0,
         redo: Redo | str = Redo.FREE,
         dead: Dead = NOTHING_DEAD,
         undoing: Sequence[Undoing] | None = None,
@@ -74,7 +77,7 @@ class Simulation:
         self.failure, self.disturbance, self.spontaneous = failure, disturbance, spontaneous
         self.moved = moved
         self.redo, self.dead = Redo(redo), dead
-        self.undoing = self.rules.undo if undoing is None else undoing
+        self.undoing: Sequence[Undoing] = self.rules.undo if undoing is None else undoing
         self.start = task.init if start is None else start
         self.seed, self.episode = seed, episode
         self.state: State = self.start
@@ -82,6 +85,9 @@ class Simulation:
         self.attempts: Counter[str] = Counter()
         self.ended: list[Atom] = []
         self._sensors = Sensors(self.rules.sensed, task)
+        self.running: RunningActions | None = None
+        if task.lasting is not None:
+            self.running = RunningActions(self, task.lasting, interruption)
 
     def undoable(self) -> dict[Atom, list[tuple[str, State]]]:
         """The achieved facts that a disturbance could end now, with what each would lead to."""
@@ -100,7 +106,12 @@ class Simulation:
         """Try an action on the true state, and tell what skill and sensors notice."""
         self.before = self.state
         attempt, truly = self.attempts[action.pddl()], self.truly(action)
-        outcome = self._tried(action)
+        if self.running is not None and self.running.refused(action):
+            outcome = Outcome(Failure.PRECONDITION, None, "", self.state, self.state)
+        else:
+            outcome = self._tried(action)
+        if self.running is not None:
+            outcome = self.running.executed(action, attempt, outcome)
         if self.moved and outcome.undone is None:
             outcome = self._among_people(outcome, action, attempt)
         if not (self.rules.sensed or self.rules.reports):
@@ -130,6 +141,13 @@ class Simulation:
         done = self.attempts.total()
         return chance(self.seed, self.episode, "sensed", atom.pddl(), done)
 
+    def wait(self, until: float | None) -> Outcome | None:
+        """Let time pass while actions run; what came of it, None for nothing."""
+        outcome = None if self.running is None else self.running.wait(until)
+        if outcome is not None:
+            self.before = outcome.before
+        return outcome
+
     def _tried(self, action: Action) -> Outcome:
         before = self.state
         attempt = self.attempts[action.pddl()]
@@ -151,7 +169,7 @@ class Simulation:
         else:
             disturbance = self.spontaneous
             if not achieved:
-                self._become(self.task.apply(before, self.truly(action)))
+                self.become(self.task.apply(before, self.truly(action)))
         if disturbs < disturbance:
             undone, undoing = self._disturb(draw.random(), draw.random())
         return Outcome(failure, undone, undoing, before, self.state)
@@ -178,12 +196,13 @@ class Simulation:
         if found is None:
             return outcome
         gone, after = found
-        self._become(after)
+        self.become(after)
         return replace(
             outcome, undone=gone, undoing=f"somebody moves the {gone.arguments[0]}", after=after
         )
 
-    def _become(self, after: State) -> None:
+    def become(self, after: State) -> None:
+        """Change the true state."""
         self.ended += sorted(self.state - after)
         self.state = after
 
@@ -193,7 +212,7 @@ class Simulation:
             return None, ""
         atom = list(undoable)[int(which * len(undoable))]
         say, after = undoable[atom][int(how * len(undoable[atom]))]
-        self._become(after)
+        self.become(after)
         return atom, say
 
     def snapshot(self) -> dict[str, Any]:
@@ -203,6 +222,7 @@ class Simulation:
             "attempts": dict(self.attempts),
             "ended": [atom.pddl() for atom in self.ended],
             "changed": [atom.pddl() for atom in sorted(self.state ^ self.before)],
+            **({} if self.running is None else {"running": self.running.snapshot()}),
         }
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
@@ -219,6 +239,8 @@ class Simulation:
         self.task.check_state(state | {*ended} | changed)
         self.state, self.attempts, self.ended = state, Counter(attempts), ended
         self.before = state ^ changed
+        if self.running is not None:
+            self.running.restore(snapshot["running"])
 
 
 class SimulatedTruth:

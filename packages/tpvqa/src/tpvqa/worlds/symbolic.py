@@ -53,6 +53,14 @@ class SymbolicWorld(Simulated, Pictureless):
         self.last_outcome = self.simulation.execute(action)
         return self.last_outcome.execution(0.0)
 
+    def wait(self, until: float | None, *, cancel: Event | None = None) -> float:
+        """Let time pass at once; what an action needs while it runs may be undone meanwhile."""
+        outcome = self.simulation.wait(until)
+        if outcome is not None:
+            self.last_outcome = outcome
+        running = self.simulation.running
+        return 0.0 if running is None else running.clock
+
     def snapshot(self) -> Mapping[str, Any]:
         """The true state and the number of looks."""
         return {"look": self._looks, "simulation": self.simulation.snapshot()}

@@ -108,6 +108,7 @@ def static_description(task: Any) -> dict[str, Any]:
             }
             for axiom in task.axioms
         ],
+        "durative": getattr(task, "durative", None),
     }
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from fast_downward.translate import normalize, options, pddl
 
 from tpvqa.pddl.worker.describing import static_description
+from tpvqa.pddl.worker.durative import leave_out_unplanned, without_running
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
 from tpvqa.pddl.worker.inductive import First
 from tpvqa.pddl.worker.invariants import described_groups, lawful_groups
@@ -71,6 +72,7 @@ class KnownTask:
         with quiet():
             task, unsure = read(domain_text, problem_text)
             self.description = static_description(task)
+            leave_out_unplanned(task)
             normalize.normalize(task)
             hidden = give_room(task, unsure)
         self._task = task
@@ -147,7 +149,7 @@ class KnownTask:
             "ground_actions": sorted(
                 {tuple(action.name.strip("()").split()) for action in here.actions}
             ),
-            "mutex_groups": groups,
+            "mutex_groups": without_running(self._task, groups),
             "left_out": sorted(self._names - there.names),
         }
 

@@ -10,6 +10,8 @@ from fast_downward.translate.pddl_parser import parsing_functions
 from fast_downward.translate.pddl_parser.parse_error import ParseError
 
 from tpvqa.errors import shown, suggestion_or_list
+from tpvqa.pddl.worker.durations import DurativeError
+from tpvqa.pddl.worker.durative import taken_apart
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
 from tpvqa.pddl.worker.requirements import beyond
 from tpvqa.pddl.worker.typing_check import ill_typed
@@ -66,6 +68,10 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         except LispError as error:
             raise ReadingError(error.message, part, error.line) from None
         _check_kind(part, blocks[part])
+    try:
+        durative = taken_apart(blocks["domain"], blocks["problem"])
+    except DurativeError as error:
+        raise ReadingError(error.message, error.part, error.line) from None
     found = beyond(blocks["domain"])
     if found is not None:
         raise ReadingError(found[0], "domain", found[1])
@@ -76,6 +82,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         raise ReadingError(error.message, "problem", error.line) from None
     try:
         task = parsing_functions.parse_task(blocks["domain"], blocks["problem"])
+        task.durative = durative
         _check_types(task, blocks)
         _check_derived(task)
         _check_names(task)

@@ -12,15 +12,15 @@ from unified_planning.plans import PlanKind
 
 from tpvqa.pddl.outside.serving import Serving
 
-_COMPILERS = (
+COMPILERS = (
     ("DISJUNCTIVE_CONDITIONS", up.CompilationKind.DISJUNCTIVE_CONDITIONS_REMOVING),
     ("CONDITIONAL_EFFECTS", up.CompilationKind.CONDITIONAL_EFFECTS_REMOVING),
     ("NEGATIVE_CONDITIONS", up.CompilationKind.NEGATIVE_CONDITIONS_REMOVING),
 )
 """What is compiled away for engines that do not know it, in this order."""
 
-_MET = {PlanGenerationResultStatus.SOLVED_SATISFICING, PlanGenerationResultStatus.SOLVED_OPTIMALLY}
-_WHY = {
+MET = {PlanGenerationResultStatus.SOLVED_SATISFICING, PlanGenerationResultStatus.SOLVED_OPTIMALLY}
+WHY = {
     PlanGenerationResultStatus.UNSOLVABLE_INCOMPLETELY: "it found no plan, and no proof that "
     "there is none",
     PlanGenerationResultStatus.INTERNAL_ERROR: "it failed with an error of its own",
@@ -72,7 +72,7 @@ def problem_of(task: dict[str, Any]) -> Any:
     return problem
 
 
-def _without_spaces(engine: Any, folder: Path) -> None:
+def without_spaces(engine: Any, folder: Path) -> None:
     """Aries takes its program's path apart at every space."""
     program = getattr(engine, "_executable", None)
     if isinstance(program, str) and " " in program and " " not in str(folder):
@@ -89,10 +89,10 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
         return {"kind": "crash", "reason": reason}
     problem = problem_of(task)
     with up.OneshotPlanner(name=name) as engine, TemporaryDirectory() as folder:
-        _without_spaces(engine, Path(folder))
+        without_spaces(engine, Path(folder))
         _measure(problem, task, engine)
         back = []
-        for feature, kind in _COMPILERS:
+        for feature, kind in COMPILERS:
             kinds = problem.kind
             if feature in kinds.features and feature not in engine.supported_kind().features:
                 with up.Compiler(problem_kind=kinds, compilation_kind=kind) as compiler:
@@ -105,7 +105,7 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
             return {"kind": "crash", "reason": f"the engine does not know {said}"}
         result = engine.solve(problem, timeout=request["seconds"])
     plan = result.plan
-    if plan is not None and result.status in _MET:
+    if plan is not None and result.status in MET:
         if not hasattr(plan, "actions"):  # partly ordered, or with times
             plan = plan.convert_to(PlanKind.SEQUENTIAL_PLAN, problem)
         for convert in reversed(back):
@@ -119,7 +119,7 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
         return {"kind": "memory"}
     logged = [" ".join(each.message.split()) for each in result.log_messages or ()]
     told = f" ({logged[-1][-200:]})" if logged and logged[-1] else ""
-    return {"kind": "crash", "reason": _WHY.get(result.status, str(result.status)) + told}
+    return {"kind": "crash", "reason": WHY.get(result.status, str(result.status)) + told}
 
 
 def _measure(problem: Any, task: dict[str, Any], engine: Any) -> None:
@@ -135,7 +135,14 @@ def _measure(problem: Any, task: dict[str, Any], engine: Any) -> None:
 
 def answer(request: dict[str, Any]) -> dict[str, Any]:
     """What a request asks for: the engines, or a plan."""
-    return {"kind": "engines", "names": engines()} if request["do"] == "list" else solve(request)
+    match request["do"]:
+        case "list":
+            return {"kind": "engines", "names": engines()}
+        case "schedule":
+            from tpvqa.planning.engines import temporal_solving
+
+            return temporal_solving.solve(request)
+    return solve(request)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,7 @@
+(define (problem sterile_tray)
+  (:domain laboratory)
+  (:objects scalpel - instrument steel_tray - tray bench - table boiler - autoclave)
+  (:init (at scalpel bench) (in_store steel_tray) (opened boiler) (gripper_free)
+    (= (way steel_tray) 6) (= (cycle boiler) 30))
+  (:goal (laid scalpel steel_tray))
+  (:metric minimize (total-time)))

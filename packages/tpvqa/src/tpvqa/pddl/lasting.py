@@ -1,0 +1,182 @@
+"""Actions that last: what they begin with, what must hold meanwhile, how they end, how long.
+
+The worker takes a durative action apart into actions without duration (see
+`tpvqa.pddl.worker.durative`); this says which of them belong together.
+"""
+
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import Any, Protocol
+
+from tpvqa.errors import PDDLError
+from tpvqa.pddl.atoms import Atom, Literal, State
+from tpvqa.pddl.conditions import Condition, Conjunction, literals
+from tpvqa.pddl.ground import Action
+
+_ARITHMETIC: Mapping[str, Callable[[float, float], float]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
+
+
+class Actions(Protocol):
+    """A task, as far as it is needed here."""
+
+    def action(self, name: str, arguments: Iterable[str] = ()) -> Action:
+        """The ground action of a name and arguments."""
+
+
+class Phase(StrEnum):
+    """What an action without duration is of one that lasts."""
+
+    START = "start"
+    WHILE = "while"  # a look at what must hold meanwhile
+    END = "end"
+    CANCEL = "cancel"
+
+
+@dataclass(frozen=True, slots=True)
+class Running:
+    """An action that has begun and not ended.
+
+    Attributes:
+        action: What it began with.
+        left: The time until its end.
+    """
+
+    action: Action
+    left: float
+
+
+@dataclass(frozen=True)
+class Lasting:
+    """The durative actions of a domain.
+
+    Attributes:
+        variables: The parameters of each, by its name.
+        durations: The least and the greatest duration of each: a number, `[function, argument, …]`
+            or `[operator, …]` with two of such.
+        values: The values of the functions that durations refer to.
+        quickest: Whether the problem asks for the quickest plan.
+    """
+
+    variables: Mapping[str, tuple[str, ...]]
+    durations: Mapping[str, tuple[Any, Any]]
+    values: Mapping[tuple[str, ...], float]
+    quickest: bool = False
+
+    @staticmethod
+    def of(description: Mapping[str, Any] | None) -> "Lasting | None":
+        """What the worker says of them; None for a domain without any."""
+        if description is None:
+            return None
+        actions = description["actions"]
+        return Lasting(
+            {each["name"]: tuple(each["variables"]) for each in actions},
+            {each["name"]: tuple(each["duration"]) for each in actions},
+            {tuple(words): value for words, value in description["values"]},
+            description["quickest"],
+        )
+
+    @cached_property
+    def _phases(self) -> dict[str, tuple[Phase, str]]:
+        return {f"{phase}-{name}": (phase, name) for name in self.variables for phase in Phase}
+
+    def name_of(self, action: str) -> str | None:
+        """The durative action that an action is a part of; None where it is not."""
+        found = self._phases.get(action)
+        return None if found is None else found[1]
+
+    def phase_of(self, action: str) -> Phase | None:
+        """Which part of a durative action an action is; None where it is none."""
+        found = self._phases.get(action)
+        return None if found is None else found[0]
+
+    def predicate(self, name: str) -> str:
+        """What says that a durative action is running."""
+        return f"running-{name}"
+
+    @cached_property
+    def predicates(self) -> frozenset[str]:
+        """The predicates which say that an action is running."""
+        return frozenset(map(self.predicate, self.variables))
+
+    def running(self, action: Action) -> Atom:
+        """The fact that the action which an action is a part of is running."""
+        return Atom(self.predicate(self._phases[action.name][1]), action.arguments)
+
+    def part(self, task: Actions, action: Action, phase: Phase) -> Action:
+        """Another part of the same durative action."""
+        return task.action(f"{phase}-{self._phases[action.name][1]}", action.arguments)
+
+    def meanwhile(self, task: Actions, action: Action) -> Condition:
+        """What must hold while the action is running that an action is a part of."""
+        return without(self.part(task, action, Phase.WHILE).precondition, self.running(action))
+
+    def looks(self, task: Actions, actions: Iterable[Action]) -> Iterator[Action]:
+        """The look at each action that lasts whose start is among some actions."""
+        for action in actions:
+            if self.phase_of(action.name) is Phase.START:
+                yield self.part(task, action, Phase.WHILE)
+
+    def under_way(self, task: Actions, state: State) -> tuple[Action, ...]:
+        """What every action began with that is running in a state."""
+        return tuple(
+            task.action(f"{Phase.START}-{atom.predicate.removeprefix('running-')}", atom.arguments)
+            for atom in sorted(state)
+            if atom.predicate in self.predicates
+        )
+
+    def duration(self, action: Action) -> tuple[float, float]:
+        """The least and the greatest duration of the action that an action is a part of.
+
+        Raises:
+            PDDLError: A function has no value, or it does not last at all.
+        """
+        name = self._phases[action.name][1]
+        binding = dict(zip(self.variables[name], action.arguments, strict=True))
+        said = f"{name}({', '.join(action.arguments)})"
+        least, most = (self._number(part, binding, said) for part in self.durations[name])
+        if not 0 < least <= most < float("inf"):
+            raise PDDLError(
+                f"{said} lasts {least:g} to {most:g}; expected that it lasts more than nothing, "
+                "and at least no more than at most"
+            )
+        return least, most
+
+    def _number(self, written: Any, binding: Mapping[str, str], said: str) -> float:
+        if isinstance(written, float | int):
+            return float(written)
+        head, *rest = written
+        if head in _ARITHMETIC:
+            left, right = (self._number(part, binding, said) for part in rest)
+            try:
+                return _ARITHMETIC[head](left, right)
+            except ZeroDivisionError:
+                raise PDDLError(f"the duration of {said} divides by zero") from None
+        words = (head, *(binding.get(word, word) for word in rest))
+        if words not in self.values:
+            raise PDDLError(
+                f"the duration of {said} is ({' '.join(words)}), to which the initial state gives "
+                "no value"
+            )
+        return self.values[words]
+
+
+def without(condition: Condition, atom: Atom) -> Condition:
+    """A conjunction without what it says of an atom."""
+    if Literal(atom) == condition:
+        return Conjunction()
+    if not isinstance(condition, Conjunction):
+        return condition
+    return Conjunction(tuple(part for part in condition.parts if part != Literal(atom)))
+
+
+def says_something(condition: Condition) -> bool:
+    """Whether a condition speaks of any fact."""
+    return next(literals(condition), None) is not None

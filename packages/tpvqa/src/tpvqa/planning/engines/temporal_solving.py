@@ -1,0 +1,178 @@
+"""An engine of unified-planning, given a numbered task whose actions last."""
+
+import contextlib
+import math
+import time
+from fractions import Fraction
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from unified_planning import shortcuts as up
+from unified_planning.engines import PlanGenerationResult, PlanGenerationResultStatus
+
+from tpvqa.planning.engines.unified_solving import COMPILERS, MET, WHY, without_spaces
+
+BETTERING = 1.0
+"""Seconds in which a quicker plan is sought where the problem asks for the quickest."""
+_ALWAYS = ["and"]
+
+
+def scale_of(task: dict[str, Any]) -> int:
+    """What makes whole numbers of all durations, which some engines want."""
+    times = [time for *_, least, most in task["lasting"] for time in (least, most)]
+    times += [left for *_, left in task["running"]]
+    return math.lcm(*(_exact(each).denominator for each in times))
+
+
+def problem_of(task: dict[str, Any], scale: int = 1) -> Any:
+    """A numbered task as a problem: fluents f0, f1, …; actions a0, a1, … by their first number.
+
+    Args:
+        task: What `planning.temporal.Schedule.request` gives.
+        scale: What all durations are multiplied by.
+    """
+    problem = up.Problem("task")
+    fluents = [up.Fluent(f"f{n}", up.BoolType()) for n in range(task["atoms"])]
+    for fluent in fluents:
+        problem.add_fluent(fluent, default_initial_value=False)
+    for atom in task["init"]:
+        problem.set_initial_value(fluents[atom], True)
+
+    def said(condition: list[Any]) -> Any:
+        head, *parts = condition
+        if head == "and":
+            return up.And(*map(said, parts))
+        if head == "or":
+            return up.Or(*map(said, parts))
+        return up.FluentExp(fluents[head]) if parts[0] else up.Not(fluents[head])
+
+    def parts_of(condition: list[Any]) -> list[Any]:
+        return list(map(said, condition[1:] if condition[0] == "and" else [condition]))
+
+    def effects_of(number: int) -> list[tuple[Any, bool, Any]]:
+        effects = task["actions"][number][1]
+        added = {repr(condition) + str(atom) for condition, atom, holds in effects if holds}
+        return [
+            (fluents[atom], holds, up.TRUE() if condition == _ALWAYS else said(condition))
+            for condition, atom, holds in effects
+            if holds or repr(condition) + str(atom) not in added
+        ]
+
+    for number in task["instant"]:
+        action = up.InstantaneousAction(f"a{number}")
+        for part in parts_of(task["actions"][number][0]):
+            action.add_precondition(part)
+        for effect in effects_of(number):
+            action.add_effect(*effect)
+        problem.add_action(action)
+    begin, finish = up.StartTiming(), up.EndTiming()
+    between = up.OpenTimeInterval(begin, finish)
+    for start, meanwhile, end, least, most in task["lasting"]:
+        action = up.DurativeAction(f"a{start}")
+        action.set_closed_duration_interval(_exact(least) * scale, _exact(most) * scale)
+        lasts = parts_of(task["actions"][meanwhile][0])
+        for part in parts_of(task["actions"][start][0]):
+            action.add_condition(begin, part)
+        for part in lasts:
+            action.add_condition(between, part)
+        for part in parts_of(task["actions"][end][0]):
+            if part not in lasts:  # at its end it holds as it does until then
+                action.add_condition(finish, part)
+        for effect in effects_of(start):
+            action.add_effect(begin, *effect)
+        for effect in effects_of(end):
+            action.add_effect(finish, *effect)
+        problem.add_action(action)
+    for meanwhile, end, left in task["running"]:
+        over = up.GlobalStartTiming(_exact(left) * scale)
+        until = up.ClosedTimeInterval(up.GlobalStartTiming(), over)
+        for part in parts_of(task["actions"][meanwhile][0]):
+            problem.add_timed_goal(until, part)
+        for part in parts_of(task["actions"][end][0]):
+            problem.add_timed_goal(up.TimePointInterval(over), part)
+        for effect in effects_of(end):
+            problem.add_timed_effect(over, *effect)
+    for part in parts_of(task["goal"]):
+        problem.add_goal(part)
+    return problem
+
+
+def _exact(number: float) -> Fraction:
+    return Fraction(number).limit_denominator(1000)
+
+
+def solve(request: dict[str, Any]) -> dict[str, Any]:
+    """Let an engine plan: when what begins and ends, as `[time, number of the action]`."""
+    task = request["task"]
+    scale = scale_of(task)
+    problem = problem_of(task, scale)
+    with up.OneshotPlanner(name=request["engine"]) as engine, TemporaryDirectory() as folder:
+        without_spaces(engine, Path(folder))
+        known = engine.supported_kind().features
+        better = bool(task["quickest"]) and "MAKESPAN" in known and engine.is_anytime_planner()
+        if better:
+            problem.add_quality_metric(up.MinimizeMakespan())
+        back = []
+        for feature, kind in COMPILERS:
+            if feature in problem.kind.features and feature not in known:
+                with up.Compiler(problem_kind=problem.kind, compilation_kind=kind) as compiler:
+                    compiled = compiler.compile(problem, kind)
+                problem = compiled.problem
+                back.append(compiled.map_back_action_instance)
+        missing = problem.kind.features - known
+        if missing:
+            said = ", ".join(sorted(each.lower().replace("_", " ") for each in missing))
+            reason = f"the engine does not know {said}; aries and tamer know actions that last"
+            return {"kind": "crash", "reason": reason}
+        result = _solved(engine, problem, request["seconds"], better=better)
+    plan = result.plan
+    if plan is not None and result.status in MET:
+        for convert in reversed(back):
+            plan = plan.replace_action_instances(convert)
+        return {"kind": "plan", "happenings": _happenings(task, plan, scale)}
+    if result.status == PlanGenerationResultStatus.UNSOLVABLE_PROVEN:
+        return {"kind": "unsolvable", "reason": "the engine proved it"}
+    if result.status == PlanGenerationResultStatus.TIMEOUT:
+        return {"kind": "timeout"}
+    if result.status == PlanGenerationResultStatus.MEMOUT:
+        return {"kind": "memory"}
+    logged = [" ".join(each.message.split()) for each in result.log_messages or ()]
+    told = f" ({logged[-1][-200:]})" if logged and logged[-1] else ""
+    return {"kind": "crash", "reason": WHY.get(result.status, str(result.status)) + told}
+
+
+def _solved(engine: Any, problem: Any, seconds: float | None, *, better: bool) -> Any:
+    """A plan; the quickest that is found in a short time where a better one is sought."""
+    began, best = time.monotonic(), None
+    if better:
+        short = BETTERING if seconds is None else min(BETTERING, seconds / 2)
+        # the server of aries may end over it; a plan that is not the quickest is a plan, too
+        with contextlib.suppress(Exception):
+            for result in engine.get_solutions(problem, timeout=short):
+                best = result if result.plan is not None else best
+        if best is not None:
+            return PlanGenerationResult(
+                PlanGenerationResultStatus.SOLVED_SATISFICING, best.plan, ""
+            )
+    left = None if seconds is None else max(0.1, seconds - (time.monotonic() - began))
+    return engine.solve(problem, timeout=left)
+
+
+def _happenings(task: dict[str, Any], plan: Any, scale: int) -> list[list[float | int]]:
+    """What begins and ends, in order. At one time ends come first: what overlaps there does not
+    bear on each other, or the plan would be none."""
+    ends = {start: end for start, _, end, _, _ in task["lasting"]}
+    found: list[tuple[Fraction, int, int]] = [
+        (_exact(left), 0, end) for _, end, left in task["running"]
+    ]
+    if hasattr(plan, "timed_actions"):
+        for at, instance, lasts in plan.timed_actions:
+            number, at = int(instance.action.name[1:]), at / scale
+            if number in ends:
+                found += [(at, 2, number), (at + lasts / scale, 0, ends[number])]
+            else:
+                found.append((at, 1, number))
+    else:  # nothing in it lasts
+        found += [(Fraction(n + 1), 1, int(a.action.name[1:])) for n, a in enumerate(plan.actions)]
+    return [[math.floor(at * 1_000_000) / 1_000_000, number] for at, _, number in sorted(found)]
