@@ -255,6 +255,18 @@ def test_a_garbled_body_is_unknown(body: str | bytes) -> None:
 
 
 @pytest.mark.parametrize(
+    ("body", "kind"),
+    [("[" * 100_000, "application/json"), ("{}", "application/json; charset=zlib")],
+)
+def test_a_refusal_that_cannot_be_decoded_is_unknown(body: str, kind: str) -> None:
+    act = Act(400, body=body, headers={"Content-Type": kind})
+    with ChatServer(scripted, script=always(act)) as server:
+        (answer,) = ask(server, "Is the plate clean?")
+    assert answer.reply is Reply.UNKNOWN
+    assert answer.p_yes is None
+
+
+@pytest.mark.parametrize(
     "logprobs",
     [
         "yes",

@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.errors import AnswerError
@@ -20,6 +21,10 @@ class Retry(Exception):  # noqa: N818 — a request to try again, not an error
     def __init__(self, why: str, *, pause: float | None = None, unreachable: bool = False):
         super().__init__(why)
         self.why, self.pause, self.unreachable = why, pause, unreachable
+
+
+_UNDECODED = (AssertionError, LookupError, RecursionError, ValueError)
+"""What openai's package raises of an error's body that says nothing it can read."""
 
 
 class Server:
@@ -93,11 +98,12 @@ class Server:
 
         count = len(inquiry.texts) if inquiry.together else 0
         parameters: dict[str, Any] = dialect.parameters(count, samples)
+        said: Any = messages(inquiry, prompt)
         try:
             async with asyncio.timeout(self._request_timeout):
                 response = await client.chat.completions.with_raw_response.create(
                     model=self.model,
-                    messages=messages(inquiry, prompt),  # type: ignore[arg-type]
+                    messages=said,
                     timeout=self._request_timeout,
                     **parameters,
                 )
@@ -110,12 +116,17 @@ class Server:
             why = str(error.__cause__ or error) or type(error.__cause__).__name__
             raise Retry(f"no connection: {why}", unreachable=True) from None
         except openai.APIStatusError as error:
-            return self._refused(error)
+            with suppress(RecursionError):
+                return self._refused(error)
+            return Reading(Reply.UNKNOWN, text="garbled reply: nested too deeply")
+        except _UNDECODED as error:
+            return Reading(Reply.UNKNOWN, text=f"garbled reply: {type(error).__name__}: {error}")
         if "html" in response.headers.get("content-type", ""):
             raise AnswerError(
                 f"{self.where()} answers with a web page. Is the path right (usually /v1)?"
             )
-        return response.content
+        content: bytes = response.content
+        return content
 
     def _refused(self, error: "APIStatusError") -> Reading | str:
         status, parts = error.status_code, complaint(error.body)
