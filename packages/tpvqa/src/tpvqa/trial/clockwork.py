@@ -36,7 +36,8 @@ class Clockwork:
         """
         if not plan.times:
             return
-        if state.began is None:
+        if state.began is None:  # a new plan
+            self._failed = None
             state = yield Wait()
         assert state.began is not None
         assert state.clock is not None
@@ -70,9 +71,8 @@ class Clockwork:
         """What is believed to be running, and how much longer; nothing is left to what failed."""
         if self._lasting is None:
             return ()
-        failed, self._failed = self._failed, None
         return tuple(
-            Running(action, 0.0 if action == failed else self._left(action, state))
+            Running(action, 0.0 if action == self._failed else self._left(action, state))
             for action in self._lasting.under_way(self._task, state.believed)
         )
 

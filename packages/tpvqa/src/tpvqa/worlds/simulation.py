@@ -237,10 +237,10 @@ class Simulation:
         attempts = {str(name): operator.index(n) for name, n in snapshot["attempts"].items()}
         changed = frozenset(map(Atom.parse, snapshot.get("changed", ())))  # none in older logs
         self.task.check_state(state | {*ended} | changed)
-        self.state, self.attempts, self.ended = state, Counter(attempts), ended
-        self.before = state ^ changed
         if self.running is not None:
             self.running.restore(snapshot["running"])
+        self.state, self.attempts, self.ended = state, Counter(attempts), ended
+        self.before = state ^ changed
 
 
 class SimulatedTruth:
