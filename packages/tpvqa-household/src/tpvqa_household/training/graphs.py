@@ -92,7 +92,8 @@ def _constant(graph: Any, name: str) -> Any:
     output = helper.make_empty_tensor_value_info(name)
     part = helper.make_graph(ordered, "constant", [], [output])
     opset = [helper.make_opsetid("", 17)]
-    return ReferenceEvaluator(helper.make_model(part, opset_imports=opset)).run(None, {})[0]
+    computed: Any = ReferenceEvaluator(helper.make_model(part, opset_imports=opset)).run(None, {})
+    return computed[0]
 
 
 def _drop_unused(graph: Any) -> None:
