@@ -52,6 +52,16 @@ def test_ways_of_asking_run_trials_and_share_no_recorded_answer(tpvqa: Run) -> N
             again = json.loads(out)
             assert len(server.requests) <= 1 + 3 * (name == "samples"), name
             assert again["questions"] == trials[name]["questions"] > 0
+        server.requests.clear()
+        for name in ("together", "samples", "prompt"):
+            again = ("--replay", "answers.db", "--out", f"{name} 3")
+            code, out, err = tpvqa(*run, *WAYS[name], *again)
+            assert json.loads(out)["questions"] == trials[name]["questions"], err
+        Path("prompt.yaml").write_text('question: "Look well. {question}"\n')
+        code, out, err = tpvqa(*run, "--prompt", "prompt.yaml", "--replay", "answers.db")
+        assert code == 2
+        assert "no recorded answers" in " ".join(err.split())
+        assert not server.requests
     assert all(asked[name] > 1 for name in WAYS)
     assert asked["together"] < asked["singly"] < asked["samples"]
     assert pictures["before and after"] == 2 * pictures["singly"]

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from hashlib import blake2b
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.config import SimulationConfig, TrialConfig
@@ -11,6 +12,7 @@ from tpvqa.plugins import Kind, class_of, load_spec, see_taken, takes
 from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, kind_of
 from tpvqa.vlm.making import in_full, make_vlm
+from tpvqa.vlm.prompt import load_prompt
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
@@ -47,6 +49,7 @@ def answering(
         use,
         inner=inner,
         options=_told(config, taken),
+        asked_so=_asked_so(config),
         trial=identity(trial),
         owned=given is None,
     )
@@ -97,7 +100,16 @@ def vlm_with_answers(
     noise = is_noise_model(load_spec(Kind.VLM, spec))  # which `kept` refuses
     made = None if use is Use.REPLAY or noise else make_vlm(spec, context)[0]
     told = _told(config, taken)
-    return kept(spec, answers[1], use, inner=made, options=told, trial=trial, owned=True)
+    return kept(
+        spec,
+        answers[1],
+        use,
+        inner=made,
+        options=told,
+        asked_so=_asked_so(config),
+        trial=trial,
+        owned=True,
+    )
 
 
 def _told(config: TrialConfig, taken: set[str]) -> dict[str, str]:
@@ -107,6 +119,15 @@ def _told(config: TrialConfig, taken: set[str]) -> dict[str, str]:
         for name, value in config.options.items()
         if name in taken or "*" in taken
     }
+
+
+def _asked_so(config: TrialConfig) -> dict[str, str]:
+    """What the user says of how a server is asked, as its parameters have it."""
+    names = ("together", "samples", "before_after", "picture_size", "picture_quality")
+    said = {name: str(getattr(config.vlm, name)) for name in names if getattr(config.vlm, name)}
+    if config.vlm.prompt is not None:
+        said["prompt"] = load_prompt(Path(config.vlm.prompt)).digest
+    return said
 
 
 def identity(trial: "Trial") -> bytes:

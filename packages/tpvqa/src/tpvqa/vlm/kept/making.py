@@ -27,6 +27,7 @@ def kept(
     *,
     inner: VLM | None,
     options: Mapping[str, str] = NOTHING,
+    asked_so: Mapping[str, str] = NOTHING,
     trial: bytes | None = None,
     owned: bool = False,
 ) -> KeptVLM:
@@ -38,6 +39,8 @@ def kept(
         use: How it is used.
         inner: The VLM; where answers are replayed it is not asked, and need not be there.
         options: Of the user's, that the VLM is given.
+        asked_so: What the user says of its parameters; where answers are replayed, those recorded
+            with others are not meant.
         trial: Tells the trial that asks from others; None where each asking is for itself.
         owned: Whether the VLM is closed with this, too.
 
@@ -47,7 +50,7 @@ def kept(
     """
     try:
         stands_for = class_of(load_spec(Kind.VLM, spec)) if inner is None else kind_of(inner)
-        file, model = _opened(spec, path, use, stands_for, inner, options)
+        file, model = _opened(spec, path, use, stands_for, inner, options, asked_so)
     except BaseException:
         if owned and isinstance(inner, Closing):
             inner.close()
@@ -72,6 +75,7 @@ def _opened(
     stands_for: type,
     inner: VLM | None,
     options: Mapping[str, str],
+    asked_so: Mapping[str, str],
 ) -> tuple[AnswerFile, int]:
     """The file, and the number of VLM and parameters in it."""
     if is_noise_model(stands_for):
@@ -84,14 +88,16 @@ def _opened(
     try:
         told = {f"{_OPTION}{name}": value for name, value in options.items()}
         if use is Use.REPLAY or inner is None:
-            return file, _recorded(file, spec, told)
+            return file, _recorded(file, spec, told, asked_so)
         return file, file.model(spec, parameters_of(inner) | told)
     except BaseException:
         file.close()
         raise
 
 
-def _recorded(file: AnswerFile, spec: str, options: Mapping[str, str]) -> int:
+def _recorded(
+    file: AnswerFile, spec: str, options: Mapping[str, str], asked_so: Mapping[str, str]
+) -> int:
     """The one VLM of the file that is meant.
 
     Raises:
@@ -103,6 +109,7 @@ def _recorded(file: AnswerFile, spec: str, options: Mapping[str, str]) -> int:
         for number, name, parameters in every
         if name == spec
         and {k: v for k, v in parameters.items() if k.startswith(_OPTION)} == dict(options)
+        and all(parameters.get(name, value) == value for name, value in asked_so.items())
     ]
     if not found:
         known = ", ".join(dict.fromkeys(name for _, name, _ in every)) or "nobody"
