@@ -277,3 +277,10 @@ def test_exit_codes_tell_errors_from_what_is_not_there(files: Files, tpvqa: Run)
 def test_shipped_tasks_have_no_errors(name: str, tpvqa: Run) -> None:
     code, out, _ = tpvqa("check", name)
     assert code == 0, out
+
+
+def test_parts_of_an_action_that_lasts_are_no_findings(tpvqa: Run) -> None:
+    files = Path(__file__).parents[2] / "examples/timed/laboratory"
+    code, out, _ = tpvqa("check", files / "domain.pddl", files / "problem.pddl", "--strict")
+    assert code == 0, out
+    assert "can never be done" not in out

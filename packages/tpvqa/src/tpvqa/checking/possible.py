@@ -8,6 +8,7 @@ from tpvqa.checking.finding import Finding, Severity, named
 from tpvqa.checking.places import line_of_action, line_of_goal, line_of_predicate
 from tpvqa.pddl import Action, Atom, Conjunction, Literal, Task, literals
 from tpvqa.pddl.conditions import Condition
+from tpvqa.pddl.lasting import Phase
 from tpvqa.pddl.schema import ActionSchema, ConditionSchema, Junction, LiteralSchema, Quantified
 from tpvqa.planning import Plan, Planner, TimedOut, Unsolvable
 from tpvqa.planning.obstacles import obstacle
@@ -31,7 +32,7 @@ def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Fin
         by_name.setdefault(action.name, []).append(action)
     for schema in task.schemas:
         why = ""
-        if undone & set(_predicates(schema.precondition)):
+        if undone & set(_predicates(schema.precondition)) or _unplanned(task, schema):
             continue
         if schema.name not in reached:
             why = _never(task, schema)
@@ -46,6 +47,13 @@ def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Fin
                 named(task.domain_path),
                 line_of_action(task, schema.name),
             )
+
+
+def _unplanned(task: Task, schema: ActionSchema) -> bool:
+    """Whether no plan of a planner has an action: a part of one that lasts which changes nothing,
+    or takes it back."""
+    phase = None if task.lasting is None else task.lasting.phase_of(schema.name)
+    return phase not in (None, Phase.START, Phase.END)
 
 
 def _never(task: Task, schema: ActionSchema) -> str:

@@ -137,10 +137,14 @@ class Telling:
         """Actions that differ in what they do and not in what shows."""
         signatures: dict[frozenset[tuple[str, bool]], tuple[Action, frozenset[Literal]]] = {}
         told: set[frozenset[str]] = set()
+        lasting = self.task.lasting
+        running = frozenset[str]() if lasting is None else lasting.predicates
         for action in islice(self.task.ground_actions(), _LOOKED_AT):
             if self._quiet(action.name):
                 continue
-            effects = frozenset(e.literal for e in action.effects)
+            effects = frozenset(
+                e.literal for e in action.effects if e.literal.atom.predicate not in running
+            )
             shown = frozenset(
                 (self.book.fact(each).text if self.asked(each, action) else each.atom.pddl(),
                  each.positive)
