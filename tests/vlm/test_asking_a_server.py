@@ -72,6 +72,8 @@ def test_all_questions_go_in_one_request_with_a_schema() -> None:
         '{"q1": "yes", "q1": "no", "q3": "no"}',
         '{"q1": 1, "q2": ["no"], "q3": "no"}',
         '{"q1": "yes no", "q2": null, "q3": "No"}',
+        '{"q1": ' + '{"a": ' * 900 + "1" + "}" * 900 + ', "q2": 1e999, "q3": "no"}',
+        '{"q1": ' + "9" * 5000 + ', "q2": NaN, "q3": "no"}',
     ],
 )
 def test_an_answer_missing_doubled_or_malformed_is_unknown_by_itself(reply: str) -> None:

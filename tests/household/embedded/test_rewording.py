@@ -47,9 +47,8 @@ SAME = {
         "Is the fridge open in this picture?",
         "Can you tell me if the fridge is open?",
         "Do you think the fridge is open?",
-        "Has the fridge been opened?",
     ),
-    "Is the fridge closed?": ("Is the fridge door shut?", "Has the refrigerator been closed?"),
+    "Is the fridge closed?": ("Is the fridge door shut?",),
     "Is the apple in a robot's hand?": (
         "Is the robot's hand holding the apple?",
         "Is the gripper holding the apple?",
@@ -80,11 +79,10 @@ SAME = {
     "Is the TV turned on?": (
         "Is the telly on?",
         "Is the TV powered on?",
-        "Has the television been switched on?",
         "Is the TV's screen lit?",
     ),
-    "Is the TV turned off?": ("Is the TV switched off?", "Is the TV screen dark?"),
-    "Is the plate clean?": ("Has the plate been cleaned?", "Does the plate look clean?"),
+    "Is the TV turned off?": ("Is the TV switched off?", "Is the TV screen off?"),
+    "Is the plate clean?": ("Does the plate look clean?",),
     "Is the plate dirty?": ("Is the plate unwashed?", "Does the plate look dirty?"),
     "Is the apple cut in half?": (
         "Is the apple sliced in half?",
@@ -154,6 +152,13 @@ UNKNOWN = (
     "Is the TV on and the fridge open?",
     "Is everything on the table?",
     "Are all plates clean?",
+    "Are the plates clean?",
+    "Are the apples on the table?",
+    "Is the fridge не open?",
+    "Is the fridge ≠ open?",
+    "Is the fridge !open?",
+    "Has the fridge been opened?",
+    "Is the apple in the hand?",
 )
 
 

@@ -11,6 +11,9 @@ from tpvqa_household.embedded.rewording import rewordings
 _FILLERS = frozenset({"is", "are", "there", "it", "to", "here", "now", "of", "please"})
 """Words that a question may have or lack and still be the same question."""
 
+_SAID = re.compile(r"\w+|[^\w\s.,;:?¿¡'\"“”()-]")
+"""Words of any script, and signs that may mean something."""
+
 
 def words(question: str) -> tuple[str, ...]:
     """A question as lower-case words, without punctuation, articles and possessive s.
@@ -19,7 +22,8 @@ def words(question: str) -> tuple[str, ...]:
     ('is', 'plate', 'in', 'robot', 'hand')
     """
     text = question.lower().replace("’", "'").replace("'s", " ").replace("_", " ")
-    return tuple(word for word in re.findall(r"[a-z0-9]+", text) if word not in ("a", "an", "the"))
+    said = _SAID.findall(text.rstrip(" ?!."))
+    return tuple(word for word in said if word not in ("a", "an", "the"))
 
 
 def _content(spoken: Sequence[str]) -> tuple[str, ...]:

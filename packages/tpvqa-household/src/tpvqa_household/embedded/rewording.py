@@ -11,16 +11,7 @@ _NAMES = {
     "telly": "tv",
     "tv set": "tv",
     "television set": "television",
-    "fridges": "fridge",
     "icebox": "fridge",
-    "refrigerators": "refrigerator",
-    "apples": "apple",
-    "plates": "plate",
-    "knives": "knife",
-    "tables": "table",
-    "sinks": "sink",
-    "tvs": "tv",
-    "televisions": "television",
     "loaf of bread": "bread",
     "piece of bread": "bread",
     "countertop": "counter",
@@ -32,7 +23,23 @@ _NAMES = {
     "washbasin": "sink",
     "ground": "floor",
 }
-"""Other names of things, and their plurals."""
+"""Other names of things."""
+_PLURALS = {
+    "fridges": "fridge",
+    "refrigerators": "refrigerator",
+    "apples": "apple",
+    "plates": "plate",
+    "knives": "knife",
+    "tables": "table",
+    "sinks": "sink",
+    "tvs": "tv",
+    "televisions": "television",
+}
+"""Asked for, one is enough; of "the plates" all would be meant."""
+_ANY = re.compile(
+    r"(?:are|is) there |(?:are|is) any |(?:can|do) you "
+    r"|does (?:this |that )?(?:image|picture|photo) "
+)
 _ASIDE = (
     r"^(?:please )?(?:(?:can|could) you )?(?:please )?(?:tell|say) (?:me )?(?:whether|if) "
     r"(?P<x>.+?) (?P<verb>is|are) (?P<rest>.+)$",
@@ -65,7 +72,7 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
         "does picture show {x}",
     ),
     (
-        rf"{_IS} {_X} (?:in|inside|within) (?:robot |its )?{_HAND}(?: of robot)?",
+        rf"{_IS} {_X} (?:in|inside|within) (?:(?:robot |its ){_HAND}|gripper|{_HAND} of robot)",
         "is {x} in gripper",
     ),
     (
@@ -81,7 +88,7 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
     (rf"has {_HOLDER} got {_X} in its {_HAND}", "does robot have {x} in its hand"),
     (
         rf"{_IS} {_X} (?:being )?(?:held|gripped|carried|grasped)"
-        rf"(?: by {_HOLDER}| in (?:robot |its )?{_HAND})",
+        rf"(?: by {_HOLDER}| in (?:robot |its ){_HAND})",
         "is {x} held by robot",
     ),
     (
@@ -100,17 +107,12 @@ _PATTERNS: tuple[tuple[str, str], ...] = (
     (rf"is {_DOOR} (?:wide |standing |left )?(?:open|opened)", "is {x} open"),
     (rf"does {_DOOR} stand (?:wide )?open", "is {x} open"),
     (rf"is {_DOOR} (?:closed|shut)", "is {x} closed"),
-    (rf"has {_DOOR} been opened", "is {x} open"),
-    (rf"has {_DOOR} been (?:closed|shut)", "is {x} closed"),
     (rf"is {_X} (?:turned |switched |powered )?on", "is {x} turned on"),
     (rf"is {_X} (?:turned |switched |powered )?off", "is {x} turned off"),
-    (rf"has {_X} been (?:turned|switched|powered) on", "is {x} turned on"),
-    (rf"has {_X} been (?:turned|switched|powered) off", "is {x} turned off"),
     (rf"is screen of {_X} (?:on|lit)", "is {x} turned on"),
     (rf"is {_X} screen (?:on|lit)", "is {x} turned on"),
-    (rf"is {_X} screen (?:off|black|dark)", "is {x} turned off"),
+    (rf"is {_X} screen off", "is {x} turned off"),
     (rf"is {_X} (?:clean|washed|cleaned)", "is {x} clean"),
-    (rf"has {_X} been cleaned", "is {x} clean"),
     (rf"is {_X} (?:dirty|unwashed|soiled)", "is {x} dirty"),
     (rf"does {_X} look clean", "is {x} clean"),
     (rf"does {_X} look dirty", "is {x} dirty"),
@@ -149,6 +151,7 @@ def _filled(found: re.Match[str]) -> dict[str, str]:
 
 
 def _named(spoken: str) -> str:
-    for name in sorted(_NAMES, key=len, reverse=True):
-        spoken = re.sub(rf"\b{name}\b", _NAMES[name], spoken)
+    names = _NAMES | (_PLURALS if _ANY.match(spoken) else {})
+    for name in sorted(names, key=len, reverse=True):
+        spoken = re.sub(rf"\b{name}\b", names[name], spoken)
     return spoken

@@ -20,7 +20,7 @@ _ROOM_TO_THINK = 2048
 _TOKENS_OF_AN_ANSWER = 12  # in JSON, key and all
 ENDED_BY_ITSELF = ("stop", "eos", "eos_token", "end_turn", "stop_sequence")
 _MOST_CHOICES = 64
-_LONGEST = 100_000  # characters, reasoning included
+LONGEST_REPLY = 100_000  # characters, reasoning included
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +237,7 @@ def choices_of(body: str | bytes) -> list[Choice] | Reading:
 def _read_choice(choice: Choice, question: str | None) -> Reading:
     message, ended = choice.message, (choice.finish_reason or "stop").lower()
     said, cut = message.content or "", ended == "length"
-    if len(said) > _LONGEST:
+    if len(said) > LONGEST_REPLY:
         return Reading(Reply.UNKNOWN, text=f"a reply of {len(said)} characters: {said[:200]}")
     if message.refusal:
         return Reading(Reply.UNKNOWN, text=f"refused: {message.refusal[:200]}")

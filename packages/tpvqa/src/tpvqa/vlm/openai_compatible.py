@@ -6,7 +6,7 @@ import importlib.util
 import os
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -163,11 +163,11 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
 
     def snapshot(self) -> dict[str, Any]:
         """What was spent, so that a budget holds when the trial is gone on with."""
-        return {"spent": asdict(self.budget.spent)}
+        return self.budget.snapshot()
 
     def restore(self, snapshot: Mapping[str, Any]) -> None:
-        """Count what was spent before, too."""
-        self.budget.spent += Usage.of(snapshot["spent"])
+        """Count what was spent before, too; see `Budget.restore`."""
+        self.budget.restore(snapshot)
 
     @property
     def name(self) -> str:

@@ -7,7 +7,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from tpvqa.vlm.answer import Reply
-from tpvqa.vlm.chat_completions import ENDED_BY_ITSELF, Choice, choices_of, tokens_of
+from tpvqa.vlm.chat_completions import (
+    ENDED_BY_ITSELF,
+    LONGEST_REPLY,
+    Choice,
+    choices_of,
+    tokens_of,
+)
 from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.reply_shape import unwrapped
 from tpvqa.vlm.yes_no import Token, mass, meaning
@@ -35,6 +41,8 @@ def _read(choice: Choice, count: int) -> list[Reading]:
     def none(why: str, *, cut: bool = False) -> list[Reading]:
         return [Reading(Reply.UNKNOWN, text=why, cut_short=cut)] * count
 
+    if len(said) > LONGEST_REPLY:
+        return none(f"a reply of {len(said)} characters: {said[:200]}")
     if message.refusal:
         return none(f"refused: {message.refusal[:200]}")
     if ended == "length":
@@ -44,7 +52,7 @@ def _read(choice: Choice, count: int) -> list[Reading]:
     if message.role not in (None, "assistant"):
         return none(f"not said by the model as an answer: {said[:200]}")
     try:
-        pairs = json.loads(unwrapped(said), object_pairs_hook=tuple)
+        pairs = json.loads(unwrapped(said), object_pairs_hook=tuple, parse_int=float)
     except (ValueError, RecursionError):
         return none(f"no JSON: {said[:200]}" if said.strip() else "empty reply")
     if not isinstance(pairs, tuple):
@@ -62,7 +70,7 @@ def _one(key: str, times: int, value: object, said: str, tokens: Sequence[Token]
         return Reading(Reply.UNKNOWN, text="answered twice" if times else "not in the reply")
     word = value.strip().lower() if isinstance(value, str) else ""
     if word not in ("yes", "no"):
-        shown = json.dumps(value, default=str)[:200]
+        shown = json.dumps(value)[:200] if isinstance(value, str) else "not a text"
         return Reading(Reply.UNKNOWN, text=shown if word == "unknown" else f"no answer: {shown}")
     reading = Reading(Reply(word), text=word)
     token = _token(key, said, tokens)

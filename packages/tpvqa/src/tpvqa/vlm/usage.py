@@ -2,10 +2,10 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import asdict, astuple, dataclass
 from typing import Any, Self
 
-from tpvqa.errors import AnswerError, BudgetError
+from tpvqa.errors import AnswerError, BudgetError, EpisodeError
 
 MILLION = 1_000_000
 
@@ -77,6 +77,10 @@ class Budget:
         tokens: At most so many, of prompts and completions together.
         cost: At most so much money.
         prices: Of a million tokens of prompts and of completions.
+
+    Attributes:
+        spent: So far.
+        largest: The most that one request took of either kind of tokens.
     """
 
     def __init__(
@@ -92,14 +96,33 @@ class Budget:
         self._requests, self._tokens, self._cost = requests, tokens, cost
         self._prices = prices or (0.0, 0.0)
         self.spent = Usage()
-        self._largest, self._under_way = Usage(), 0
+        self.largest, self._under_way = Usage(), 0
+
+    def snapshot(self) -> dict[str, Any]:
+        """What was spent, as plain values."""
+        return {"spent": asdict(self.spent), "largest": asdict(self.largest)}
+
+    def restore(self, snapshot: Mapping[str, Any]) -> None:
+        """Count what was spent before, too; logs of before say nothing of the largest.
+
+        Raises:
+            EpisodeError: It is no such snapshot.
+        """
+        try:
+            self.spent += Usage.of(snapshot["spent"])
+            self.largest = Usage.of(snapshot.get("largest", {}))
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            raise EpisodeError(
+                f"What the log keeps of asking a server is damaged ({error}). Show the episode "
+                "instead"
+            ) from error
 
     @property
     def blind(self) -> bool:
         """Whether tokens or money are limited, and no request has told yet how many it takes: then
         one at a time is made."""
         limited = self._tokens is not None or self._cost is not None
-        return limited and not self._largest.tokens
+        return limited and not self.largest.tokens
 
     def see(self, more: int = 1) -> None:
         """See that so many more requests can be made.
@@ -108,7 +131,7 @@ class Budget:
             BudgetError: They would go beyond a limit.
             AnswerError: A limit is of tokens or money, and the server does not count them.
         """
-        spent, coming, each = self.spent, self._under_way + more, self._largest
+        spent, coming, each = self.spent, self._under_way + more, self.largest
         if (self._tokens is not None or self._cost is not None) and spent.untold:
             raise AnswerError(
                 "the server does not tell how many tokens it takes, so that no limit of tokens or "
@@ -134,5 +157,8 @@ class Budget:
         """A request came to its end."""
         self._under_way -= 1
         self.spent += told
-        if told.tokens > self._largest.tokens:
-            self._largest = told
+        most = self.largest
+        self.largest = Usage(
+            prompt_tokens=max(told.prompt_tokens, most.prompt_tokens),
+            completion_tokens=max(told.completion_tokens, most.completion_tokens),
+        )

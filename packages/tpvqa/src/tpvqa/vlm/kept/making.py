@@ -109,7 +109,7 @@ def _recorded(
         for number, name, parameters in every
         if name == spec
         and {k: v for k, v in parameters.items() if k.startswith(_OPTION)} == dict(options)
-        and all(parameters.get(name, value) == value for name, value in asked_so.items())
+        and all(parameters.get(name) == value for name, value in asked_so.items())
     ]
     if not found:
         known = ", ".join(dict.fromkeys(name for _, name, _ in every)) or "nobody"
