@@ -85,10 +85,13 @@ def _one(key: str, times: int, value: object, said: str, tokens: Sequence[Token]
 
 def _token(key: str, said: str, tokens: Sequence[Token]) -> Token | None:
     """The token that begins a key's answer; None where tokens and text do not fit together."""
-    if "".join(token.text for token in tokens) != said:
+    written = "".join(token.text for token in tokens)
+    # llama.cpp's content leaves out the code fence that its tokens have.
+    fence = re.fullmatch(r"\s*```(?:json)?\s*(.*?)\s*```\s*", written, re.DOTALL)
+    if written != said and (fence is None or fence[1] != said.strip()):
         return None
-    found = re.findall(rf'"{key}"\s*:\s*"', said)
-    place = re.search(rf'"{key}"\s*:\s*"\s*', said)
+    found = re.findall(rf'"{key}"\s*:\s*"', written)
+    place = re.search(rf'"{key}"\s*:\s*"\s*', written)
     if place is None or len(found) != 1:
         return None
     start = 0
