@@ -5,8 +5,8 @@ The worker takes a durative action apart into actions without duration (see
 """
 
 import operator
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from typing import Any, Protocol
@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from tpvqa.errors import PDDLError
 from tpvqa.pddl.atoms import Atom, Literal, State
 from tpvqa.pddl.conditions import Condition, Conjunction, literals
-from tpvqa.pddl.ground import Action
+from tpvqa.pddl.ground import Action, Effect, MutexGroup
 
 _ARITHMETIC: Mapping[str, Callable[[float, float], float]] = {
     "+": operator.add,
@@ -124,6 +124,35 @@ class Lasting:
             if self.phase_of(action.name) is Phase.START:
                 yield self.part(task, action, Phase.WHILE)
 
+    def taken_back(self, action: Action, groups: Iterable[MutexGroup]) -> Action:
+        """What cancels an action, given which facts exclude each other.
+
+        Each effect at start is taken back that is as it left it, whatever became of the others:
+        who drops a thing has its hand free again. But a fact comes back only where none has come
+        in its place.
+
+        Args:
+            action: A ground action; any but a cancellation is left as it is.
+            groups: The mutex groups of the task.
+        """
+        if self.phase_of(action.name) is not Phase.CANCEL:
+            return action
+        running = self.running(action)
+        own = {effect.literal.atom for effect in action.effects if effect.literal.atom != running}
+        rivals = {atom: set[Atom]() for atom in own}
+        for group in groups:
+            for atom in own & group.atoms:
+                rivals[atom] |= group.atoms - own
+        return replace(
+            action,
+            effects=tuple(
+                each
+                if each.literal.atom == running
+                else replace(each, condition=_as_left(each, rivals[each.literal.atom]))
+                for each in action.effects
+            ),
+        )
+
     def under_way(self, task: Actions, state: State) -> tuple[Action, ...]:
         """What every action began with that is running in a state."""
         return tuple(
@@ -166,6 +195,13 @@ class Lasting:
                 "no value"
             )
         return self.values[words]
+
+
+def _as_left(effect: Effect, rivals: Collection[Atom]) -> Condition:
+    if not effect.literal.positive:
+        return effect.literal.negate()
+    none = (Literal(atom, False) for atom in sorted(rivals))
+    return Conjunction((effect.literal.negate(), *none))
 
 
 def without(condition: Condition, atom: Atom) -> Condition:

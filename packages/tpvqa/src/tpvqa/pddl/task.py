@@ -117,6 +117,8 @@ class Task:
         if action is None:
             schema = self._checked(words)
             action = ground_action(schema, words[1:], self.objects_by_type, self.functions)
+            if self.lasting is not None:
+                action = self.lasting.taken_back(action, self.mutex_groups)
             self._actions[words] = action
         return action
 

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 from tpvqa.chance import chance
 from tpvqa.pddl import Action, Atom, State, Task, holds, literals
 from tpvqa.pddl.lasting import Lasting, Phase
-from tpvqa.worlds.outcome import Outcome
+from tpvqa.worlds.outcome import Failure, Outcome
 from tpvqa.worlds.undo import Undoing
 
 _SLACK = 1e-3
@@ -66,13 +66,19 @@ class RunningActions:
         for action in lasting.under_way(task, state):
             self._runs[action] = _Run(0.0)
 
-    def refused(self, action: Action) -> bool:
-        """Whether an action is to be ended before its time is over."""
-        if self._lasting.phase_of(action.name) is not Phase.END:
-            return False
-        run = self._runs.get(self._start_of(action))
+    def without_moving(self, action: Action) -> Outcome | None:
+        """What comes of a look, and of ending or stopping what does not run, or not yet so long:
+        nothing moves. None for all else."""
+        phase = self._lasting.phase_of(action.name)
+        if phase in (None, Phase.START):
+            return None
+        state, run = self._simulation.state, self._runs.get(self._start_of(action))
+        if phase is Phase.WHILE or (phase is Phase.CANCEL and run is None):
+            return Outcome(None, None, "", state, state)
         least = self._lasting.duration(action)[0]
-        return run is not None and self.clock < run.began + least - _SLACK
+        if phase is Phase.END and (run is None or self.clock < run.began + least - _SLACK):
+            return Outcome(Failure.PRECONDITION, None, "", state, state)
+        return None
 
     def executed(self, action: Action, attempt: int, outcome: Outcome) -> Outcome:
         """Follow what was done: what begins runs, and what it broke stops."""
@@ -141,14 +147,15 @@ class RunningActions:
         here = self._simulation
         results = []
         for literal in literals(self._lasting.meanwhile(here.task, action)):
-            if literal.positive and literal.atom in here.state:
+            atom = literal.atom
+            if literal.positive and atom in here.state and atom.predicate in here.task.fluents:
                 found = [
                     result
                     for rule in here.undoing
-                    for result in rule.results(literal.atom, here.state, here.ended, here.task)
+                    for result in rule.results(atom, here.state, here.ended, here.task)
                 ]
                 if found:
-                    results.append((literal.atom, found))
+                    results.append((atom, found))
         if not results:
             return None
         atom, outcomes = results[int(run.draws[0] * len(results))]

@@ -92,7 +92,11 @@ class Simulation:
     def undoable(self) -> dict[Atom, list[tuple[str, State]]]:
         """The achieved facts that a disturbance could end now, with what each would lead to."""
         found = {}
+        lasting = self.task.lasting
+        running = frozenset[str]() if lasting is None else lasting.predicates
         for atom in sorted(self.state - self.start):
+            if atom.predicate in running:  # what runs stops as it lacks what it needs
+                continue
             results = [
                 result
                 for rule in self.undoing
@@ -106,10 +110,8 @@ class Simulation:
         """Try an action on the true state, and tell what skill and sensors notice."""
         self.before = self.state
         attempt, truly = self.attempts[action.pddl()], self.truly(action)
-        if self.running is not None and self.running.refused(action):
-            outcome = Outcome(Failure.PRECONDITION, None, "", self.state, self.state)
-        else:
-            outcome = self._tried(action)
+        still = None if self.running is None else self.running.without_moving(action)
+        outcome = self._tried(action) if still is None else still
         if self.running is not None:
             outcome = self.running.executed(action, attempt, outcome)
         if self.moved and outcome.undone is None:
