@@ -9,7 +9,7 @@ import traceback
 from tests.mutants import mutant
 from tests.pddl.feature_domains import SAMPLES
 from tpvqa.pddl.worker.known_task import KnownTask
-from tpvqa.pddl.worker.reading import ReadingError
+from tpvqa.pddl.worker.reading_error import ReadingError
 
 
 def texts(seed: int) -> tuple[str, str]:

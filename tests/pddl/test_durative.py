@@ -73,6 +73,38 @@ def test_begun_and_cancelled_it_is_as_it_was() -> None:
     assert task.apply(begun, task.lasting.part(task, start, Phase.CANCEL)) == task.init
 
 
+YARD = """(define (domain yard) (:requirements :strips :typing :durative-actions)
+ (:types crane crate spot)
+ (:predicates (idle ?c - crane) (on ?x - crate ?s - spot) (lifted ?x - crate ?c - crane)
+  (empty ?s - spot))
+ (:durative-action carry :parameters (?c - crane ?x - crate ?from ?to - spot)
+  :duration (= ?duration 4)
+  :condition (and (at start (idle ?c)) (at start (on ?x ?from)) (at start (empty ?to))
+   (over all (lifted ?x ?c)))
+  :effect (and (at start (not (idle ?c))) (at start (not (on ?x ?from)))
+   (at start (not (empty ?to))) (at start (lifted ?x ?c))
+   (at end (idle ?c)) (at end (on ?x ?to)) (at end (not (lifted ?x ?c))) (at end (empty ?from)))))
+"""
+CRATES = """(define (problem two) (:domain yard) (:objects c - crane a - crate s t u - spot)
+ (:init (idle c) (on a s) (empty t) (empty u)) (:goal (on a t)))
+"""
+
+
+@pytest.mark.parametrize(
+    ("fallen", "lies"), [(None, "s"), ("s", "s"), ("u", "u")], ids=["held", "back", "elsewhere"]
+)
+def test_what_is_cancelled_frees_what_it_took(fallen: str | None, lies: str) -> None:
+    task = task_from_text(YARD, CRATES)
+    assert task.lasting is not None
+    start = task.action("start-carry", ["c", "a", "s", "t"])
+    begun = task.apply(task.init, start)
+    if fallen is not None:
+        begun = begun - {Atom("lifted", ("a", "c"))} | {Atom("on", ("a", fallen))}
+    after = task.apply(begun, task.lasting.part(task, start, Phase.CANCEL))
+    free = {Atom("idle", ("c",)), Atom("empty", ("t",)), Atom("empty", ("u",))}
+    assert after == free | {Atom("on", ("a", lies))}
+
+
 def test_a_domain_in_which_nothing_lasts_has_nothing_of_it() -> None:
     task = load_task("clean_dishes")
     assert task.lasting is None

@@ -110,3 +110,10 @@ def test_a_damaged_snapshot_changes_nothing(task: Task, change: dict[str, object
     with pytest.raises(ValueError):  # noqa: PT011  any of them
         here.running.restore({**kept, **change})
     assert here.running.snapshot() == kept
+
+
+def test_a_look_and_stopping_what_does_not_run_move_nothing(task: Task) -> None:
+    here = Simulation(task, failure=1.0, disturbance=1.0, seed=0)
+    for part in ("while", "cancel", "end"):
+        outcome = here.execute(fire(task, part))
+        assert (outcome.after, outcome.undone) == (outcome.before, None)

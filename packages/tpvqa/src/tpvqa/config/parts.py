@@ -136,9 +136,9 @@ class VLMConfig(Part):
             raise ValueError("give one of --cache, --record and --replay")
         return self
 
-    def cost(self, prompt_tokens: int, completion_tokens: int) -> float | None:
-        """What tokens cost by the prices; None where there are none."""
+    @property
+    def prices(self) -> tuple[float, float] | None:
+        """Of a million tokens of prompts, and of completions; None where none is named."""
         if self.price_prompt is None and self.price_completion is None:
             return None
-        prompt, completion = self.price_prompt or 0.0, self.price_completion or 0.0
-        return (prompt_tokens * prompt + completion_tokens * completion) / 1e6
+        return self.price_prompt or 0.0, self.price_completion or 0.0

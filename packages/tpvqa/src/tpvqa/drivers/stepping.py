@@ -9,6 +9,7 @@ from tpvqa.drivers.replaying import Recording
 from tpvqa.errors import EpisodeError
 from tpvqa.events import Ended, Event, Resumed, TrialState
 from tpvqa.trial import Conclusion, Pending, Result, Steps, Unwatched
+from tpvqa.vlm.usage import Usage
 
 CANCELLED = Conclusion("cancelled")
 
@@ -101,9 +102,11 @@ class SteppingTrial:
         self.take_over()
         conclusion = conclusion or self.conclusion or CANCELLED
         state, believes = self.state, conclusion.believes_goal
-        usage, cost = state.usage, None
-        if usage is not None and state.started is not None:
-            cost = state.started.config.vlm.cost(usage.prompt_tokens, usage.completion_tokens)
+        usage, started = state.usage, state.started
+        prices = None if started is None else started.config.vlm.prices
+        cost = None
+        if usage is not None and prices is not None:
+            cost = Usage.of(usage.model_dump()).cost(*prices)
         ended = Ended(
             because=conclusion.because,
             message=conclusion.message,

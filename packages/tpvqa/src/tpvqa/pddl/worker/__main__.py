@@ -19,7 +19,7 @@ from collections import OrderedDict
 from typing import Any
 
 from tpvqa.pddl.worker.known_task import KnownTask, Leaving
-from tpvqa.pddl.worker.reading import ReadingError
+from tpvqa.pddl.worker.reading_error import ReadingError
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
 _KEPT_TASKS = 8

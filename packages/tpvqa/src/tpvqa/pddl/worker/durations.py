@@ -5,23 +5,10 @@ from typing import Any
 
 from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.pddl.worker.lisp import Block, line_of
+from tpvqa.pddl.worker.reading_error import ReadingError
 
 _BOUNDS = {"=": (0, 1), ">=": (0,), "<=": (1,)}
 _ARITHMETIC = ("+", "-", "*", "/")
-
-
-class DurativeError(Exception):
-    """A durative action that cannot be read.
-
-    Args:
-        message: What is wrong and what was expected.
-        part: "domain" or "problem".
-        line: The line, where known.
-    """
-
-    def __init__(self, message: str, part: str, line: int | None):
-        super().__init__(message)
-        self.message, self.part, self.line = message, part, line
 
 
 class Duration:
@@ -37,7 +24,7 @@ class Duration:
         functions: The functions that it speaks of, and where.
 
     Raises:
-        DurativeError: It says something else.
+        ReadingError: It says something else.
     """
 
     def __init__(self, name: str, written: Block):
@@ -45,8 +32,8 @@ class Duration:
         self.functions: dict[str, int | None] = {}
         self.bounds = self._read(written)
 
-    def _wrong(self, message: str, line: int | None) -> DurativeError:
-        return DurativeError(message, "domain", line)
+    def _wrong(self, message: str, line: int | None) -> ReadingError:
+        return ReadingError(message, "domain", line)
 
     def _read(self, block: Block) -> list[Any]:
         bounds: list[Any] = [None, None]
@@ -91,7 +78,7 @@ def check_functions(domain: Block, problem: Block, functions: Mapping[str, int |
     """See that durations speak of what is declared, and that nothing else is about time.
 
     Raises:
-        DurativeError: They do not.
+        ReadingError: They do not.
     """
     declared = {
         str(each[0])
@@ -102,14 +89,14 @@ def check_functions(domain: Block, problem: Block, functions: Mapping[str, int |
     for section in sections(domain, ":action"):
         for block in blocks(section):
             if block[:1] and block[0] in functions and block[0] in declared:
-                raise DurativeError(
+                raise ReadingError(
                     f"{said(block)} says how long an action lasts, and is spoken of in another "
                     "action too; take a function of its own for one of them",
                     "domain",
                     block.line,
                 )
     for name in sorted(functions.keys() - declared):
-        raise DurativeError(
+        raise ReadingError(
             f"a duration speaks of {shown(name)}, which (:functions …) does not declare"
             + suggestion_or_list(name, declared),
             "domain",
@@ -118,7 +105,7 @@ def check_functions(domain: Block, problem: Block, functions: Mapping[str, int |
     for section in sections(problem, ":init"):
         for fact in section[1:]:
             if isinstance(fact, Block) and _is_timed(fact):
-                raise DurativeError(
+                raise ReadingError(
                     f"{said(fact)} is a timed initial literal, which is not known; bring it about "
                     "by a durative action of that duration",
                     "problem",
@@ -156,7 +143,7 @@ def values_of(domain: Block, problem: Block, functions: Collection[str]) -> list
             if not called or called[0] not in functions:
                 continue
             if not isinstance(fact[2], str) or not is_number(fact[2]):
-                raise DurativeError(f"{said(fact)} gives no number", "problem", fact.line)
+                raise ReadingError(f"{said(fact)} gives no number", "problem", fact.line)
             values.append([[*map(str, called)], float(fact[2])])
             section[:] = [each for each in section if each is not fact]
     return values
@@ -167,7 +154,7 @@ def quickest(problem: Block) -> bool:
     for section in sections(problem, ":metric"):
         if any(word == "total-time" for block in blocks(section) for word in block):
             if section[1:] not in (["minimize", ["total-time"]], ["minimize", "total-time"]):
-                raise DurativeError(
+                raise ReadingError(
                     "(:metric …) speaks of total-time and of more, which is not known; expected "
                     "(:metric minimize (total-time))",
                     "problem",

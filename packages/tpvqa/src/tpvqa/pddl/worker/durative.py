@@ -5,8 +5,8 @@ What a durative action `heat` says becomes four actions over the same parameters
 - `start-heat` needs the conditions at start and has the effects at start;
 - `while-heat` needs the conditions over all, and changes nothing: it stands for a look at them;
 - `end-heat` needs the conditions over all and at end and has the effects at end;
-- `cancel-heat` stops it and takes back its effects at start where they are all still as it left
-  them, but for conditional and quantified ones; nothing of its end comes to pass;
+- `cancel-heat` stops it and takes back its effects at start, but for conditional and quantified
+  ones; which of them, goes by what excludes what: see `Lasting.taken_back`;
 - `(running-heat …)` holds in between.
 
 How long it lasts is told beside them, see `taken_apart`.
@@ -18,7 +18,6 @@ from typing import Any
 from tpvqa.errors import suggestion_or_list
 from tpvqa.pddl.worker.durations import (
     Duration,
-    DurativeError,
     blocks,
     check_functions,
     quickest,
@@ -27,6 +26,7 @@ from tpvqa.pddl.worker.durations import (
     values_of,
 )
 from tpvqa.pddl.worker.lisp import Block, Word, line_of
+from tpvqa.pddl.worker.reading_error import ReadingError
 
 PREFIXES = ("start", "while", "end", "cancel")
 _UNPLANNED = ("while", "cancel")
@@ -48,7 +48,7 @@ def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
         whether the problem asks for the quickest plan. None for a domain without any.
 
     Raises:
-        DurativeError: They cannot be read, or hold what is not known.
+        ReadingError: They cannot be read, or hold what is not known.
     """
     for section in sections(domain, ":requirements"):
         section[:] = [word for word in section if word not in _REQUIREMENTS]
@@ -145,8 +145,8 @@ class _Durative:
                 line_of(self._effects[1]),
             )
 
-    def _wrong(self, message: str, line: int | None = None) -> DurativeError:
-        return DurativeError(message, "domain", line or self.line)
+    def _wrong(self, message: str, line: int | None = None) -> ReadingError:
+        return ReadingError(message, "domain", line or self.line)
 
     def _read(self, section: Block) -> dict[str, Block]:
         known = (":parameters", ":duration", ":condition", ":effect")
@@ -177,8 +177,7 @@ class _Durative:
         begins, _, ends = self._effects
         runs, stopped = self._atom, _block(self.line, "not", self._atom)
         plain = [each for each in begins if each[:1] not in (["forall"], ["when"])]
-        as_left = _block(self.line, "and", *plain)
-        undone = [_block(self.line, "when", as_left, _opposite(each)) for each in plain]
+        undone = [_block(self.line, "when", each, _opposite(each)) for each in plain]
         for prefix, needs, does in (
             ("start", [stopped, *start], [runs, *begins]),
             ("while", [runs, *during], [runs]),

@@ -15,7 +15,8 @@ from tpvqa.pddl.worker.inductive import First
 from tpvqa.pddl.worker.invariants import described_groups, lawful_groups
 from tpvqa.pddl.worker.kept import Facts, KeptGroundings, quiet
 from tpvqa.pddl.worker.likeness import out_of_reach
-from tpvqa.pddl.worker.reading import ReadingError, read
+from tpvqa.pddl.worker.reading import read
+from tpvqa.pddl.worker.reading_error import ReadingError
 from tpvqa.pddl.worker.relevance import EFFORTS, relevant_objects
 from tpvqa.pddl.worker.rules import Rules, rules_of
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome

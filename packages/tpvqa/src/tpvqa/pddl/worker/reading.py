@@ -10,29 +10,15 @@ from fast_downward.translate.pddl_parser import parsing_functions
 from fast_downward.translate.pddl_parser.parse_error import ParseError
 
 from tpvqa.errors import shown, suggestion_or_list
-from tpvqa.pddl.worker.durations import DurativeError
 from tpvqa.pddl.worker.durative import taken_apart
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
+from tpvqa.pddl.worker.reading_error import ReadingError
 from tpvqa.pddl.worker.requirements import beyond
 from tpvqa.pddl.worker.typing_check import ill_typed
 from tpvqa.pddl.worker.unsure import Unsure, UnsureError, taken_out
 
 _HIGHEST_COST = 1_000_000_000
 """Of one action; plans add them up in 32 bits."""
-
-
-class ReadingError(Exception):
-    """PDDL that cannot be read.
-
-    Args:
-        message: What is wrong and what was expected.
-        part: "domain" or "problem".
-        line: The line, where known.
-    """
-
-    def __init__(self, message: str, part: str, line: int | None):
-        super().__init__(message)
-        self.message, self.part, self.line = message, part, line
 
 
 class _LocatedError(ParseError):  # type: ignore[misc]
@@ -68,10 +54,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         except LispError as error:
             raise ReadingError(error.message, part, error.line) from None
         _check_kind(part, blocks[part])
-    try:
-        durative = taken_apart(blocks["domain"], blocks["problem"])
-    except DurativeError as error:
-        raise ReadingError(error.message, error.part, error.line) from None
+    durative = taken_apart(blocks["domain"], blocks["problem"])
     found = beyond(blocks["domain"])
     if found is not None:
         raise ReadingError(found[0], "domain", found[1])

@@ -11,11 +11,11 @@ from typing import Any
 from unified_planning import shortcuts as up
 from unified_planning.engines import PlanGenerationResult, PlanGenerationResultStatus
 
-from tpvqa.planning.engines.unified_solving import COMPILERS, MET, WHY, without_spaces
+from tpvqa.planning.engines.numbered import Numbered, compiled_for
+from tpvqa.planning.engines.unified_solving import MET, WHY, without_spaces
 
 BETTERING = 1.0
 """Seconds in which a quicker plan is sought where the problem asks for the quickest."""
-_ALWAYS = ["and"]
 
 
 def scale_of(task: dict[str, Any]) -> int:
@@ -32,51 +32,21 @@ def problem_of(task: dict[str, Any], scale: int = 1) -> Any:
         task: What `planning.temporal.Schedule.request` gives.
         scale: What all durations are multiplied by.
     """
-    problem = up.Problem("task")
-    fluents = [up.Fluent(f"f{n}", up.BoolType()) for n in range(task["atoms"])]
-    for fluent in fluents:
-        problem.add_fluent(fluent, default_initial_value=False)
-    for atom in task["init"]:
-        problem.set_initial_value(fluents[atom], True)
-
-    def said(condition: list[Any]) -> Any:
-        head, *parts = condition
-        if head == "and":
-            return up.And(*map(said, parts))
-        if head == "or":
-            return up.Or(*map(said, parts))
-        return up.FluentExp(fluents[head]) if parts[0] else up.Not(fluents[head])
-
-    def parts_of(condition: list[Any]) -> list[Any]:
-        return list(map(said, condition[1:] if condition[0] == "and" else [condition]))
-
-    def effects_of(number: int) -> list[tuple[Any, bool, Any]]:
-        effects = task["actions"][number][1]
-        added = {repr(condition) + str(atom) for condition, atom, holds in effects if holds}
-        return [
-            (fluents[atom], holds, up.TRUE() if condition == _ALWAYS else said(condition))
-            for condition, atom, holds in effects
-            if holds or repr(condition) + str(atom) not in added
-        ]
-
+    numbered = Numbered(task)
+    problem, needs_of, effects_of = numbered.problem, numbered.needs, numbered.effects
     for number in task["instant"]:
-        action = up.InstantaneousAction(f"a{number}")
-        for part in parts_of(task["actions"][number][0]):
-            action.add_precondition(part)
-        for effect in effects_of(number):
-            action.add_effect(*effect)
-        problem.add_action(action)
+        numbered.add_instantaneous(number)
     begin, finish = up.StartTiming(), up.EndTiming()
     between = up.OpenTimeInterval(begin, finish)
     for start, meanwhile, end, least, most in task["lasting"]:
         action = up.DurativeAction(f"a{start}")
         action.set_closed_duration_interval(_exact(least) * scale, _exact(most) * scale)
-        lasts = parts_of(task["actions"][meanwhile][0])
-        for part in parts_of(task["actions"][start][0]):
+        lasts = needs_of(meanwhile)
+        for part in needs_of(start):
             action.add_condition(begin, part)
         for part in lasts:
             action.add_condition(between, part)
-        for part in parts_of(task["actions"][end][0]):
+        for part in needs_of(end):
             if part not in lasts:  # at its end it holds as it does until then
                 action.add_condition(finish, part)
         for effect in effects_of(start):
@@ -87,14 +57,12 @@ def problem_of(task: dict[str, Any], scale: int = 1) -> Any:
     for meanwhile, end, left in task["running"]:
         over = up.GlobalStartTiming(_exact(left) * scale)
         until = up.ClosedTimeInterval(up.GlobalStartTiming(), over)
-        for part in parts_of(task["actions"][meanwhile][0]):
+        for part in needs_of(meanwhile):
             problem.add_timed_goal(until, part)
-        for part in parts_of(task["actions"][end][0]):
+        for part in needs_of(end):
             problem.add_timed_goal(up.TimePointInterval(over), part)
         for effect in effects_of(end):
             problem.add_timed_effect(over, *effect)
-    for part in parts_of(task["goal"]):
-        problem.add_goal(part)
     return problem
 
 
@@ -113,13 +81,7 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
         better = bool(task["quickest"]) and "MAKESPAN" in known and engine.is_anytime_planner()
         if better:
             problem.add_quality_metric(up.MinimizeMakespan())
-        back = []
-        for feature, kind in COMPILERS:
-            if feature in problem.kind.features and feature not in known:
-                with up.Compiler(problem_kind=problem.kind, compilation_kind=kind) as compiler:
-                    compiled = compiler.compile(problem, kind)
-                problem = compiled.problem
-                back.append(compiled.map_back_action_instance)
+        problem, back = compiled_for(engine, problem)
         missing = problem.kind.features - known
         if missing:
             said = ", ".join(sorted(each.lower().replace("_", " ") for each in missing))

@@ -11,13 +11,7 @@ from unified_planning.environment import get_environment
 from unified_planning.plans import PlanKind
 
 from tpvqa.pddl.outside.serving import Serving
-
-COMPILERS = (
-    ("DISJUNCTIVE_CONDITIONS", up.CompilationKind.DISJUNCTIVE_CONDITIONS_REMOVING),
-    ("CONDITIONAL_EFFECTS", up.CompilationKind.CONDITIONAL_EFFECTS_REMOVING),
-    ("NEGATIVE_CONDITIONS", up.CompilationKind.NEGATIVE_CONDITIONS_REMOVING),
-)
-"""What is compiled away for engines that do not know it, in this order."""
+from tpvqa.planning.engines.numbered import Numbered, compiled_for
 
 MET = {PlanGenerationResultStatus.SOLVED_SATISFICING, PlanGenerationResultStatus.SOLVED_OPTIMALLY}
 WHY = {
@@ -39,39 +33,6 @@ def engines() -> list[str]:
     ]
 
 
-def problem_of(task: dict[str, Any]) -> Any:
-    """A numbered task as a problem: fluents f0, f1, …, actions a0, a1, …"""
-    problem = up.Problem("task")
-    fluents = [up.Fluent(f"f{n}", up.BoolType()) for n in range(task["atoms"])]
-    for fluent in fluents:
-        problem.add_fluent(fluent, default_initial_value=False)
-    for atom in task["init"]:
-        problem.set_initial_value(fluents[atom], True)
-
-    def said(condition: list[Any]) -> Any:
-        head, *parts = condition
-        if head == "and":
-            return up.And(*map(said, parts))
-        if head == "or":
-            return up.Or(*map(said, parts))
-        return up.FluentExp(fluents[head]) if parts[0] else up.Not(fluents[head])
-
-    for number, (needs, effects, _) in enumerate(task["actions"]):
-        action = up.InstantaneousAction(f"a{number}")
-        for part in needs[1:] if needs[0] == "and" else [needs]:
-            action.add_precondition(said(part))
-        adding = {repr(condition) + str(atom) for condition, atom, holds in effects if holds}
-        for condition, atom, holds in effects:
-            if not holds and repr(condition) + str(atom) in adding:
-                continue  # what is both added and deleted holds
-            action.add_effect(
-                fluents[atom], holds, up.TRUE() if condition == ["and"] else said(condition)
-            )
-        problem.add_action(action)
-    problem.add_goal(said(task["goal"]))
-    return problem
-
-
 def without_spaces(engine: Any, folder: Path) -> None:
     """Aries takes its program's path apart at every space."""
     program = getattr(engine, "_executable", None)
@@ -87,18 +48,14 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
     if name not in get_environment().factory.engines:
         reason = "unified-planning cannot load this engine; importing its package says why"
         return {"kind": "crash", "reason": reason}
-    problem = problem_of(task)
+    numbered = Numbered(task)
+    for number in range(len(task["actions"])):
+        numbered.add_instantaneous(number)
+    problem = numbered.problem
     with up.OneshotPlanner(name=name) as engine, TemporaryDirectory() as folder:
         without_spaces(engine, Path(folder))
         _measure(problem, task, engine)
-        back = []
-        for feature, kind in COMPILERS:
-            kinds = problem.kind
-            if feature in kinds.features and feature not in engine.supported_kind().features:
-                with up.Compiler(problem_kind=kinds, compilation_kind=kind) as compiler:
-                    compiled = compiler.compile(problem, kind)
-                problem = compiled.problem
-                back.append(compiled.map_back_action_instance)
+        problem, back = compiled_for(engine, problem)
         missing = problem.kind.features - engine.supported_kind().features
         if missing:
             said = ", ".join(sorted(each.lower().replace("_", " ") for each in missing))

@@ -1,0 +1,7 @@
+(define (problem two_crates)
+  (:domain yard)
+  (:objects c1 c2 - crane a b - crate s1 s2 t1 t2 - spot)
+  (:init (idle c1) (idle c2) (on a s1) (on b s2) (empty t1) (empty t2) (parked)
+    (reach c1 s1) (reach c1 t1) (reach c1 t2) (reach c2 s2) (reach c2 t2))
+  (:goal (and (on a t1) (on b t2) (painted a) (painted b)))
+  (:metric minimize (total-time)))
