@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from tpvqa.pddl.arithmetic import COMPARISONS, VALUE, compares, parsed, text_of
+
 
 class Atom(NamedTuple):
     """A ground atom such as in_hand(plate, left). Names are lower case, as PDDL's are."""
@@ -10,19 +12,29 @@ class Atom(NamedTuple):
     arguments: tuple[str, ...] = ()
 
     def __str__(self) -> str:
+        if self.predicate in COMPARISONS and self.arguments:
+            *about, number = self.arguments
+            said = about[0] if len(about) == 1 else f"{about[0]}({', '.join(about[1:])})"
+            return f"{said} {self.predicate} {number}"
         return f"{self.predicate}({', '.join(self.arguments)})"
 
     def pddl(self) -> str:
-        """The atom as PDDL writes it, e.g. `(in_hand plate left)`."""
+        """The atom as PDDL writes it, e.g. `(in_hand plate left)` or `(>= (battery robot) 20)`."""
+        if self.predicate in COMPARISONS and self.arguments:
+            *about, number = self.arguments
+            said = about[0] if about[:1] and about[0].startswith("(") else f"({' '.join(about)})"
+            return f"({self.predicate} {said} {number})"
         return f"({' '.join((self.predicate, *self.arguments))})"
 
     @staticmethod
     def parse(text: str) -> "Atom":
-        """Read `(on apple table)`, `on(apple, table)` or `on apple table`.
+        """Read `(on apple table)`, `on(apple, table)`, `on apple table` or `(= (battery r) 60)`.
 
         Raises:
             ValueError: The text is not an atom.
         """
+        if text.lstrip(" (").split(" ", 1)[0] in COMPARISONS:
+            return _comparison(text.lower())
         words = text.lower().replace("(", " ").replace(")", " ").replace(",", " ").split()
         if not words:
             raise ValueError(f"{text!r} is not an atom; write it as (predicate object …)")
@@ -44,7 +56,25 @@ class Literal(NamedTuple):
 
     def holds(self, state: "State") -> bool:
         """Whether it holds in a state under the closed world."""
-        return (self.atom in state) == self.positive
+        return holds_in(self.atom, state) == self.positive
+
+
+def holds_in(atom: Atom, state: "State") -> bool:
+    """Whether an atom is one of a state's, or a comparison that its values bear out."""
+    if atom.predicate in COMPARISONS and atom.predicate != VALUE:
+        return compares(atom.predicate, atom.arguments, state)
+    return atom in state
+
+
+def _comparison(text: str) -> Atom:
+    comparison, *two = parsed(text)
+    if not isinstance(comparison, str) or len(two) != 2 or isinstance(two[0], str):
+        raise ValueError(f"{text!r} compares no number; write it as (>= (battery r) 20)")
+    left, right = two
+    if isinstance(right, str) and all(isinstance(word, str) for word in left):
+        if left[0] not in ("+", "-", "*", "/"):
+            return Atom(comparison, (*map(str, left), right))
+    return Atom(comparison, (text_of(left), text_of(right)))
 
 
 State = frozenset[Atom]

@@ -82,10 +82,15 @@ def described(
     return description
 
 
-def grounded_fields(description: Description) -> dict[str, Any]:
-    """The fields of a `Task` that depend on its initial state."""
+def grounded_fields(description: Description, numbers: State | None = None) -> dict[str, Any]:
+    """The fields of a `Task` that depend on its initial state.
+
+    Args:
+        description: The worker's reply.
+        numbers: The facts that say values, of which the worker knows nothing; None for none.
+    """
     return {
-        "init": frozenset(map(_atom, description["init"])),
+        "init": frozenset(map(_atom, description["init"])) | (numbers or frozenset()),
         "reachable_atoms": frozenset(map(_atom, description["atoms"])),
         "reachable_actions": tuple(map(tuple, description["ground_actions"])),
         "mutex_groups": tuple(

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from tpvqa.pddl.arithmetic import Expression, Words
 from tpvqa.pddl.atoms import Atom, Literal
 from tpvqa.pddl.conditions import Condition
 
@@ -15,6 +16,23 @@ class Effect:
 
 
 @dataclass(frozen=True, slots=True)
+class Change:
+    """What becomes of a number, if a condition held before.
+
+    Attributes:
+        condition: The condition.
+        kind: "increase", "decrease", "assign", "scale-up" or "scale-down".
+        function: The function with its arguments.
+        by: By how much, or to what.
+    """
+
+    condition: Condition
+    kind: str
+    function: Words
+    by: Expression
+
+
+@dataclass(frozen=True, slots=True)
 class Action:
     """A ground action as its author wrote it."""
 
@@ -23,6 +41,7 @@ class Action:
     precondition: Condition
     effects: tuple[Effect, ...]
     cost: int = 1
+    changes: tuple[Change, ...] = ()
 
     def __hash__(self) -> int:
         return hash((self.name, self.arguments))  # of a task, these tell it from all others

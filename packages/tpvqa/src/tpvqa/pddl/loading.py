@@ -6,10 +6,13 @@ from typing import Any
 from tpvqa.errors import PDDLError
 from tpvqa.pddl.description import MEMORY, described, grounded_fields, unsure_fields
 from tpvqa.pddl.lasting import Lasting
+from tpvqa.pddl.numeric import Numeric, check_values, expression
 from tpvqa.pddl.programs.loading import SUFFIX, pddl_of
 from tpvqa.pddl.schema import (
     ActionSchema,
     AxiomSchema,
+    ChangeSchema,
+    ComparisonSchema,
     ConditionSchema,
     EffectSchema,
     Junction,
@@ -100,6 +103,7 @@ def task_from_text(
     objects_by_type = {
         kind: tuple(things) for kind, things in description["objects_by_type"].items()
     }
+    numeric = Numeric.of(description["numeric"])
     task = Task(
         name=description["name"],
         domain_name=description["domain_name"],
@@ -109,10 +113,10 @@ def task_from_text(
         predicate_variables={
             name: tuple(variables) for name, variables in description["predicate_variables"].items()
         },
-        goal=ground_condition(_condition(description["goal"]), {}, objects_by_type),
+        goal=ground_condition(_condition(description["goal"], numeric), {}, objects_by_type),
         fluents=frozenset(description["fluents"]),
         derived=frozenset(description["derived"]),
-        schemas=tuple(_action(part) for part in description["actions"]),
+        schemas=tuple(_action(part, numeric) for part in description["actions"]),
         axioms=tuple(
             AxiomSchema(
                 part["predicate"], _parameters(part["parameters"]), _condition(part["condition"])
@@ -126,9 +130,12 @@ def task_from_text(
         domain_text=domain,
         problem_text=problem,
         lasting=Lasting.of(description["durative"]),
-        **grounded_fields(description),
+        numeric=numeric,
+        **grounded_fields(description, None if numeric is None else numeric.init),
         **unsure_fields(description),
     )
+    if numeric is not None:
+        check_values(task, numeric)
     if task.axioms:
         try:
             task.derivation(task.init)  # so that axioms which cannot be layered are told now
@@ -160,13 +167,16 @@ def _parameters(pairs: list[list[str]]) -> tuple[Parameter, ...]:
     return tuple(Parameter(name, kind) for name, kind in pairs)
 
 
-def _condition(written: list[Any]) -> ConditionSchema:
+def _condition(written: list[Any], numeric: Numeric | None = None) -> ConditionSchema:
     tag, *rest = written
     if tag == "literal":
         return _literal(written)
     if tag in ("and", "or"):
-        return Junction(tag == "and", tuple(map(_condition, rest)))
-    return Quantified(tag == "forall", _parameters(rest[0]), _condition(rest[1]))
+        return Junction(tag == "and", tuple(_condition(part, numeric) for part in rest))
+    if tag == "compare":
+        assert numeric is not None
+        return ComparisonSchema(rest[0], expression(rest[1]), expression(rest[2]), numeric)
+    return Quantified(tag == "forall", _parameters(rest[0]), _condition(rest[1], numeric))
 
 
 def _literal(written: list[Any]) -> LiteralSchema:
@@ -174,15 +184,31 @@ def _literal(written: list[Any]) -> LiteralSchema:
     return LiteralSchema(predicate, tuple(arguments), positive)
 
 
-def _action(part: dict[str, Any]) -> ActionSchema:
+def _action(part: dict[str, Any], numeric: Numeric | None) -> ActionSchema:
     cost = part["cost"]
+    changes: tuple[ChangeSchema, ...] = ()
+    if numeric is not None:
+        changes = tuple(
+            ChangeSchema(
+                _parameters(parameters),
+                _condition(condition, numeric),
+                kind,
+                tuple(function),
+                expression(by),
+                numeric,
+            )
+            for parameters, condition, kind, function, by in part["changes"]
+        )
     return ActionSchema(
         part["name"],
         _parameters(part["parameters"]),
-        _condition(part["precondition"]),
+        _condition(part["precondition"], numeric),
         tuple(
-            EffectSchema(_parameters(parameters), _condition(condition), _literal(literal))
+            EffectSchema(
+                _parameters(parameters), _condition(condition, numeric), _literal(literal)
+            )
             for parameters, condition, literal in part["effects"]
         ),
         cost if isinstance(cost, int) else tuple(cost),
+        changes,
     )

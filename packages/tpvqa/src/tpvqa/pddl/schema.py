@@ -1,12 +1,14 @@
 """Actions and conditions with variables, as their author wrote them, and how they become ground."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 
+from tpvqa.pddl.arithmetic import Expression, compared, folded, functions_in
 from tpvqa.pddl.atoms import Atom, Literal
 from tpvqa.pddl.conditions import Condition, Conjunction, Disjunction
-from tpvqa.pddl.ground import Action, Effect
+from tpvqa.pddl.ground import Action, Change, Effect
+from tpvqa.pddl.numeric import Numeric
 
 TRUE, FALSE = Conjunction(), Disjunction()
 
@@ -35,6 +37,23 @@ class LiteralSchema:
 
 
 @dataclass(frozen=True, slots=True)
+class ComparisonSchema:
+    """A comparison of numbers.
+
+    Attributes:
+        comparison: The comparison.
+        left: What is compared.
+        right: With what.
+        numbers: The numbers of the task.
+    """
+
+    comparison: str
+    left: Expression
+    right: Expression
+    numbers: Numeric = field(repr=False, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Junction:
     """A conjunction, or a disjunction."""
 
@@ -51,7 +70,7 @@ class Quantified:
     part: "ConditionSchema"
 
 
-ConditionSchema = LiteralSchema | Junction | Quantified
+ConditionSchema = LiteralSchema | ComparisonSchema | Junction | Quantified
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +80,27 @@ class EffectSchema:
     parameters: tuple[Parameter, ...]
     condition: ConditionSchema
     literal: LiteralSchema
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeSchema:
+    """What becomes of a number; see `Change`.
+
+    Attributes:
+        parameters: The variables of which each choice is a change of its own.
+        condition: Under which it changes.
+        kind: How.
+        function: The function with its arguments.
+        by: By how much, or to what.
+        numbers: The numbers of the task.
+    """
+
+    parameters: tuple[Parameter, ...]
+    condition: ConditionSchema
+    kind: str
+    function: tuple[str, ...]
+    by: Expression
+    numbers: Numeric = field(repr=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +116,7 @@ class ActionSchema:
     precondition: ConditionSchema
     effects: tuple[EffectSchema, ...]
     cost: int | tuple[str, ...] = 1
+    changes: tuple[ChangeSchema, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +153,8 @@ def ground_condition(schema: ConditionSchema, binding: Binding, objects: Objects
             return TRUE if (left == right) == schema.positive else FALSE
         case LiteralSchema():
             return Literal(_atom(schema, binding), schema.positive)
+        case ComparisonSchema():
+            return _ground_comparison(schema, binding)
         case Junction(conjunctive, parts):
             return join(
                 (ground_condition(part, binding, objects) for part in parts),
@@ -125,6 +168,38 @@ def ground_condition(schema: ConditionSchema, binding: Binding, objects: Objects
                 ),
                 conjunctive=universal,
             )
+
+
+def _bound(expression: Expression, binding: Binding) -> Expression:
+    if isinstance(expression, str):
+        return binding.get(expression, expression)
+    return tuple(_bound(part, binding) for part in expression)
+
+
+def _ground_comparison(schema: ComparisonSchema, binding: Binding) -> Condition:
+    """A comparison with values for the functions that nothing changes; false where one has none."""
+    left, right = (
+        folded(_bound(side, binding), schema.numbers.static) for side in (schema.left, schema.right)
+    )
+    if _lacks_value(left, schema.numbers) or _lacks_value(right, schema.numbers):
+        return FALSE
+    found = compared(schema.comparison, left, right)
+    if isinstance(found, bool):
+        return TRUE if found else FALSE
+    return Literal(Atom(*found))
+
+
+def _ground_changes(
+    schema: ActionSchema, binding: Binding, objects: Objects
+) -> Iterator[Change]:
+    for change in schema.changes:
+        for more in bindings(change.parameters, objects):
+            full = {**binding, **more}
+            condition = ground_condition(change.condition, full, objects)
+            if condition != FALSE:
+                function = tuple(full.get(word, word) for word in change.function)
+                by = folded(_bound(change.by, full), change.numbers.static)
+                yield Change(condition, change.kind, function, by)
 
 
 def join(parts: Iterator[Condition], *, conjunctive: bool) -> Condition:
@@ -165,4 +240,15 @@ def ground_action(
     if not isinstance(cost, int):
         cost = functions[tuple(binding.get(word, word) for word in cost)]
     precondition = ground_condition(schema.precondition, binding, objects)
-    return Action(schema.name, arguments, precondition, tuple(dict.fromkeys(effects)), cost)
+    changes = tuple(_ground_changes(schema, binding, objects)) if schema.changes else ()
+    numbers = schema.changes[0].numbers if schema.changes else None
+    if numbers is not None and any(_lacks_value(change.by, numbers) for change in changes):
+        precondition = FALSE
+    return Action(
+        schema.name, arguments, precondition, tuple(dict.fromkeys(effects)), cost, changes
+    )
+
+
+def _lacks_value(expression: Expression, numbers: Numeric) -> bool:
+    """Whether it speaks of a number that the problem does not give and nothing ever does."""
+    return any(words[0] not in numbers.changed for words in functions_in(expression))

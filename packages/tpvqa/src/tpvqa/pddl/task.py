@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import PDDLError, a, suggestion_or_list
+from tpvqa.pddl.arithmetic import COMPARISONS
 from tpvqa.pddl.atoms import Atom, Literal, State
-from tpvqa.pddl.conditions import Condition, holds
+from tpvqa.pddl.conditions import Condition, Disjunction, holds
 from tpvqa.pddl.derivation import Derivation
 from tpvqa.pddl.description import described, grounded_fields, key_of
 from tpvqa.pddl.ground import Action, Effect, MutexGroup
 from tpvqa.pddl.lasting import Lasting
+from tpvqa.pddl.numeric import Numeric, numbers_of
 from tpvqa.pddl.schema import ActionSchema, AxiomSchema, ground_action
 
 __all__ = ["Action", "Effect", "MutexGroup", "Task"]
@@ -54,6 +56,7 @@ class Task:
         clauses: Literals of which at least one holds at first: `(or …)`.
         besides: Further facts that may hold at first, see `opened_to`.
         lasting: Its durative actions; None for a domain without any.
+        numeric: Its numbers; None where no action changes any but the cost of a plan.
     """
 
     name: str
@@ -83,6 +86,7 @@ class Task:
     clauses: tuple[tuple[Literal, ...], ...] = field(default=(), repr=False)
     besides: frozenset[Atom] = field(default=frozenset(), repr=False)
     lasting: Lasting | None = field(default=None, repr=False)
+    numeric: Numeric | None = field(default=None, repr=False)
 
     @cached_property
     def key(self) -> str:
@@ -171,6 +175,8 @@ class Task:
     @cached_property
     def _ground_actions(self) -> tuple[Action, ...]:
         actions = tuple(self.action(words[0], words[1:]) for words in self.reachable_actions)
+        if self.numeric is not None:  # numbers that nothing changes are not grounded with
+            return tuple(each for each in actions if each.precondition != Disjunction())
         return actions if self.lasting is None else (*actions, *self.lasting.looks(self, actions))
 
     def atoms(self) -> frozenset[Atom]:
@@ -187,11 +193,14 @@ class Task:
     @cached_property
     def static(self) -> State:
         """The facts of the initial state that no action changes."""
-        return frozenset(atom for atom in self.init if atom.predicate not in self.fluents)
+        changing = self.fluents | {*COMPARISONS}
+        return frozenset(atom for atom in self.init if atom.predicate not in changing)
 
     def changes(self, atom: Atom) -> bool:
         """Whether an action of any objects could change an atom, it is derived, or left open."""
         if atom.predicate in self.derived or atom in self.left_open:
+            return True
+        if atom.predicate in COMPARISONS:
             return True
         return any(
             all(
@@ -225,7 +234,8 @@ class Task:
 
     def derivation(self, state: State) -> Derivation:
         """How derived atoms follow from the others, given the static facts of a state."""
-        static = frozenset(atom for atom in state if atom.predicate not in self.fluents)
+        changing = self.fluents | {*COMPARISONS}
+        static = frozenset(atom for atom in state if atom.predicate not in changing)
         derivation = self._derivations.get(static)
         if derivation is None:
             constant = frozenset(self.predicates) - self.fluents - self.derived
@@ -249,7 +259,11 @@ class Task:
         for effect in action.effects:
             if holds(effect.condition, before):
                 (added if effect.literal.positive else deleted).add(effect.literal.atom)
-        return (state - deleted) | added
+        after = (state - deleted) | added
+        if self.numeric is None or not action.changes:
+            return after
+        happening = [each for each in action.changes if holds(each.condition, before)]
+        return self.numeric.comes_to(action, after, happening)
 
     def goal_holds(self, state: State) -> bool:
         """Whether the goal holds in a state."""
@@ -305,6 +319,8 @@ class Task:
 
     def fits(self, atom: Atom) -> bool:
         """Whether an atom's arguments are of the types that its predicate is declared with."""
+        if atom.predicate in COMPARISONS:
+            return self.numeric is not None
         wanted = self.predicates[atom.predicate]
         return all(map(self.is_a, atom.arguments, wanted))
 
@@ -314,6 +330,9 @@ class Task:
         Raises:
             PDDLError: It does not.
         """
+        if self.numeric is not None and atom.predicate in COMPARISONS:
+            self.numeric.check(atom, self.objects)
+            return
         wanted = self.predicates.get(atom.predicate)
         if wanted is None:
             raise PDDLError(
@@ -359,7 +378,8 @@ class Task:
             domain_path=self.domain_path,
             problem_path=self.problem_path,
         )
-        return replace(self, besides=besides, **grounded_fields(description))
+        fields_now = grounded_fields(description, numbers_of(self.init))
+        return replace(self, besides=besides, **fields_now)
 
     def with_init(self, state: State) -> "Task":
         """The same task from another initial state, with the mutex groups that hold from there.
@@ -376,4 +396,4 @@ class Task:
             domain_path=self.domain_path,
             problem_path=self.problem_path,
         )
-        return replace(self, **grounded_fields(description))
+        return replace(self, **grounded_fields(description, numbers_of(state)))

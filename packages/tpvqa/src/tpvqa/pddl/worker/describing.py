@@ -109,6 +109,7 @@ def static_description(task: Any) -> dict[str, Any]:
             for axiom in task.axioms
         ],
         "durative": getattr(task, "durative", None),
+        "numeric": None,
     }
 
 

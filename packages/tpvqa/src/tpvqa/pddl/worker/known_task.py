@@ -73,6 +73,8 @@ class KnownTask:
         with quiet():
             task, unsure = read(domain_text, problem_text)
             self.description = static_description(task)
+            if task.numeric is not None:
+                self.description = task.numeric.restored(self.description)
             leave_out_unplanned(task)
             normalize.normalize(task)
             hidden = give_room(task, unsure)
@@ -109,7 +111,10 @@ class KnownTask:
             numbers=self._numbers,
             left_open=self._left_open,
         )
-        self._large = self._rules.size > LARGE and not self._left_open
+        # what a number needs is not followed back to what brings it about
+        self._large = (
+            self._rules.size > LARGE and not self._left_open and task.numeric is None
+        )
         self._parts: list[KeptGroundings] = []
 
     @property
@@ -146,11 +151,17 @@ class KnownTask:
         return {
             **self.description,
             "init": sorted(static | fluent),
-            "atoms": sorted(key for key in here.atoms if not key[0].startswith("new-axiom@")),
+            "atoms": sorted(key for key in here.atoms if not self._made_up(key[0])),
             "ground_actions": sorted(
-                {tuple(action.name.strip("()").split()) for action in here.actions}
+                words
+                for words in {tuple(action.name.strip("()").split()) for action in here.actions}
+                if not self._made_up(words[0])
             ),
-            "mutex_groups": without_running(self._task, groups),
+            "mutex_groups": [
+                group
+                for group in without_running(self._task, groups)
+                if not any(self._made_up(atom[0]) for atom in group[0])
+            ],
             "left_out": sorted(self._names - there.names),
         }
 
@@ -301,12 +312,18 @@ class KnownTask:
         )
         return self._parts[-1]
 
+    def _made_up(self, name: str) -> bool:
+        """Whether a predicate or an action is not of the author's making."""
+        numeric = self._task.numeric
+        return name.startswith("new-axiom@") or (numeric is not None and numeric.is_made_up(name))
+
     def _split(self, atoms: Iterable[AtomKey]) -> tuple[Facts, Facts]:
-        """Static and fluent facts; derived ones follow from them and are left out."""
+        """Static and fluent facts; derived ones follow from them and are left out, and values of
+        numbers are not grounded."""
         static, fluent = set(), set()
         for key in atoms:
             if key[0] in self._changing:
                 fluent.add(key)
-            elif key[0] not in self._derived:
+            elif key[0] not in self._derived and key[0] != "=":
                 static.add(key)
         return frozenset(static), frozenset(fluent)

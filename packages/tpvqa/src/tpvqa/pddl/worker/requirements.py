@@ -13,7 +13,6 @@ _KNOWN = frozenset(
 )
 
 _FEATURES = {
-    **dict.fromkeys((":fluents", ":numeric-fluents"), "numbers"),
     **dict.fromkeys((":durative-actions", ":duration-inequalities"), "time"),
     **dict.fromkeys((":continuous-effects", ":timed-initial-literals"), "time"),
     **dict.fromkeys((":time", ":processes", ":events"), "processes"),
@@ -24,7 +23,6 @@ _FEATURES = {
     **dict.fromkeys((":hierarchy", ":method-preconditions"), "hierarchy"),
 }
 _MEANS = {
-    "numbers": "numbers that actions change",
     "time": "actions that last",
     "processes": "processes and events",
     "objects": "functions whose values are objects",
@@ -36,8 +34,6 @@ _MEANS = {
 _HEADS = {
     **dict.fromkeys((":durative-action",), "time"),
     **dict.fromkeys((":process", ":event"), "processes"),
-    **dict.fromkeys((">", "<", ">=", "<="), "numbers"),
-    **dict.fromkeys(("decrease", "assign", "scale-up", "scale-down"), "numbers"),
     **dict.fromkeys(("preference", ":constraints"), "preferences"),
     **dict.fromkeys(("probabilistic",), "chance"),
 }
@@ -73,11 +69,7 @@ def _about(requirement: str) -> str:
         near = suggestion(requirement, (*_KNOWN, *_FEATURES))
         known = ", ".join(sorted(_KNOWN))
         return f"the requirement {shown(requirement)} is not known{near} Known: {known}"
-    costs = feature == "numbers"
-    return (
-        f"the requirement {requirement} is about {_MEANS[feature]}, {_who(feature)}"
-        + costs * ". Where only the costs of actions are meant, write :action-costs instead"
-    )
+    return f"the requirement {requirement} is about {_MEANS[feature]}, {_who(feature)}"
 
 
 def _who(feature: str) -> str:
