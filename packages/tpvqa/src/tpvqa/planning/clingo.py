@@ -11,6 +11,7 @@ from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.propositional import propositional
 from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
+from tpvqa.planning.numbers import no_numbers
 from tpvqa.planning.temporal import no_time
 from tpvqa.plugins import PlainArguments
 
@@ -71,6 +72,8 @@ class ClingoPlanner(PlainArguments):
         task.check_state(state)
         if task.lasting is not None:
             return no_time(task, self.name)
+        if task.numeric is not None:
+            return no_numbers(task, self.name)
         try:
             ground = propositional(task, state)
         except PlannerError as error:

@@ -10,6 +10,7 @@ from tpvqa.pddl.description import MEMORY, to_lists
 from tpvqa.pddl.processes import WORKERS, WorkerTimedOut, ask_worker
 from tpvqa.pddl.time_limit import limit_of
 from tpvqa.pddl.validation import Validation
+from tpvqa.planning.numbers import no_numbers
 from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 from tpvqa.planning.temporal import no_time
@@ -139,6 +140,8 @@ class FastDownward(PlainArguments):
             task.check_state(state)
         if task.lasting is not None:
             return no_time(task, self.name)
+        if task.numeric is not None:
+            return no_numbers(task, self.name)
         leaving: dict[str, Any] | None = None
         if self.search != "optimal":
             leaving = {"keep": [], "effort": 0}

@@ -5,9 +5,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tpvqa.pddl import Action, Atom, Condition, Conjunction, Literal, State, Task
+from tpvqa.pddl.arithmetic import COMPARISONS
 from tpvqa.pddl.derivation import GroundAxiom
 from tpvqa.pddl.ground import Effect
+from tpvqa.pddl.numeric import numbers_of
 from tpvqa.pddl.schema import FALSE, TRUE, join
+from tpvqa.planning.numbers import Numbering
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +26,7 @@ class Propositional:
         rules: What derived atoms follow from.
         in_reach: Whether the goal can be reached where nothing is ever undone.
         whole: Whether nothing of the task was left out.
+        values: The facts that say values of functions.
     """
 
     task: Task
@@ -32,25 +36,31 @@ class Propositional:
     rules: tuple[GroundAxiom, ...]
     in_reach: bool
     whole: bool
+    values: State = frozenset()
 
     def numbered(self) -> dict[str, Any]:
         """The same in lists and numbers, as it is sent to another process.
 
         Atoms are numbers; a condition is `[atom, holds]`, or `["and", …]` or `["or", …]` of such.
-        An action is what it needs, its effects as `[condition, atom, holds]`, and its cost.
+        An action is what it needs, its effects as `[condition, atom, holds]`, and its cost. Of a
+        task with numbers it also says the "values" of functions at first and the "changes" of each
+        action; see `Numbering`.
         """
         numbers: dict[Atom, int] = {}
+        functions = Numbering()
 
         def number(atom: Atom) -> int:
             return numbers.setdefault(atom, len(numbers))
 
         def said(condition: Condition) -> list[Any]:
             if isinstance(condition, Literal):
+                if condition.atom.predicate in COMPARISONS:
+                    return functions.comparison(condition.atom)
                 return [number(condition.atom), condition.positive]
             word = "and" if isinstance(condition, Conjunction) else "or"
             return [word, *map(said, condition.parts)]
 
-        return {
+        task = {
             "init": sorted(map(number, sorted(self.init))),
             "goal": said(self.goal),
             "actions": [
@@ -65,8 +75,11 @@ class Propositional:
                 for action in self.actions
             ],
             "rules": [[number(rule.head), said(rule.condition)] for rule in self.rules],
-            "atoms": len(numbers),
         }
+        if self.task.numeric is not None:
+            changes = functions.changes(self.actions, said)
+            task |= {"changes": changes, "values": functions.values(self.values)}
+        return {**task, "atoms": len(numbers)}
 
 
 def propositional(task: Task, state: State) -> Propositional:
@@ -80,10 +93,11 @@ def propositional(task: Task, state: State) -> Propositional:
         PDDLError: The state speaks of unknown predicates or objects.
         PlannerError: It could not be grounded.
     """
-    state = frozenset(atom for atom in state if atom.predicate not in task.derived)
+    values = numbers_of(state)
+    state = frozenset(atom for atom in state if atom.predicate not in task.derived) - values
     fluent = frozenset(atom for atom in state if atom.predicate in task.fluents)
     if state - fluent != task.static or not fluent <= task.reachable_atoms:
-        task = task.with_init(state)
+        task = task.with_init(state | values)
     rules = task.derivation(state).rules if task.axioms else ()
     possible, stays, actions = _within_reach(task.ground_actions(), rules, state)
     added = {e.literal.atom for a in actions for e in a.effects if e.literal.positive}
@@ -91,7 +105,7 @@ def propositional(task: Task, state: State) -> Propositional:
     heads = {rule.head for rule in rules} & possible
 
     def known(atom: Atom) -> bool | None:
-        if atom in heads:
+        if atom in heads or atom.predicate in COMPARISONS:
             return None
         if atom in state:
             return None if atom in deleted else True
@@ -107,13 +121,20 @@ def propositional(task: Task, state: State) -> Propositional:
                 if known(effect.literal.atom) is None
                 if (condition := _decided(effect.condition, known)) != FALSE
             ),
+            changes=tuple(
+                replace(change, condition=condition)
+                for change in action.changes
+                if (condition := _decided(change.condition, known)) != FALSE
+            ),
         )
         for action in actions
     )
     return Propositional(
         task=task,
         init=frozenset(atom for atom in fluent if known(atom) is None),
-        actions=tuple(each for each in decided if each.precondition != FALSE and each.effects),
+        actions=tuple(
+            each for each in decided if each.precondition != FALSE and (each.effects or each.changes)
+        ),
         goal=_decided(task.goal, known),
         rules=tuple(
             GroundAxiom(rule.head, condition)
@@ -123,6 +144,7 @@ def propositional(task: Task, state: State) -> Propositional:
         ),
         in_reach=_may_hold(task.goal, possible, stays),
         whole=not task.left_out,
+        values=values,
     )
 
 
@@ -154,6 +176,8 @@ def _within_reach(
 def _may_hold(condition: Condition, possible: set[Atom], stays: set[Atom]) -> bool:
     """Whether a condition can come to hold, where each literal is taken by itself."""
     if isinstance(condition, Literal):
+        if condition.atom.predicate in COMPARISONS:
+            return True  # what numbers can come to is left to who plans
         return condition.atom in possible if condition.positive else condition.atom not in stays
     parts = (_may_hold(part, possible, stays) for part in condition.parts)
     return all(parts) if isinstance(condition, Conjunction) else any(parts)

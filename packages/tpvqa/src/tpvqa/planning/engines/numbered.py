@@ -4,6 +4,8 @@ from typing import Any
 
 from unified_planning import shortcuts as up
 
+from tpvqa.planning.engines.numbers import Numbers
+
 _COMPILERS = (
     ("DISJUNCTIVE_CONDITIONS", up.CompilationKind.DISJUNCTIVE_CONDITIONS_REMOVING),
     ("CONDITIONAL_EFFECTS", up.CompilationKind.CONDITIONAL_EFFECTS_REMOVING),
@@ -26,6 +28,7 @@ class Numbered:
     def __init__(self, task: dict[str, Any]):
         self.problem = up.Problem("task")
         self._actions = task["actions"]
+        self._numbers = Numbers(task, self.problem) if "values" in task else None
         self._fluents = [up.Fluent(f"f{n}", up.BoolType()) for n in range(task["atoms"])]
         for fluent in self._fluents:
             self.problem.add_fluent(fluent, default_initial_value=False)
@@ -47,7 +50,7 @@ class Numbered:
             (
                 self._fluents[atom],
                 holds,
-                up.TRUE() if condition == _ALWAYS else self._said(condition),
+                self._when(condition),
             )
             for condition, atom, holds in effects
             if holds or repr(condition) + str(atom) not in added
@@ -60,13 +63,21 @@ class Numbered:
             action.add_precondition(part)
         for effect in self.effects(number):
             action.add_effect(*effect)
+        if self._numbers is not None:
+            self._numbers.change(number, action, self._when)
         self.problem.add_action(action)
 
     def _parts_of(self, condition: list[Any]) -> list[Any]:
         return list(map(self._said, condition[1:] if condition[0] == "and" else [condition]))
 
+    def _when(self, condition: list[Any]) -> Any:
+        return up.TRUE() if condition == _ALWAYS else self._said(condition)
+
     def _said(self, condition: list[Any]) -> Any:
         head, *parts = condition
+        if head == "compare":
+            assert self._numbers is not None
+            return self._numbers.compared(condition)
         if head == "and":
             return up.And(*map(self._said, parts))
         if head == "or":
