@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 from tpvqa import __version__
 from tpvqa.assembly.answering import answering
 from tpvqa.assembly.lasting import see_lasting, watching
+from tpvqa.assembly.numbers import see_numbers
 from tpvqa.assembly.simulating import simulate
 from tpvqa.assembly.told import read_told, see_fitting, stated_bound
 from tpvqa.belief.calibration import Calibration
@@ -187,6 +188,7 @@ class Trial:
         self.monitor: Monitor
         self.monitor, by_monitor = make_monitor(config.monitor.named, context)
         see_lasting(self.task, world, self.monitor)
+        see_numbers(self.task, self.monitor)
         self.weighs_answers = "calibration" in by_monitor
         if not self.weighs_answers:
             self.calibration = None

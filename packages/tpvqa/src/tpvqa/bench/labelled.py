@@ -20,6 +20,7 @@ from tpvqa.events.events import (
     SensedRecord,
 )
 from tpvqa.labelling.recorded import subject_of, view_of
+from tpvqa.pddl.atoms import holds_in
 from tpvqa.pddl import Action, Atom, State
 from tpvqa.worlds import Report
 from tpvqa.worlds.outcome import Failure
@@ -97,7 +98,7 @@ class Labeller:
             if each.atom not in self._read:
                 self._read.add(each.atom)
                 atom = Atom.parse(each.atom)
-                truth = atom in state
+                truth = holds_in(atom, state)
                 reading = LabelledReading(atom.predicate, each.probability, truth)
                 self.own.readings.append(reading)
 

@@ -3,6 +3,7 @@
 from tpvqa.errors import TpvqaError
 from tpvqa.events import Exchange, TrialState
 from tpvqa.pddl import Atom, State, Task
+from tpvqa.pddl.atoms import holds_in
 from tpvqa.questions import FactWords
 
 
@@ -35,7 +36,7 @@ class Agreement:
         try:
             expected = _expected(self._task, state)
             atoms = (atom, *(told.question.alike or ()))
-            holds = any(Atom.parse(each) in expected for each in atoms)
+            holds = any(holds_in(Atom.parse(each), expected) for each in atoms)
         except TpvqaError:  # of a log that does not fit its own domain
             return plain
         return plain if holds else not plain

@@ -6,6 +6,7 @@ from typing import Any
 
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.asker import Asks, check_effects, give_up, tally
+from tpvqa.monitors.measuring import measured
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Request
@@ -54,9 +55,15 @@ class CorrectingMonitor:
         return self._replan(step, "preconditions", answers, corrected)
 
     def after(self, step: Step) -> Check:
-        """Check the effects: go on, or repeat the action; after the last one the goal, too."""
-        verdict = yield from check_effects(self._asker, step)
-        if verdict.state is None:
+        """Check the effects: go on, or repeat the action; after the last one the goal, too.
+
+        What the robot measures of numbers is believed.
+        """
+        verdict = measured(step, (yield from check_effects(self._asker, step)))
+        if verdict.decision is Decision.REPLAN and verdict.state is not None:
+            self._remember(step).record(step.state, verdict.state)
+            return verdict
+        if verdict.state is None or verdict.decision is Decision.REPEAT:
             return verdict
         self._remember(step).record(step.state, verdict.state)
         if self.goal and step.index + 1 == len(step.plan.actions):

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable
 from functools import cached_property
 
 from tpvqa.pddl import Atom, Literal, MutexGroup, State, Task
+from tpvqa.pddl.arithmetic import COMPARISONS
 
 
 class FactMemory:
@@ -121,12 +122,15 @@ class FactMemory:
             unseen: Alternatives that it denied; fallen back to only where nothing else is left.
 
         Returns:
-            The corrected state. A literal with nothing before it (an initial one that never
+            The corrected state. Of a comparison that is denied the number becomes the nearest for
+            which it is wrong. A literal with nothing before it (an initial one that never
             changed) stays, unless an affirmed alternative takes its place; so the result may be
             the state itself.
         """
         for literal in denied:
-            if literal.positive:
+            if literal.atom.predicate in COMPARISONS and self._task.numeric is not None:
+                state = self._task.numeric.believing(state, literal.negate())
+            elif literal.positive:
                 state = self._without(state, literal.atom, seen, unseen)
             elif literal.atom in self._changed and literal.atom not in state:
                 state = self._with(state, literal.atom)

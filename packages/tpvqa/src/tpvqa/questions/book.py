@@ -5,8 +5,10 @@ from itertools import product
 from pathlib import Path
 
 from tpvqa.pddl import Action, Atom, Condition, Disjunction, Literal, State, Task, holds, supporting
+from tpvqa.pddl.arithmetic import COMPARISONS
 from tpvqa.questions import fallback
 from tpvqa.questions.lasting import questions_of_running, words_of_parts
+from tpvqa.questions.numbers import NumberWords
 from tpvqa.questions.question import ActionQuestion, ActionWay, FactQuestion, FactWay, Way
 from tpvqa.questions.template import Template
 from tpvqa.questions.wordings import Wording, Wordings, parameters_of, read_wordings
@@ -46,6 +48,7 @@ class QuestionBook:
         self.fallbacks: list[str] = []
         self._texts: dict[Atom, tuple[str, tuple[Atom, ...]]] = {}
         self._why_not: dict[tuple[Literal, tuple[str, tuple[str, ...]] | None], str | None] = {}
+        self._numbers = NumberWords(wordings.numbers, task)
         self._add_fallbacks()
 
     @staticmethod
@@ -73,7 +76,10 @@ class QuestionBook:
     def fact(self, literal: Literal, *, way: FactWay = Way.PRECONDITION) -> FactQuestion:
         """The question about a fact; a negative literal expects the answer *no*."""
         atom = literal.atom
-        if atom not in self._texts:
+        if atom not in self._texts and atom.predicate in COMPARISONS:
+            template, values = self._numbers.template(atom)
+            self._texts[atom] = self._fill(template, dict(values)), ()
+        elif atom not in self._texts:
             values = dict(zip(self._predicates[atom.predicate], atom.arguments, strict=True))
             text = self._fill(self._questions[atom.predicate], values)
             self._texts[atom] = text, self._alike(atom)
@@ -107,6 +113,8 @@ class QuestionBook:
         return self._why_not[key]
 
     def _never_asked_because(self, literal: Literal, action: Action | None) -> str | None:
+        if literal.atom.predicate in COMPARISONS:
+            return self._numbers.why_not(literal.atom)
         name = None if action is None else action.name
         arguments = {} if action is None else self._values(action)
         for pattern in self._wordings.never_asked:
@@ -139,7 +147,10 @@ class QuestionBook:
         happening = [effect.literal for effect in action.effects if holds(effect.condition, before)]
         added = {literal.atom for literal in happening if literal.positive}
         # What is both deleted and added holds afterwards.
-        left = (each for each in happening if each.positive or each.atom not in added)
+        left = [each for each in happening if each.positive or each.atom not in added]
+        if action.changes and self.task.numeric is not None:
+            after = self.task.apply(state, action)
+            left += self.task.numeric.asked_after(action, state, after)
         return self._questions_about(
             (each for each in left if self.asked(each, action)), Way.EFFECT, action
         )
@@ -275,6 +286,10 @@ class QuestionBook:
                 self._fall_back(
                     f"No question is given for the predicate {name}; asked as {text!r}."
                 )
+        for name in self._numbers.unsaid():
+            self._notice(
+                f"No question is given for the number {name} (under 'numbers'), so it is not asked."
+            )
         lasting = self.task.lasting
         for name, parameters in self._actions.items():
             if lasting is not None and lasting.name_of(name) is not None:

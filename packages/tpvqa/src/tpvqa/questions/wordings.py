@@ -10,6 +10,7 @@ from tpvqa.errors import PDDLError, QuestionsError, suggestion
 from tpvqa.pddl import Task
 from tpvqa.questions.lasting import parts_of
 from tpvqa.questions.never import NeverAsked
+from tpvqa.questions.numbers import COMPARISON, NUMBER, lacking, parameters_of_functions
 from tpvqa.questions.question import ActionWay, Way
 from tpvqa.questions.template import Template
 from tpvqa.yaml_places import Place, read_yaml
@@ -44,6 +45,7 @@ class Wordings:
         in_doubt: What is asked although no action changes it.
         ways: How a whole action is asked about.
         notices: What the reader of the file should know.
+        numbers: The question about each number, see `tpvqa.questions.numbers`.
     """
 
     predicates: Mapping[str, Template] = field(default_factory=dict)
@@ -58,6 +60,7 @@ class Wordings:
         default_factory=lambda: {way: Template.parse(text) for way, text in WAYS.items()}
     )
     notices: Sequence[str] = ()
+    numbers: Mapping[str, Template] = field(default_factory=dict)
 
 
 def parameters_of(task: Task) -> tuple[Mapping[str, list[str]], Mapping[str, list[str]]]:
@@ -92,9 +95,11 @@ def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None 
     if root is None:
         return Wordings()
     sections = root.sections(
-        "predicates", "actions", "attributes", "types", "objects", "never_asked", "in_doubt", "ways"
+        "predicates", "actions", "attributes", "types", "objects", "never_asked", "in_doubt", "ways",
+        "numbers",
     )
     predicates, actions = parameters_of(task)
+    functions = parameters_of_functions(task)
     attributes = _attributes(sections.get("attributes"), [], of_objects=True)
     known = [*_OWN_ATTRIBUTES, *attributes]
     kept = _Kept(wrong)
@@ -142,6 +147,9 @@ def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None 
         in_doubt=patterns("in_doubt", _pattern),
         ways=_ways(sections.get("ways")),
         notices=notices,
+        numbers=named(
+            "numbers", functions, "number", lambda name, it: _of_number(it, functions[name], known)
+        ),
     )
 
 
@@ -194,6 +202,16 @@ def _template(place: Place, parameters: Sequence[str], attributes: Sequence[str]
                 f"{suggestion(placeholder.attribute, attributes)} Give its default "
                 f"under 'attributes'. Known: {', '.join(attributes)}."
             )
+    return template
+
+
+def _of_number(place: Place, parameters: Sequence[str], attributes: Sequence[str]) -> Template:
+    template = _template(place, parameters, attributes)
+    for word in lacking(template):
+        raise place.wrong(
+            f"a question about a number has to speak of {{{COMPARISON}}} and {{{NUMBER}}}; "
+            f"{{{word}}} is missing"
+        )
     return template
 
 

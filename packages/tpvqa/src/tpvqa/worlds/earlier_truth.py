@@ -4,6 +4,7 @@ from collections.abc import Callable
 from hashlib import blake2b
 
 from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.pddl.atoms import holds_in
 
 
 class EarlierTruth:
@@ -20,7 +21,7 @@ class EarlierTruth:
 
     def holds(self, atom: Atom) -> bool:
         """Whether a fact was true then."""
-        return atom in self._task.extend(self._state)
+        return holds_in(atom, self._task.extend(self._state))
 
     def visible(self, atom: Atom) -> bool:
         """Whether the last observation shows if it is true."""

@@ -1,6 +1,7 @@
 """Judging by the truth, in worlds that know it."""
 
-from tpvqa.pddl import Condition, holds, literals
+from tpvqa.pddl import Condition, Conjunction, Disjunction, Literal
+from tpvqa.vlm.protocol import TruthSource
 from tpvqa.worlds.capabilities import truth_of
 from tpvqa.worlds.protocol import World
 
@@ -10,5 +11,14 @@ def goal_holds(world: World, goal: Condition) -> bool | None:
     truth = truth_of(world)
     if truth is None:
         return None
-    true = frozenset(lit.atom for lit in literals(goal) if truth.holds(lit.atom))
-    return holds(goal, true)
+    return _judged(goal, truth)
+
+
+def _judged(condition: Condition, truth: TruthSource) -> bool:
+    match condition:
+        case Literal(atom, positive):
+            return truth.holds(atom) == positive
+        case Conjunction(parts):
+            return all(_judged(part, truth) for part in parts)
+        case Disjunction(parts):
+            return any(_judged(part, truth) for part in parts)

@@ -15,8 +15,11 @@ from typing import Any
 from tpvqa.chance import chance
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.pddl.arithmetic import VALUE
+from tpvqa.pddl.atoms import holds_in
 from tpvqa.worlds.dead import NOTHING_DEAD, Dead
 from tpvqa.worlds.earlier_truth import EarlierTruth, fingerprint
+from tpvqa.worlds.numbers import drifted, readings
 from tpvqa.worlds.outcome import Failure, Outcome
 from tpvqa.worlds.people import somebody_moves
 from tpvqa.worlds.running import RunningActions
@@ -116,6 +119,8 @@ class Simulation:
             outcome = self.running.executed(action, attempt, outcome)
         if self.moved and outcome.undone is None:
             outcome = self._among_people(outcome, action, attempt)
+        if self.rules.numbers:
+            outcome = self._drifting(outcome, action, attempt)
         if not (self.rules.sensed or self.rules.reports):
             return outcome
         report = next((r for r in self.rules.reports if r.action in (None, action.name)), None)
@@ -126,17 +131,19 @@ class Simulation:
         )
         true = self.task.extend(self.state)
         sensed = self._sensors.after((action, truly), true, self._draw_for)
-        return replace(outcome, reported=reported, sensed=sensed)
+        return replace(outcome, reported=reported, sensed=(*outcome.sensed, *sensed))
 
     def sensed(self) -> tuple[SensedFact, ...]:
         """What the robot's own sensors tell at a look."""
+        measured = readings(self.rules.numbers, self.state)
         if not self.rules.sensed:
-            return ()
-        return self._sensors.at_look(self.task.extend(self.state), self._draw_for)
+            return measured
+        return measured + self._sensors.at_look(self.task.extend(self.state), self._draw_for)
 
     def senses(self) -> frozenset[str]:
         """The predicates that are sensed."""
-        return self._sensors.predicates()
+        numbers = any(rule.sensed for rule in self.rules.numbers)
+        return self._sensors.predicates() | ({VALUE} if numbers else set())
 
     def _draw_for(self, atom: Atom) -> Random:
         """A reading stays what it is until something is done: its error is not drawn again."""
@@ -203,6 +210,17 @@ class Simulation:
             outcome, undone=gone, undoing=f"somebody moves the {gone.arguments[0]}", after=after
         )
 
+    def _drifting(self, outcome: Outcome, action: Action, attempt: int) -> Outcome:
+        draw = chance(self.seed, self.episode, "drift", action.pddl(), attempt)
+        found = drifted(self.rules.numbers, self.state, draw)
+        if found is not None:
+            was, say, after = found
+            self.become(after)
+            said = "; ".join(filter(None, (outcome.undoing, say)))
+            outcome = replace(outcome, undone=outcome.undone or was, undoing=said, after=after)
+        sensed = readings(self.rules.numbers, self.state)
+        return replace(outcome, sensed=(*outcome.sensed, *sensed))
+
     def become(self, after: State) -> None:
         """Change the true state."""
         self.ended += sorted(self.state - after)
@@ -266,7 +284,7 @@ class SimulatedTruth:
 
     def holds(self, atom: Atom) -> bool:
         """Whether a fact is true now."""
-        return atom in self.state
+        return holds_in(atom, self.state)
 
     def visible(self, atom: Atom) -> bool:
         """Whether the last observation shows if it is true."""

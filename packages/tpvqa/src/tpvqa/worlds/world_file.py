@@ -7,13 +7,14 @@ from pathlib import Path
 from tpvqa.errors import PDDLError, WorldFileError, suggestion, suggestion_or_list
 from tpvqa.pddl import Action, State, Task
 from tpvqa.pddl.pattern import Pattern, check_together
+from tpvqa.worlds.numbers import NumberRule, number_rule
 from tpvqa.worlds.sensing import Occasion, ReportRule, SensedRule
 from tpvqa.worlds.shown import ShownRule
 from tpvqa.worlds.stated import stated_pattern
 from tpvqa.worlds.undo import Reversal, UndoRule
 from tpvqa.yaml_places import Place, read_yaml
 
-SECTIONS = ("undo", "rebind", "sensed", "reports", "shown")
+SECTIONS = ("undo", "rebind", "sensed", "reports", "shown", "numbers")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +57,7 @@ class WorldRules:
         sensed: What the robot measures itself.
         reports: What skills notice of their failures; the first that is of an action counts.
         shown: What a camera shows only from certain places; the first that is of a fact counts.
+        numbers: What changes numbers besides actions, and which are measured.
         nothing_undone: Whether it says that nothing can be undone, by an empty list.
     """
 
@@ -65,6 +67,7 @@ class WorldRules:
     reports: tuple[ReportRule, ...] = ()
     shown: tuple[ShownRule, ...] = ()
     nothing_undone: bool = False
+    numbers: tuple[NumberRule, ...] = ()
 
 
 def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
@@ -83,6 +86,7 @@ def load_world_file(path: Path | str | None, task: Task) -> WorldRules:
         reports=tuple(_report_rule(entry, task) for entry in _items(sections, "reports")),
         shown=tuple(_shown_rule(entry, task) for entry in _items(sections, "shown")),
         nothing_undone="undo" in sections and not _items(sections, "undo"),
+        numbers=tuple(number_rule(entry, task) for entry in _items(sections, "numbers")),
     )
 
 

@@ -3,6 +3,8 @@
 import re
 
 from tpvqa.events.events import Acted, Started
+from tpvqa.pddl import Atom
+from tpvqa.pddl.atoms import holds_in
 
 _DERIVED = re.compile(r"\(\s*:derived\s+\(\s*([^\s()]+)", re.IGNORECASE)
 
@@ -32,4 +34,7 @@ class TrueFacts:
         """Whether a fact, given as PDDL, is true now; None where that is not known."""
         if not self._known or fact.strip("()").split(" ")[0] in self._derived:
             return None
+        if fact.startswith(("(>", "(<")):
+            values = (Atom.parse(each) for each in self._state if each.startswith("(= "))
+            return holds_in(Atom.parse(fact), frozenset(values))
         return fact in self._state

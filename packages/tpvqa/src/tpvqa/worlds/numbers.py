@@ -1,0 +1,131 @@
+"""Numbers in a simulated world: what changes them besides actions, and which the robot measures."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from random import Random
+
+from tpvqa.errors import shown, suggestion_or_list
+from tpvqa.observation import SensedFact
+from tpvqa.pddl import Atom, State, Task
+from tpvqa.pddl.arithmetic import number, written
+from tpvqa.pddl.numeric import numbers_of, with_values
+from tpvqa.yaml_places import Place
+
+
+_NUMBER = re.compile(r"-?[0-9]{1,12}(\.[0-9]{1,9})?")
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """A change of a number that no action makes.
+
+    Attributes:
+        by: By how much.
+        chance: How probable it is after an action.
+        least: The value below which it does not bring it.
+        most: The value above which it does not bring it.
+        say: How it is said.
+    """
+
+    by: Fraction
+    chance: float
+    least: Fraction | None = None
+    most: Fraction | None = None
+    say: str = ""
+
+    def after(self, value: Fraction) -> Fraction:
+        """A value after it."""
+        new = value + self.by
+        if self.least is not None and self.by < 0:
+            new = max(new, min(self.least, value))
+        if self.most is not None and self.by > 0:
+            new = min(new, max(self.most, value))
+        return new
+
+
+@dataclass(frozen=True, slots=True)
+class NumberRule:
+    """What a world file says of a number.
+
+    Attributes:
+        function: The function.
+        sensed: Whether the robot measures it after every action.
+        drift: What changes it besides actions.
+    """
+
+    function: str
+    sensed: bool = False
+    drift: Drift | None = None
+
+
+def number_rule(entry: Place, task: Task) -> NumberRule:
+    """Read an entry.
+
+    Raises:
+        WorldFileError: It is none, or of no number that actions change.
+    """
+    parts = entry.sections("of", "sensed", "drift")
+    known = sorted(task.numeric.changed) if task.numeric is not None else []
+    if "of" not in parts:
+        raise entry.wrong("an entry needs 'of', the name of a number, e.g. of: battery")
+    name = parts["of"].text().lower().strip("() ")
+    if name not in known:
+        raise parts["of"].wrong(
+            f"actions change no number {name!r}{suggestion_or_list(name, known)}"
+        )
+    sensed = parts["sensed"].truth() if "sensed" in parts else False
+    return NumberRule(name, sensed, _drift(parts["drift"], name) if "drift" in parts else None)
+
+
+def _drift(place: Place, name: str) -> Drift:
+    parts = place.sections("by", "chance", "least", "most", "say")
+    if "by" not in parts or "chance" not in parts:
+        raise place.wrong("a drift needs 'by' and 'chance', e.g. by: -10 and chance: 0.2")
+    limits = {key: _number(parts[key]) for key in ("by", "least", "most") if key in parts}
+    say = parts["say"].text() if "say" in parts else f"{name} changes by itself"
+    return Drift(
+        limits["by"], parts["chance"].share(), limits.get("least"), limits.get("most"), say
+    )
+
+
+def _number(place: Place) -> Fraction:
+    said = str(getattr(place.node, "value", ""))
+    if _NUMBER.fullmatch(said) is None:
+        raise place.wrong(f"expected a number such as -10 or 2.5, found {shown(said)}")
+    return number(said)
+
+
+def drifted(
+    rules: Sequence[NumberRule], state: State, draw: Random
+) -> tuple[Atom, str, State] | None:
+    """What changes by itself after an action: the value that was, in words, the state after it.
+
+    Args:
+        rules: What the world file says.
+        state: The true state.
+        draw: Random numbers.
+    """
+    found: tuple[Atom, str] | None = None
+    for rule in rules:
+        drift = rule.drift
+        if drift is None:
+            continue
+        for atom in sorted(numbers_of(state)):
+            if atom.arguments[0] != rule.function or draw.random() >= drift.chance:
+                continue
+            words, old = atom.arguments[:-1], number(atom.arguments[-1])
+            new = drift.after(old)
+            if new != old:
+                state = with_values(state, {words: new})
+                found = found or (atom, f"{drift.say} ({written(old)} → {written(new)})")
+    return None if found is None else (*found, state)
+
+
+def readings(rules: Sequence[NumberRule], state: State) -> tuple[SensedFact, ...]:
+    """What the robot measures of its numbers."""
+    names = {rule.function for rule in rules if rule.sensed}
+    return tuple(
+        SensedFact(atom, 1.0) for atom in sorted(numbers_of(state)) if atom.arguments[0] in names
+    )
