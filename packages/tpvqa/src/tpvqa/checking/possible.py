@@ -160,6 +160,15 @@ def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
                 file,
                 line,
             )
+        case _ if task.numeric is not None:
+            yield Finding(
+                "plan-not-sought",
+                Severity.NOTE,
+                f"whether there is a plan is not known: {result.reason}",
+                "Run `tpvqa plan --planner up:aries` on the same files.",
+                file,
+                line,
+            )
         case _:
             yield Finding(
                 "planner-failed",

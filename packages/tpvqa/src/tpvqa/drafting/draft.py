@@ -9,6 +9,7 @@ from tpvqa.drafting.clauses import Phrases
 from tpvqa.drafting.facts import Facts, Said
 from tpvqa.drafting.lexicon import HANDS
 from tpvqa.drafting.things import Label, Things
+from tpvqa.drafting.numbers import numbers_section
 from tpvqa.pddl import Task
 from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import fallback
@@ -65,7 +66,7 @@ def draft(task: Task) -> str:
     lines = [_HEAD.format(domain=task.domain_name).rstrip(), "", "predicates:"]
     for name in asked:
         lines += _predicate(name, said[name])
-    lines += ["", "actions:"]
+    lines += [*numbers_section(task), "", "actions:"]
     for name, words in spoken.items():
         unsure = (
             "   # LOOK: the names tell little; say it in your own words" if words.unsure else ""

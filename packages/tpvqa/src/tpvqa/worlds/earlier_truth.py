@@ -4,6 +4,7 @@ from collections.abc import Callable
 from hashlib import blake2b
 
 from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.pddl.achieved import achieved
 from tpvqa.pddl.atoms import holds_in
 
 
@@ -33,7 +34,7 @@ class EarlierTruth:
 
     def successful(self, action: Action) -> bool:
         """Whether all effects of an action held then."""
-        return self._task.apply(self._state, action) == self._state
+        return achieved(self._task, self._state, action)
 
     def scene(self) -> str:
         """A fingerprint of the state."""

@@ -15,7 +15,7 @@ from typing import Any
 from tpvqa.chance import chance
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Action, Atom, State, Task
-from tpvqa.pddl.arithmetic import VALUE
+from tpvqa.pddl.achieved import achieved
 from tpvqa.pddl.atoms import holds_in
 from tpvqa.worlds.dead import NOTHING_DEAD, Dead
 from tpvqa.worlds.earlier_truth import EarlierTruth, fingerprint
@@ -142,8 +142,7 @@ class Simulation:
 
     def senses(self) -> frozenset[str]:
         """The predicates that are sensed."""
-        numbers = any(rule.sensed for rule in self.rules.numbers)
-        return self._sensors.predicates() | ({VALUE} if numbers else set())
+        return self._sensors.predicates()
 
     def _draw_for(self, atom: Atom) -> Random:
         """A reading stays what it is until something is done: its error is not drawn again."""
@@ -195,7 +194,7 @@ class Simulation:
 
     def achieved(self, action: Action) -> bool:
         """Whether all effects of an action hold already, so that it has nothing left to do."""
-        return self.task.apply(self.state, action) == self.state
+        return achieved(self.task, self.state, action)
 
     def _among_people(self, outcome: Outcome, action: Action, attempt: int) -> Outcome:
         draw = chance(self.seed, self.episode, "moved", action.pddl(), attempt)

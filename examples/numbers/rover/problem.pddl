@@ -1,0 +1,11 @@
+(define (problem two-samples)
+  (:domain rover)
+  (:objects base hill lake - place  flint mud - sample)
+  (:init
+    (at base) (dock base) (lying flint hill) (lying mud lake)
+    (= (battery) 60) (= (load) 0) (= (capacity) 3)
+    (= (weight flint) 2) (= (weight mud) 1.5)
+    (= (way base hill) 20) (= (way hill base) 20)
+    (= (way base lake) 30) (= (way lake base) 30)
+    (= (way hill lake) 20) (= (way lake hill) 20))
+  (:goal (and (stored flint) (stored mud) (at base) (>= (battery) 20))))
