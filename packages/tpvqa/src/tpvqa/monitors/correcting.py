@@ -8,6 +8,7 @@ from tpvqa.events.decision import Decision
 from tpvqa.monitors.asker import Asks, check_effects, give_up, tally
 from tpvqa.monitors.measuring import measured
 from tpvqa.monitors.memory import FactMemory
+from tpvqa.monitors.numbers_back import numbers_back
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.verdict import Verdict
@@ -101,7 +102,10 @@ class CorrectingMonitor:
                 affirmed, refused = yield from self._look_elsewhere(step, literal)
                 seen += affirmed
                 unseen += refused
-        return memory.take_out(step.state, denied, seen=seen, unseen=unseen)
+        corrected = memory.take_out(step.state, denied, seen=seen, unseen=unseen)
+        if corrected == step.state or step.task.numeric is None:
+            return corrected
+        return (yield from numbers_back(self._asker, step, memory, denied, corrected))
 
     def _look_elsewhere(
         self, step: Step, denied: Literal

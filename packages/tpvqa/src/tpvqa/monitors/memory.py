@@ -6,11 +6,12 @@ was picked up. So every exactly-one group keeps what held in it before: when its
 taken out and no answer says which other one holds, the fact that held before is believed again.
 """
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
+from fractions import Fraction
 from functools import cached_property
 
 from tpvqa.pddl import Atom, Literal, MutexGroup, State, Task
-from tpvqa.pddl.arithmetic import COMPARISONS
+from tpvqa.pddl.arithmetic import COMPARISONS, Words, values_in
 
 
 class FactMemory:
@@ -31,6 +32,7 @@ class FactMemory:
         self._initial = task.init
         self._believed = {g.atoms: sorted(task.init & g.atoms) for g in self._groups}
         self._changed: set[Atom] = set()
+        self._came_with: dict[Atom, dict[Words, Fraction]] = {}
 
     @cached_property
     def _possible(self) -> frozenset[Atom]:
@@ -47,6 +49,15 @@ class FactMemory:
         for group, members in self._believed.items():
             members += sorted(after & group - before)
         self._changed |= before ^ after
+        if self._task.numeric is not None:
+            old, new = values_in(before), values_in(after)
+            by = {w: new[w] - old[w] for w in new if w in old and new[w] != old[w]}
+            for atom in after - before:
+                self._came_with[atom] = by
+
+    def came_with(self, atom: Atom) -> Mapping[Words, Fraction]:
+        """By how much numbers changed with the action that brought a fact about."""
+        return self._came_with.get(atom, {})
 
     def correct(self, before: State, after: State, denied: Iterable[Literal]) -> None:
         """Note a correction by `take_out` of what was denied.

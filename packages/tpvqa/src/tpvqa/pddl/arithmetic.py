@@ -87,6 +87,13 @@ def folded(expression: Expression, values: Values) -> Expression:
     return expression if known is None else written(known)
 
 
+def bound(expression: Expression, binding: Mapping[str, str]) -> Expression:
+    """An expression with objects for its variables."""
+    if isinstance(expression, str):
+        return binding.get(expression, expression)
+    return tuple(bound(part, binding) for part in expression)
+
+
 def functions_in(expression: Expression) -> Iterator[Words]:
     """The functions that an expression speaks of."""
     if isinstance(expression, str):

@@ -28,6 +28,8 @@ from tpvqa.pddl.atoms import Atom, Literal, State
 from tpvqa.pddl.conditions import literals
 from tpvqa.pddl.ground import Action, Change
 
+CHANGES = ("increase", "decrease", "assign", "scale-up", "scale-down")
+"""How actions change numbers."""
 _LOWER, _HIGHER = "<=", ">="
 
 

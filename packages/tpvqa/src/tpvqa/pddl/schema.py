@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
 
-from tpvqa.pddl.arithmetic import Expression, compared, folded, functions_in
+from tpvqa.pddl.arithmetic import Expression, bound, compared, folded, functions_in
 from tpvqa.pddl.atoms import Atom, Literal
 from tpvqa.pddl.conditions import Condition, Conjunction, Disjunction
 from tpvqa.pddl.ground import Action, Change, Effect
@@ -170,16 +170,10 @@ def ground_condition(schema: ConditionSchema, binding: Binding, objects: Objects
             )
 
 
-def _bound(expression: Expression, binding: Binding) -> Expression:
-    if isinstance(expression, str):
-        return binding.get(expression, expression)
-    return tuple(_bound(part, binding) for part in expression)
-
-
 def _ground_comparison(schema: ComparisonSchema, binding: Binding) -> Condition:
     """A comparison with values for the functions that nothing changes; false where one has none."""
     left, right = (
-        folded(_bound(side, binding), schema.numbers.static) for side in (schema.left, schema.right)
+        folded(bound(side, binding), schema.numbers.static) for side in (schema.left, schema.right)
     )
     if _lacks_value(left, schema.numbers) or _lacks_value(right, schema.numbers):
         return FALSE
@@ -198,7 +192,7 @@ def _ground_changes(
             condition = ground_condition(change.condition, full, objects)
             if condition != FALSE:
                 function = tuple(full.get(word, word) for word in change.function)
-                by = folded(_bound(change.by, full), change.numbers.static)
+                by = folded(bound(change.by, full), change.numbers.static)
                 yield Change(condition, change.kind, function, by)
 
 

@@ -1,7 +1,7 @@
 """Numbers in a simulated world: what changes them besides actions, and which the robot measures."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from random import Random
@@ -9,8 +9,19 @@ from random import Random
 from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Atom, State, Task
-from tpvqa.pddl.arithmetic import number, written
-from tpvqa.pddl.numeric import numbers_of, with_values
+from tpvqa.pddl.arithmetic import (
+    Expression,
+    Words,
+    bound,
+    evaluated,
+    functions_in,
+    number,
+    parsed,
+    text_of,
+    values_in,
+    written,
+)
+from tpvqa.pddl.numeric import CHANGES, changed, numbers_of, with_values
 from tpvqa.yaml_places import Place
 
 
@@ -43,6 +54,61 @@ class Drift:
         if self.most is not None and self.by > 0:
             new = min(new, max(self.most, value))
         return new
+
+
+@dataclass(frozen=True, slots=True)
+class NumberChange:
+    """What becomes of a number where something is undone: `(decrease (load) (weight ?s))`.
+
+    Attributes:
+        kind: How it changes.
+        function: The function with its arguments.
+        by: By how much, or to what.
+    """
+
+    kind: str
+    function: Words
+    by: Expression
+
+    @staticmethod
+    def parse(place: Place, variables: Collection[str], task: Task) -> "NumberChange":
+        """Read it.
+
+        Args:
+            place: Where it stands.
+            variables: What is bound there.
+            task: The task.
+
+        Raises:
+            WorldFileError: It is none, or speaks of what is not known.
+        """
+        text = place.text().lower()
+        numbers = task.numeric
+        try:
+            kind, function, by = parsed(text)
+        except ValueError:
+            kind, function, by = "", "", ""
+        if kind not in CHANGES or isinstance(function, str) or numbers is None:
+            raise place.wrong(f"{text!r} changes no number; write (decrease (load) (weight ?s))")
+        for words in (function, *functions_in(by)):
+            arguments = numbers.functions.get(str(words[0]))
+            if arguments is None or len(arguments) != len(words) - 1:
+                raise place.wrong(f"{text!r}: there is no such number as {text_of(words)}")
+            for word in words[1:]:
+                if word not in variables and word not in task.objects:
+                    raise place.wrong(f"{text!r}: nothing says what {word} stands for")
+        if function[0] not in numbers.changed:
+            raise place.wrong(f"{text!r}: no action changes {function[0]}, so nothing else does")
+        return NumberChange(str(kind), tuple(map(str, function)), by)
+
+    def apply(self, state: State, binding: Mapping[str, str], task: Task) -> State:
+        """The state after it; as it was where that cannot be worked out."""
+        assert task.numeric is not None
+        values = values_in(state)
+        function = tuple(binding.get(word, word) for word in self.function)
+        by = evaluated(bound(self.by, binding), {**task.numeric.static, **values})
+        new = None if by is None else changed(self.kind, values.get(function), by)
+        return state if new is None else with_values(state, {function: new})
 
 
 @dataclass(frozen=True, slots=True)

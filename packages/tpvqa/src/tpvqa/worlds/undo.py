@@ -6,6 +6,7 @@ from typing import Protocol
 
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.pattern import Binding, Pattern
+from tpvqa.worlds.numbers import NumberChange
 
 
 class Undoing(Protocol):
@@ -39,6 +40,7 @@ class Reversal:
     unless: tuple[Pattern, ...]
     add: tuple[Pattern, ...]
     delete: tuple[Pattern, ...]
+    numbers: tuple[NumberChange, ...] = ()
 
     def apply(
         self, undone: Atom, binding: Binding, state: State, history: Sequence[Atom], task: Task
@@ -65,7 +67,10 @@ class Reversal:
         if matched is None:
             return None
         gone = {undone, *(pattern.ground(matched) for pattern in self.delete)}
-        return (state - gone) | {pattern.ground(matched) for pattern in self.add}
+        after = (state - gone) | {pattern.ground(matched) for pattern in self.add}
+        for change in self.numbers:
+            after = change.apply(after, matched, task)
+        return after
 
 
 @dataclass(frozen=True, slots=True)

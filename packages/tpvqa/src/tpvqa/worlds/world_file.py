@@ -7,7 +7,7 @@ from pathlib import Path
 from tpvqa.errors import PDDLError, WorldFileError, suggestion, suggestion_or_list
 from tpvqa.pddl import Action, State, Task
 from tpvqa.pddl.pattern import Pattern, check_together
-from tpvqa.worlds.numbers import NumberRule, number_rule
+from tpvqa.worlds.numbers import NumberChange, NumberRule, number_rule
 from tpvqa.worlds.sensing import Occasion, ReportRule, SensedRule
 from tpvqa.worlds.shown import ShownRule
 from tpvqa.worlds.stated import stated_pattern
@@ -185,7 +185,7 @@ def _undo_rule(entry: Place, task: Task) -> UndoRule:
 
 
 def _reversal(entry: Place, fact: Pattern, task: Task) -> Reversal:
-    parts = entry.sections("say", "last", "when", "unless", "add", "delete")
+    parts = entry.sections("say", "last", "when", "unless", "add", "delete", "numbers")
 
     def patterns(name: str, *before: Pattern, bound: bool = False) -> tuple[Pattern, ...]:
         found: list[Pattern] = []
@@ -209,6 +209,8 @@ def _reversal(entry: Place, fact: Pattern, task: Task) -> Reversal:
     if len(last) > 1:
         raise parts["last"].wrong("expected one fact")
     when = patterns("when", fact, *last)
+    known = frozenset[str]().union(*(each.variables for each in (fact, *last, *when)))
+    changes = parts["numbers"].texts() if "numbers" in parts else ()
     return Reversal(
         say=parts["say"].text() if "say" in parts else "it is undone",
         last=last[0] if last else None,
@@ -216,4 +218,5 @@ def _reversal(entry: Place, fact: Pattern, task: Task) -> Reversal:
         unless=patterns("unless", fact, *last),
         add=patterns("add", fact, *last, *when, bound=True),
         delete=patterns("delete", fact, *last, *when, bound=True),
+        numbers=tuple(NumberChange.parse(place, known, task) for place in changes),
     )
