@@ -20,8 +20,8 @@ from tpvqa.events.events import (
     SensedRecord,
 )
 from tpvqa.labelling.recorded import subject_of, view_of
-from tpvqa.pddl.atoms import holds_in
 from tpvqa.pddl import Action, Atom, State
+from tpvqa.pddl.atoms import holds_in
 from tpvqa.worlds import Report
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import Simulation

@@ -5,8 +5,8 @@ from functools import lru_cache
 
 from tpvqa.events.events import QuestionRecord
 from tpvqa.labelling.recorded import OF_FACTS
-from tpvqa.pddl.atoms import holds_in
 from tpvqa.pddl import Action, Atom
+from tpvqa.pddl.atoms import holds_in
 from tpvqa.questions import Way
 from tpvqa.worlds.simulation import Simulation
 
@@ -26,7 +26,9 @@ def yes_is_right(
     """
     if question.atom is not None and question.way in OF_FACTS:
         state = simulation.task.extend(simulation.state)
-        return any(holds_in(_atom(text), state) for text in (question.atom, *(question.alike or ())))
+        return any(
+            holds_in(_atom(text), state) for text in (question.atom, *(question.alike or ()))
+        )
     assert question.action is not None
     action = actions[question.action]
     if question.way is Way.POSSIBLE:

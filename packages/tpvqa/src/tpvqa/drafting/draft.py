@@ -8,8 +8,8 @@ from tpvqa.drafting.actions import Actions
 from tpvqa.drafting.clauses import Phrases
 from tpvqa.drafting.facts import Facts, Said
 from tpvqa.drafting.lexicon import HANDS
-from tpvqa.drafting.things import Label, Things
 from tpvqa.drafting.numbers import numbers_section
+from tpvqa.drafting.things import Label, Things
 from tpvqa.pddl import Task
 from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import fallback

@@ -18,4 +18,4 @@ def numbers_section(task: Task) -> Iterator[str]:
         of = " and ".join(f"the {{{each}}}" for each in arguments)
         said = f"the {' '.join(words_of(name))}{' of ' * bool(of)}{of}"
         question = json.dumps(f"Is {said} {{comparison}} {{number}}?")
-        yield f"  {name}: {question}   # LOOK: name the unit, and where it is shown; or leave it out"
+        yield f"  {name}: {question}   # LOOK: name the unit and where it is shown"

@@ -176,9 +176,14 @@ def values_in(state: State) -> Values:
 
 def sides(words: Words) -> tuple[Expression, Expression]:
     """The two sides of a comparison, by the arguments of its atom."""
-    if words[0].startswith("("):
+    if of_several(words):
         return parsed(words[0]), parsed(words[1])
     return words[:-1], words[-1]
+
+
+def of_several(words: Words) -> bool:
+    """Whether a comparison is not of one function with a number, by the arguments of its atom."""
+    return any(word.startswith("(") for word in words)
 
 
 def compares(predicate: str, words: Words, state: State) -> bool:
@@ -199,7 +204,7 @@ def compared(comparison: str, left: Expression, right: Expression) -> bool | tup
     if not factors:
         return COMPARISONS[comparison](added, Fraction(0))
     if len(factors) > 1:
-        return comparison, (text_of(left) if isinstance(left, tuple) else f"(+ {left} 0)", text_of(right))
+        return comparison, (text_of(("-", left, right)), "0")
     ((words, factor),) = factors.items()
     return comparison if factor > 0 else TURNED[comparison], (*words, written(-added / factor))
 

@@ -2,7 +2,15 @@
 
 from typing import NamedTuple
 
-from tpvqa.pddl.arithmetic import COMPARISONS, VALUE, compares, parsed, text_of
+from tpvqa.pddl.arithmetic import (
+    ARITHMETIC,
+    COMPARISONS,
+    VALUE,
+    compares,
+    of_several,
+    parsed,
+    text_of,
+)
 
 
 class Atom(NamedTuple):
@@ -22,7 +30,7 @@ class Atom(NamedTuple):
         """The atom as PDDL writes it, e.g. `(in_hand plate left)` or `(>= (battery robot) 20)`."""
         if self.predicate in COMPARISONS and self.arguments:
             *about, number = self.arguments
-            said = about[0] if about[:1] and about[0].startswith("(") else f"({' '.join(about)})"
+            said = about[0] if of_several(self.arguments) else f"({' '.join(about)})"
             return f"({self.predicate} {said} {number})"
         return f"({' '.join((self.predicate, *self.arguments))})"
 
@@ -67,13 +75,17 @@ def holds_in(atom: Atom, state: "State") -> bool:
 
 
 def _comparison(text: str) -> Atom:
-    comparison, *two = parsed(text)
-    if not isinstance(comparison, str) or len(two) != 2 or isinstance(two[0], str):
+    found = parsed(text)
+    comparison, *two = found if isinstance(found, tuple) else ("",)
+    if (
+        not isinstance(comparison, str)
+        or len(two) != 2
+        or not any(isinstance(x, tuple) for x in two)
+    ):
         raise ValueError(f"{text!r} compares no number; write it as (>= (battery r) 20)")
     left, right = two
-    if isinstance(right, str) and all(isinstance(word, str) for word in left):
-        if left[0] not in ("+", "-", "*", "/"):
-            return Atom(comparison, (*map(str, left), right))
+    if isinstance(left, tuple) and isinstance(right, str) and left[0] not in ARITHMETIC:
+        return Atom(comparison, (*map(str, left), right))
     return Atom(comparison, (text_of(left), text_of(right)))
 
 

@@ -204,9 +204,7 @@ def _action(part: dict[str, Any], numeric: Numeric | None) -> ActionSchema:
         _parameters(part["parameters"]),
         _condition(part["precondition"], numeric),
         tuple(
-            EffectSchema(
-                _parameters(parameters), _condition(condition, numeric), _literal(literal)
-            )
+            EffectSchema(_parameters(parameters), _condition(condition, numeric), _literal(literal))
             for parameters, condition, literal in part["effects"]
         ),
         cost if isinstance(cost, int) else tuple(cost),

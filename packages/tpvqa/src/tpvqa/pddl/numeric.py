@@ -20,6 +20,7 @@ from tpvqa.pddl.arithmetic import (
     grain,
     nearest,
     number,
+    of_several,
     sides,
     values_in,
     written,
@@ -89,7 +90,7 @@ class Numeric:
         Raises:
             PDDLError: It does not.
         """
-        if not atom.arguments or atom.arguments[0].startswith("("):
+        if not atom.arguments or of_several(atom.arguments):
             raise PDDLError(f"{atom.pddl()} is no value of a function; write (= (battery r) 60)")
         name, *arguments = atom.arguments[:-1] or atom.arguments
         if name not in self.functions:
@@ -228,7 +229,8 @@ def check_values(task: Grounded, numbers: Numeric) -> None:
 
 def spoken_of(action: Action) -> Iterator[Words]:
     """The functions that an action speaks of."""
-    conditions = (each.condition for each in chain(action.effects, action.changes))
+    conditions = [effect.condition for effect in action.effects]
+    conditions += [change.condition for change in action.changes]
     for condition in (action.precondition, *conditions):
         for literal in literals(condition):
             yield from functions_of(literal)

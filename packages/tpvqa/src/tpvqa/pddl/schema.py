@@ -183,9 +183,7 @@ def _ground_comparison(schema: ComparisonSchema, binding: Binding) -> Condition:
     return Literal(Atom(*found))
 
 
-def _ground_changes(
-    schema: ActionSchema, binding: Binding, objects: Objects
-) -> Iterator[Change]:
+def _ground_changes(schema: ActionSchema, binding: Binding, objects: Objects) -> Iterator[Change]:
     for change in schema.changes:
         for more in bindings(change.parameters, objects):
             full = {**binding, **more}

@@ -9,9 +9,9 @@ from tpvqa.pddl.description import MEMORY
 from tpvqa.pddl.outside.asking import ask_engine, end_engines
 from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.engines.results import result_of
+from tpvqa.planning.numbers import no_numbers
 from tpvqa.planning.propositional import propositional
 from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
-from tpvqa.planning.numbers import no_numbers
 from tpvqa.planning.temporal import no_time
 from tpvqa.plugins import PlainArguments
 

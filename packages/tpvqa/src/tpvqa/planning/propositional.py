@@ -133,7 +133,9 @@ def propositional(task: Task, state: State) -> Propositional:
         task=task,
         init=frozenset(atom for atom in fluent if known(atom) is None),
         actions=tuple(
-            each for each in decided if each.precondition != FALSE and (each.effects or each.changes)
+            each
+            for each in decided
+            if each.precondition != FALSE and (each.effects or each.changes)
         ),
         goal=_decided(task.goal, known),
         rules=tuple(

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from tpvqa.pddl import Atom, Task
+from tpvqa.pddl.arithmetic import of_several
 from tpvqa.questions.template import Placeholder, Template
 
 COMPARISON, NUMBER = "comparison", "number"
@@ -51,7 +52,7 @@ class NumberWords:
 
     def why_not(self, atom: Atom) -> str | None:
         """Why a comparison is never asked about; None where it is asked."""
-        if atom.arguments[0].startswith("("):
+        if of_several(atom.arguments):
             return "it compares several numbers"
         if atom.arguments[0] not in self._questions:
             return f"the questions file has no words for the number {atom.arguments[0]}"
@@ -63,9 +64,7 @@ class NumberWords:
         if name not in self._questions:
             return Template((f"Is it true: {atom}?",)), {}
         names = self._parameters[name]
-        template = Template(
-            tuple(self._said(part, atom) for part in self._questions[name].parts)
-        )
+        template = Template(tuple(self._said(part, atom) for part in self._questions[name].parts))
         return template, dict(zip(names, arguments, strict=False))
 
     @staticmethod

@@ -95,7 +95,14 @@ def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None 
     if root is None:
         return Wordings()
     sections = root.sections(
-        "predicates", "actions", "attributes", "types", "objects", "never_asked", "in_doubt", "ways",
+        "predicates",
+        "actions",
+        "attributes",
+        "types",
+        "objects",
+        "never_asked",
+        "in_doubt",
+        "ways",
         "numbers",
     )
     predicates, actions = parameters_of(task)

@@ -24,7 +24,6 @@ from tpvqa.pddl.arithmetic import (
 from tpvqa.pddl.numeric import CHANGES, changed, numbers_of, with_values
 from tpvqa.yaml_places import Place
 
-
 _NUMBER = re.compile(r"-?[0-9]{1,12}(\.[0-9]{1,9})?")
 
 
@@ -85,7 +84,8 @@ class NumberChange:
         text = place.text().lower()
         numbers = task.numeric
         try:
-            kind, function, by = parsed(text)
+            found = parsed(text)
+            kind, function, by = found if isinstance(found, tuple) else ("", "", "")
         except ValueError:
             kind, function, by = "", "", ""
         if kind not in CHANGES or isinstance(function, str) or numbers is None:

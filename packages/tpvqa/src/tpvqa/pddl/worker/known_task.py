@@ -112,9 +112,7 @@ class KnownTask:
             left_open=self._left_open,
         )
         # what a number needs is not followed back to what brings it about
-        self._large = (
-            self._rules.size > LARGE and not self._left_open and task.numeric is None
-        )
+        self._large = self._rules.size > LARGE and not self._left_open and task.numeric is None
         self._parts: list[KeptGroundings] = []
 
     @property

@@ -1,4 +1,4 @@
-"""Numbers that actions change (PDDL 2.1, Fox and Long 2003), taken out of what the translator reads.
+"""Numbers that actions change (PDDL 2.1, Fox and Long 2003), taken out before translating.
 
 A comparison in a condition becomes a predicate without arguments that may hold or not whenever it
 likes, so that everything it may allow is grounded; what actions do to numbers becomes an effect on
@@ -378,7 +378,7 @@ def _is_about_numbers(block: Block) -> bool:
 
 
 def _compares(block: Block) -> bool:
-    """Whether it compares numbers: `=` is equality of objects, too, and gives values in (:init …)."""
+    """Whether it compares numbers; `=` is equality of objects, too, and gives values at first."""
     head = block[0] if block else None
     if head in COMPARISONS:
         return len(block) > 1 and any(map(_is_numeric, block[1:]))

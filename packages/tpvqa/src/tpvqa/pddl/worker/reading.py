@@ -56,9 +56,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
             raise ReadingError(error.message, part, error.line) from None
         _check_kind(part, blocks[part])
     durative = taken_apart(blocks["domain"], blocks["problem"])
-    numeric = numbers_taken_out(
-        blocks["domain"], blocks["problem"], durative=durative is not None
-    )
+    numeric = numbers_taken_out(blocks["domain"], blocks["problem"], durative=durative is not None)
     found = beyond(blocks["domain"])
     if found is not None:
         raise ReadingError(found[0], "domain", found[1])
