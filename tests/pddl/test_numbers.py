@@ -23,7 +23,7 @@ from tpvqa.pddl.arithmetic import (
     values_in,
     written,
 )
-from tpvqa.pddl.numeric import value_of, with_values
+from tpvqa.pddl.numeric import steps_of, value_of, with_values
 
 ROVER = Path(__file__).parents[2] / "examples/numbers/rover"
 FUNCTIONS = [("load",), ("charge", "rover"), ("way", "hill", "lake")]
@@ -84,7 +84,7 @@ def test_values_are_facts_of_the_state() -> None:
     task = rover()
     assert task.numeric is not None
     assert Atom("=", ("battery", "60")) in task.init
-    assert task.numeric.step == Fraction(1, 2)  # a jar of mud weighs 1.5
+    assert steps_of(task, task.numeric) == {"battery": 10, "load": Fraction(1, 2)}
     drive = task.action("drive", ["base", "hill"])
     assert Literal(Atom(">=", ("battery", "20"))) in drive.precondition.parts  # type: ignore[union-attr]
     after = task.apply(task.init, drive)
@@ -97,12 +97,14 @@ def test_values_are_facts_of_the_state() -> None:
 
 
 def test_a_denied_comparison_is_believed_by_the_nearest_value() -> None:
-    numeric = rover().numeric
+    task = rover()
+    numeric = task.numeric
     assert numeric is not None
+    steps = steps_of(task, numeric)
     denied = Literal(Atom(">=", ("battery", "20")), False)
-    corrected = numeric.believing(numeric.init, denied)
-    assert values_in(corrected)["battery",] == Fraction("19.5")
-    assert numeric.believing(numeric.init, denied.negate()) == numeric.init
+    corrected = numeric.believing(numeric.init, denied, steps)
+    assert values_in(corrected)["battery",] == 10
+    assert numeric.believing(numeric.init, denied.negate(), steps) == numeric.init
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -1,4 +1,5 @@
-; A rover collects samples. Driving takes charge from its battery; its basket holds so much.
+; A rover collects samples. Driving takes charge from its battery, the sun gives some back; its
+; basket holds so much.
 (define (domain rover)
   (:requirements :strips :typing :negative-preconditions :numeric-fluents)
   (:types place sample)
@@ -24,6 +25,11 @@
     :parameters (?p - place)
     :precondition (and (at ?p) (dock ?p) (< (battery) 100))
     :effect (assign (battery) 100))
+
+  (:action wait
+    :parameters ()
+    :precondition (< (battery) 100)
+    :effect (increase (battery) 10))
 
   (:action collect
     :parameters (?s - sample ?p - place)

@@ -12,6 +12,7 @@ from functools import cached_property
 
 from tpvqa.pddl import Atom, Literal, MutexGroup, State, Task
 from tpvqa.pddl.arithmetic import COMPARISONS, Words, values_in
+from tpvqa.pddl.numeric import steps_of
 
 
 class FactMemory:
@@ -43,6 +44,11 @@ class FactMemory:
             for effect in action.effects
             if effect.literal.positive
         }
+
+    @cached_property
+    def _steps(self) -> Mapping[str, Fraction]:
+        numeric = self._task.numeric
+        return {} if numeric is None else steps_of(self._task, numeric)
 
     def record(self, before: State, after: State) -> None:
         """Note what an action changed."""
@@ -140,7 +146,7 @@ class FactMemory:
         """
         for literal in denied:
             if literal.atom.predicate in COMPARISONS and self._task.numeric is not None:
-                state = self._task.numeric.believing(state, literal.negate())
+                state = self._task.numeric.believing(state, literal.negate(), self._steps)
             elif literal.positive:
                 state = self._without(state, literal.atom, seen, unseen)
             elif literal.atom in self._changed and literal.atom not in state:

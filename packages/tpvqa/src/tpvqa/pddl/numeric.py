@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from tpvqa.errors import PDDLError, suggestion_or_list
 from tpvqa.pddl.arithmetic import (
+    ARITHMETIC,
     COMPARISONS,
     VALUE,
     Expression,
@@ -42,13 +43,11 @@ class Numeric:
         functions: The variables and types of each function's arguments.
         changed: The functions that actions change.
         values: All values at first.
-        constants: All numbers that the domain and the problem write.
     """
 
     functions: Mapping[str, tuple[tuple[str, str], ...]]
     changed: frozenset[str]
     values: Values
-    constants: frozenset[Fraction] = frozenset()
 
     @staticmethod
     def of(description: Mapping[str, Any] | None) -> "Numeric | None":
@@ -62,7 +61,6 @@ class Numeric:
             },
             frozenset(description["changed"]),
             {tuple(words): number(value) for words, value in description["values"]},
-            frozenset(map(number, description["constants"])),
         )
 
     @cached_property
@@ -78,11 +76,6 @@ class Numeric:
     def static(self) -> Values:
         """The values that no action changes."""
         return {w: value for w, value in self.values.items() if w[0] not in self.changed}
-
-    @cached_property
-    def step(self) -> Fraction:
-        """By how much values differ at least: what all numbers of the task are multiples of."""
-        return grain([each for each in {*self.values.values(), *self.constants} if each])
 
     def check(self, atom: Atom, objects: Mapping[str, str]) -> None:
         """See that a value or a comparison speaks of a function and objects of the task.
@@ -147,10 +140,15 @@ class Numeric:
             raised = words not in old or value > old[words]
             yield Literal(Atom(_HIGHER if raised else _LOWER, (*words, written(value))))
 
-    def believing(self, state: State, literal: Literal) -> State:
+    def believing(self, state: State, literal: Literal, steps: Mapping[str, Fraction]) -> State:
         """A state in which a comparison holds as somebody says, by the nearest value.
 
         A comparison of several functions leaves open which of them is another; nothing changes.
+
+        Args:
+            state: What was believed.
+            literal: What is said.
+            steps: By how much the values of each function differ at least; see `steps_of`.
         """
         if literal.holds(state):
             return state
@@ -158,7 +156,8 @@ class Numeric:
         if isinstance(left, str) or isinstance(right, tuple) or left[0] not in self.changed:
             return state
         comparison = literal.atom.predicate
-        value = nearest(comparison, number(right), holds=literal.positive, step=self.step)
+        step = steps.get(str(left[0]), Fraction(1))
+        value = nearest(comparison, number(right), holds=literal.positive, step=step)
         return with_values(state, {tuple(map(str, left)): value})
 
 
@@ -244,3 +243,29 @@ def functions_of(literal: Literal) -> Iterable[Words]:
     if literal.atom.predicate not in COMPARISONS:
         return ()
     return chain(*map(functions_in, sides(literal.atom.arguments)))
+
+
+def steps_of(task: Grounded, numbers: Numeric) -> Mapping[str, Fraction]:
+    """By how much the values of each function that changes differ at least.
+
+    That is what all numbers are multiples of that it begins with, is compared with, set to or
+    changed by.
+    """
+    said: dict[str, set[Fraction]] = {name: set() for name in numbers.changed}
+    for words, value in numbers.values.items():
+        said.get(words[0], set()).add(value)
+    for action in task.ground_actions():
+        for literal in literals(action.precondition):
+            for words in functions_of(literal):
+                said[words[0]] |= set(_numbers_in(sides(literal.atom.arguments)))
+        for change in action.changes:
+            said[change.function[0]] |= set(_numbers_in((change.by,)))
+    return {name: grain([each for each in found if each]) for name, found in said.items()}
+
+
+def _numbers_in(expressions: Iterable[Expression]) -> Iterator[Fraction]:
+    for each in expressions:
+        if isinstance(each, str):
+            yield number(each)
+        elif each[0] in ARITHMETIC:
+            yield from _numbers_in(each[1:])

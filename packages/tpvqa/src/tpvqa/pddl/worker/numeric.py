@@ -330,24 +330,8 @@ class Numbers:
                 "functions": [[name, args] for name, args in sorted(self._functions.items())],
                 "changed": self._changed,
                 "values": self._values,
-                "constants": sorted(
-                    {
-                        word
-                        for _, left, right in self._conditions.values()
-                        for word in (*_constants(left), *_constants(right))
-                    }
-                    | {word for *_, by in self._effects.values() for word in _constants(by)}
-                ),
             },
         }
-
-
-def _constants(expression: Any) -> Iterator[str]:
-    if isinstance(expression, str):
-        yield expression
-    elif expression[0] in _ARITHMETIC:
-        for part in expression[1:]:
-            yield from _constants(part)
 
 
 def _declared(domain: Block) -> Iterator[tuple[str, list[list[str]]]]:

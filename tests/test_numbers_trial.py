@@ -1,0 +1,218 @@
+"""Trials in which actions change numbers: asked as comparisons, measured, and mended."""
+
+import random
+import re
+from collections import deque
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.doubles import configured
+from tests.drivers.test_asynchronous import story
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
+from tpvqa.episodes.log import LOG
+from tpvqa.errors import QuestionsError, TpvqaError, WorldFileError
+from tpvqa.events import Event, Started
+from tpvqa.events.events import Acted, Asked, Decided, Ended
+from tpvqa.pddl import State, Task, load_task
+from tpvqa.pddl.arithmetic import number
+from tpvqa.pddl.numeric import with_values
+from tpvqa.planning import Plan, Planner, PlanningResult
+from tpvqa.planning.clingo import ClingoPlanner
+from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.unified_engine import UnifiedEngine
+from tpvqa.questions import QuestionBook
+from tpvqa.resuming import trial_of
+from tpvqa.worlds.world_file import load_world_file
+
+pytest.importorskip("up_aries")
+
+ROVER = Path(__file__).parents[1] / "examples/numbers/rover"
+
+
+def _config(world: str) -> TrialConfig:
+    return configured(
+        domain=str(ROVER / "domain.pddl"),
+        problem=str(ROVER / "problem.pddl"),
+        questions=str(ROVER / "questions.yaml"),
+        world_file=str(ROVER / world),
+        planner="up:aries",
+        monitor="tpvqa",
+        vlm="oracle:1.0",
+    )
+
+
+CONFIG = _config("world.yaml")
+
+
+class Known(UnifiedEngine):
+    """Plans from no state twice, so that a trial is the same again."""
+
+    def __init__(self) -> None:
+        super().__init__("aries")
+        self._known: dict[object, PlanningResult] = {}
+
+    def plan(
+        self, task: Task, state: State | None = None, *, timeout: float | None = None
+    ) -> PlanningResult:
+        key = task.key, state
+        if key not in self._known:
+            self._known[key] = super().plan(task, state, timeout=timeout)
+        return self._known[key]
+
+
+@pytest.fixture(scope="module")
+def planner() -> Iterator[Planner]:
+    planner = Known()
+    yield planner
+    planner.close()
+
+
+@pytest.fixture(scope="module")
+def task() -> Task:
+    return load_task(ROVER / "domain.pddl", ROVER / "problem.pddl")
+
+
+def run(config: TrialConfig, planner: Planner) -> list[Event]:
+    writer = MemoryWriter()
+    with Trial(config, planner=planner) as trial:
+        trial.run(writer)
+    return writer.events
+
+
+def completed(events: list[Event]) -> bool:
+    last = events[-1]
+    assert isinstance(last, Ended)
+    return last.completed is True
+
+
+def test_comparisons_are_asked_before_and_after(planner: Planner) -> None:
+    events = run(CONFIG.but(simulation={"failure": 0.0}, seed=1), planner)
+    asked = [q for event in events if isinstance(event, Asked) for q in event.questions]
+    said = {(each.way, each.atom.split()[0][1:], each.text) for each in asked if each.atom}
+    comparisons = {(way, operator) for way, operator, _ in said if operator in (">=", "<=")}
+    assert comparisons >= {("precondition", ">="), ("effect", "<="), ("effect", ">=")}
+    for _, operator, text in said:
+        if operator == ">=":
+            assert re.search(r"(display|basket) show at least [0-9.]+ (percent|kilograms)\?", text)
+
+
+def test_what_drained_is_found_out_and_charged(planner: Planner) -> None:
+    """Of 12 seeds some drain the battery below what the plan needs."""
+    reached = replanned = 0
+    for seed in range(1, 13):
+        events = run(CONFIG.but(seed=seed), planner)
+        reached += completed(events)
+        replanned += any(
+            isinstance(each, Decided) and each.decision == "replan" and "percent" in each.reason
+            for each in events
+        )
+    assert reached >= 9
+    assert replanned
+
+
+def test_a_measured_number_is_believed(planner: Planner) -> None:
+    config = _config("world-sensed.yaml").but(vlm="oracle:0.8", seed=3)
+    events = run(config, planner)
+    acted = [each for each in events if isinstance(each, Acted)]
+    assert all(each.facts and each.facts[0].atom.startswith("(= (battery) ") for each in acted)
+    assert any(isinstance(e, Decided) and "measured: battery = " in e.reason for e in events)
+
+
+def test_killed_it_is_gone_on_with_to_the_same_end(planner: Planner, tmp_path: Path) -> None:
+    writer = EpisodeWriter(tmp_path / "whole", durable=False)
+    with Trial(CONFIG.but(seed=5), planner=planner) as trial:
+        trial.run(writer)
+    writer.close()
+    whole = read_episode(tmp_path / "whole")
+    lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
+    for cut in range(1, len(lines), max(1, len(lines) // 5)):
+        folder = tmp_path / f"cut{cut}"
+        folder.mkdir()
+        (folder / LOG).write_bytes(b"".join(lines[:cut]))
+        events = read_episode(folder)
+        started = events[0]
+        assert isinstance(started, Started)
+        with trial_of(started, planner=planner) as trial:
+            writer = EpisodeWriter(folder, resume=cut, durable=False)
+            trial.run(writer, started=started, recorded=events, folder=folder)
+            writer.close()
+        assert story(read_episode(folder)) == story(whole), cut
+
+
+def test_plans_are_found_where_there_are_any(planner: Planner, task: Task) -> None:
+    """Beside a search through all states: from random values of the battery."""
+    draw = random.Random(0)
+    for battery in draw.sample(range(0, 100, 10), 4):
+        state = with_values(task.init, {("battery",): number(str(battery))})
+        solvable = _solvable(task, state)
+        result = planner.plan(task, state, timeout=5)
+        assert isinstance(result, Plan) or not solvable  # what is found is replayed
+
+
+def _solvable(task: Task, start: State) -> bool:
+    seen, waiting = {start}, deque([start])
+    while waiting:
+        state = waiting.popleft()
+        if task.goal_holds(state):
+            return True
+        for action in task.ground_actions():
+            if task.applicable(state, action):
+                after = task.apply(state, action)
+                if after not in seen:
+                    seen.add(after)
+                    waiting.append(after)
+    return False
+
+
+@pytest.mark.parametrize("planner", [FastDownward(), ClingoPlanner()], ids=lambda each: each.name)
+def test_who_knows_no_numbers_says_who_does(planner: Planner, task: Task) -> None:
+    result = planner.plan(task)
+    assert not isinstance(result, Plan)
+    assert "up:aries" in getattr(result, "reason", "")
+
+
+def test_the_belief_monitor_is_refused() -> None:
+    with pytest.raises(TpvqaError, match=r"change numbers \(battery, load\)"):
+        Trial(CONFIG.but(monitor="belief"))
+
+
+def test_a_number_without_words_is_not_asked(task: Task, tmp_path: Path) -> None:
+    file = tmp_path / "questions.yaml"
+    file.write_text('numbers:\n  battery: "Is the battery {comparison} {number}?"\n')
+    book = QuestionBook.load(file, task)
+    assert any("number load" in notice for notice in book.notices)
+    collect = book.preconditions(task.action("collect", ["flint", "hill"]), task.init)
+    assert not any("load" in each.text for each in collect)
+    file.write_text('numbers:\n  battery: "Is the battery full?"\n')
+    with pytest.raises(QuestionsError, match=r":2: .*\{comparison\} is missing"):
+        QuestionBook.load(file, task)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("numbers:\n  - of: batery\n", "Did you mean 'battery'"),
+        ("numbers:\n  - of: capacity\n", "actions change no number 'capacity'"),
+        ("numbers:\n  - of: battery\n    drift: {by: -10}\n", "needs 'by' and 'chance'"),
+        ("numbers:\n  - of: battery\n    drift: {by: much, chance: 1}\n", "such as -10"),
+        (
+            'undo:\n  - fact: "(aboard ?s)"\n    outcomes: [{numbers: "(decrease (load) 1 2)"}]\n',
+            "changes no number",
+        ),
+        (
+            'undo:\n  - fact: "(aboard ?s)"\n    outcomes: [{numbers: "(decrease (load) '
+            '(weight ?x))"}]\n',
+            "nothing says what ?x stands for",
+        ),
+    ],
+)
+def test_a_world_file_that_does_not_fit(text: str, says: str, task: Task, tmp_path: Path) -> None:
+    file = tmp_path / "world.yaml"
+    file.write_text(text)
+    with pytest.raises(WorldFileError) as caught:
+        load_world_file(file, task)
+    assert says in str(caught.value)
