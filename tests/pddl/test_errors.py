@@ -40,7 +40,7 @@ BROKEN_DOMAINS = [
     ("(?l - lamp)\n", "(?l - lamb)\n", 6, "type 'lamb'.*not declared.*Did you mean 'lamp'"),
     (":negative-preconditions", ":negative", 2, "requirement.*:negative-preconditions"),
     (":effect (lit ?l)", ":effects (lit ?l)", 8, "':effect'"),
-    (":effect (lit ?l)", ":effect (increase (fuel) 1)", 8, "increase"),
+    (":effect (lit ?l)", ":effect (increase (fuel) 1)", 8, "the function .fuel., which"),
     ("(:predicates", "(:predicatez", 4, ":predicates"),
     ("(lit ?l - lamp)", "(lit l - lamp)", 4, "variable.*'?'"),
     ("(define (domain lamps)", "(domain lamps)", 1, "define"),

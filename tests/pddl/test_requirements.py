@@ -22,14 +22,10 @@ def domain(
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [
-        (domain(":numeric-fluents"), 3, ":numeric-fluents is about numbers that actions change"),
-        (domain(":fluents"), 3, "write :action-costs instead"),
         (domain(":timed-initial-literals"), 3, "tamer"),
         (domain(":preferences"), 3, "No engine of unified-planning does"),
         (domain(":probabilistic-effects"), 3, "effects by chance"),
         (domain(":typign"), 3, "Did you mean ':typing'"),
-        (domain("", needs="(> (battery) 1)"), 7, "enhsp"),
-        (domain("", effect="(decrease (battery) 1)"), 8, "numbers that actions change"),
         (domain("", word=":process"), 6, "processes and events"),
         (domain("", effect="(probabilistic 0.5 (p))"), 8, "effects by chance"),
     ],

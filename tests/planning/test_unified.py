@@ -54,9 +54,10 @@ def test_a_problem_becomes_a_task_that_can_be_planned() -> None:
 
 def test_what_pddl_cannot_say_is_refused() -> None:
     problem = robot()
-    fuel = shortcuts.Fluent("fuel", shortcuts.RealType())
-    problem.add_fluent(fuel, default_initial_value=3)
-    problem.action("move").add_precondition(shortcuts.GT(fuel, 1))
+    place = problem.user_type("Place")
+    home = shortcuts.Fluent("home", place)
+    problem.add_fluent(home, default_initial_value=problem.object("home"))
+    problem.action("move").add_precondition(shortcuts.Equals(home, home))
     with pytest.raises(PDDLError):
         task_from_problem(problem)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.asker import Asks, check_effects, give_up, tally
-from tpvqa.monitors.measuring import measured
+from tpvqa.monitors.measuring import is_of_number, measured
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.numbers_back import numbers_back
 from tpvqa.monitors.protocol import Check, Step
@@ -67,16 +67,23 @@ class CorrectingMonitor:
         if verdict.state is None or verdict.decision is Decision.REPEAT:
             return verdict
         self._remember(step).record(step.state, verdict.state)
-        if self.goal and step.index + 1 == len(step.plan.actions):
-            return (yield from self._check_goal(replace(step, state=verdict.state), verdict))
+        last = step.index + 1 == len(step.plan.actions)
+        if last and (self.goal or step.task.numeric is not None):
+            step = replace(step, state=verdict.state)
+            questions = self._about_the_goal(step)
+            return (yield from self._check_goal(step, verdict, questions))
         return verdict
 
-    def _check_goal(self, step: Step, verdict: Verdict) -> Check:
-        """Replan where a part of the goal is denied."""
+    def _about_the_goal(self, step: Step) -> tuple[FactQuestion, ...]:
+        """What is asked in the end: numbers at least, as they change unseen."""
         questions = step.book.goal(step.state)
+        return questions if self.goal else tuple(q for q in questions if is_of_number(q.atom))
+
+    def _check_goal(self, step: Step, verdict: Verdict, questions: Sequence[FactQuestion]) -> Check:
+        """Replan where a part of the goal is denied."""
         if not questions:
             return verdict
-        answers = yield from self._asker.tell(questions)
+        answers = yield from self._asker.tell(tuple(questions))
         if all(answer.agrees is not False for answer in answers):
             return verdict
         corrected = yield from self._correct(step, answers)

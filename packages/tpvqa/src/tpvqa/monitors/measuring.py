@@ -5,8 +5,8 @@ from dataclasses import replace
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.pddl import State, validate
-from tpvqa.pddl.arithmetic import VALUE, number
+from tpvqa.pddl import Atom, State, validate
+from tpvqa.pddl.arithmetic import COMPARISONS, VALUE, number
 from tpvqa.pddl.numeric import numbers_of, with_values
 
 _BELIEVED = 0.5
@@ -28,12 +28,17 @@ def measured(step: Step, verdict: Verdict) -> Verdict:
     if state == believed:
         return verdict
     told = ", ".join(map(str, sorted(numbers_of(state) - believed)))
-    if verdict.decision is Decision.GO_ON:
-        left = validate(step.task, step.plan.actions[step.index + 1 :], state)
-        if not left.valid:
-            reason = f"{verdict.reason}; measured: {told}; {left}"
-            return Verdict(Decision.REPLAN, reason, state)
+    on = step.index + (verdict.decision is Decision.GO_ON)
+    left = validate(step.task, step.plan.actions[on:], state)
+    if not left.valid:
+        reason = f"{verdict.reason}; measured: {told}; {left}"
+        return Verdict(Decision.REPLAN, reason, state)
     return replace(verdict, reason=f"{verdict.reason}; measured: {told}", state=state)
+
+
+def is_of_number(atom: Atom) -> bool:
+    """Whether an atom compares a number."""
+    return atom.predicate in COMPARISONS
 
 
 def _with_measured(step: Step, state: State) -> State:

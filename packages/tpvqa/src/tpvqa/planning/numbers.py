@@ -6,15 +6,15 @@ from typing import Any
 from tpvqa.errors import PDDLError
 from tpvqa.pddl import Action, Atom, Condition, State, Task
 from tpvqa.pddl.arithmetic import ARITHMETIC, Expression, Words, sides, values_in, written
+from tpvqa.pddl.outside.engines import taken
 from tpvqa.planning.protocol import Crashed
-
-WHO = "take up:aries (pip install up-aries) or up:tamer (pip install up-tamer)"
 
 
 def no_numbers(task: Task, planner: str) -> Crashed:
     """Why a planner that knows no numbers does not plan a task in which actions change some."""
     names = "" if task.numeric is None else ", ".join(sorted(task.numeric.changed))
-    reason = f"actions change numbers here ({names}), which it does not know; {WHO}"
+    what = f"actions change numbers here ({names})" if names else "numbers are compared here"
+    reason = f"{what}, which it does not know; {taken('numbers')}"
     return Crashed(reason, planner, 0.0)
 
 

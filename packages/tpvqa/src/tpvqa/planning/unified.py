@@ -23,8 +23,8 @@ def task_from_problem(problem: "Problem", *, timeout: float | None = 300.0) -> T
 
     Raises:
         MissingExtraError: unified-planning is not installed.
-        PDDLError: The problem cannot be said in the PDDL that Fast Downward reads (numeric fluents
-            other than action costs, time, …).
+        PDDLError: The problem cannot be said in the PDDL that is read here (functions whose values
+            are objects, …).
     """
     writer = _written(problem)
     return task_from_text(writer.get_domain(), writer.get_problem(), timeout=timeout)

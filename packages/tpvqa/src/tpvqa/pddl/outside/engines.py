@@ -35,13 +35,20 @@ def is_there(engine: str) -> bool:
     return find_spec(PACKAGES[engine].replace("-", "_")) is not None
 
 
+def _named(engine: str) -> str:
+    where = "installed" if is_there(engine) else f"pip install {PACKAGES[engine]}"
+    return f"{engine} ({where})"
+
+
+def taken(feature: str) -> str:
+    """Which planners know a feature, as advice without its full stop."""
+    return f"take {', or '.join(f'up:{_named(name)}' for name in KNOWS[feature])}"
+
+
 def where_known(feature: str) -> str:
     """Who could plan with a feature, as a sentence without its full stop."""
     names = KNOWS.get(feature, ())
     if not names:
         return "No engine of unified-planning does"
-    said = [
-        f"{name} ({'installed' if is_there(name) else f'pip install {PACKAGES[name]}'})"
-        for name in names
-    ]
+    said = map(_named, names)
     return f"Of unified-planning's engines {', '.join(said)} would plan it; tpvqa cannot yet"
