@@ -55,7 +55,7 @@ def test_a_problem_becomes_a_task_that_can_be_planned() -> None:
 def test_what_pddl_cannot_say_is_refused() -> None:
     problem = robot()
     place = problem.user_type("Place")
-    home = shortcuts.Fluent("home", place)
+    home = shortcuts.Fluent("dwelling", place)
     problem.add_fluent(home, default_initial_value=problem.object("home"))
     problem.action("move").add_precondition(shortcuts.Equals(home, home))
     with pytest.raises(PDDLError):
