@@ -16,6 +16,7 @@ class Example:
         text: The question.
         truth: Whether yes is right.
         predicate: What it asks about.
+        group: Tells pictures of one scene, taken together, from others; "" for one by itself.
     """
 
     data: bytes = field(repr=False)
@@ -23,11 +24,17 @@ class Example:
     text: str
     truth: bool
     predicate: str = ""
+    group: str = ""
 
     @cached_property
     def picture(self) -> str:
         """Tells its picture from others, by its content."""
         return hashlib.blake2b(self.data, digest_size=16).hexdigest()
+
+    @property
+    def together(self) -> str:
+        """What is never taken apart: its group, or else its picture."""
+        return f"group {self.group}" if self.group else self.picture
 
 
 def consistent(examples: Iterable[Example]) -> list[Example]:
