@@ -25,6 +25,8 @@ def taught(lamp_set: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     book = QuestionBook.load(QUESTIONS, load_task(DOMAIN, PROBLEM))
     trainer, here = EmbeddedTrainer(), tmp_path_factory.mktemp("taught")
     examples = list(examples_of(load_set(lamp_set), [book]))
-    trainer.fit(examples, here, settings=TrainingSettings(), progress=lambda done, total: None)
+    trainer.fit(
+        examples, here, settings=TrainingSettings(epochs=1), progress=lambda done, total: None
+    )
     assert trainer.save(here / "lamps") == f"embedded:{here / 'lamps'}"
     return here / "lamps"

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from PIL import Image
 from sklearn.linear_model import LogisticRegression
 
 from tpvqa_household.embedded.taught.sight import WIDE
 from tpvqa_household.teaching.heads import FOLDS, fit_heads, folds_of
 from tpvqa_household.teaching.kinds import FALSE_ALARMS, known_pictures
 from tpvqa_household.teaching.logistic import even, fitted
+from tpvqa_household.teaching.variants import variant
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -47,7 +49,7 @@ def test_heads_learn_and_are_as_sure_as_they_are_right() -> None:
     labels = (truth + rng.logistic(size=truth.shape) > 0).astype(np.int64)
     labels[rng.random(labels.shape) < 0.1] = -1
     learnt, new = slice(0, 300), slice(300, None)
-    fit = fit_heads(features[learnt], labels[learnt], folds_of(np.arange(300).astype(str), 0))
+    fit = fit_heads(features[None, learnt], labels[learnt], folds_of(np.arange(300).astype(str), 0))
     odds = features[new] @ fit.weights.T + fit.bias
     for column in range(2):
         known = labels[new][:, column] >= 0
@@ -64,7 +66,7 @@ def test_labels_that_hang_on_nothing_are_not_believed() -> None:
     rng = np.random.default_rng(4)
     features = rng.normal(size=(60, 2 * WIDE)).astype(np.float32)
     labels = rng.integers(0, 2, (60, 3))
-    fit = fit_heads(features, labels, folds_of(np.arange(60).astype(str), 0))
+    fit = fit_heads(features[None], labels, folds_of(np.arange(60).astype(str), 0))
     new = rng.normal(size=(100, 2 * WIDE)).astype(np.float32) @ fit.weights.T + fit.bias
     assert np.abs(new).mean() < 0.5
 
@@ -81,3 +83,26 @@ def test_few_pictures_like_those_taught_are_taken_for_unlike(seed: int) -> None:
     alarms = (known.distance(kinds[200:]) > 1).mean()
     assert alarms <= FALSE_ALARMS + 0.06
     assert (known.distance(kinds[200:] + 8) > 1).all()
+
+
+def test_views_of_a_picture_are_not_told_apart_from_it_when_it_is_held_back() -> None:
+    """Heads that the second view of a picture taught would know it by heart."""
+    rng = np.random.default_rng(5)
+    seen = rng.normal(size=(60, 2 * WIDE)).astype(np.float32)
+    labels = rng.integers(0, 2, (60, 1))
+    fit = fit_heads(np.stack([seen, seen]), labels, folds_of(np.arange(60).astype(str), 0))
+    right = (fit.held_back[:, 0] > 0) == (labels[:, 0] == 1)
+    assert 0.25 < right.mean() < 0.75
+
+
+def test_another_view_keeps_left_and_right_and_the_first_is_the_picture() -> None:
+    picture = Image.new("RGB", (90, 60), "black")
+    picture.paste((250, 20, 20), (0, 0, 40, 60))
+    assert variant(picture, "a", 0, 3) is picture
+    others = [np.asarray(variant(picture, "a", number, 3)) for number in range(1, 6)]
+    for other in others:
+        assert other.shape == (60, 90, 3)
+        assert other[20:40, 10:30, 0].mean() > 100
+        assert other[20:40, 60:80].max() < 60
+    assert not np.array_equal(others[0], others[1])
+    assert np.array_equal(others[0], np.asarray(variant(picture, "a", 1, 3)))

@@ -23,8 +23,12 @@ OWN = ("--domain", DOMAIN, "--problem", PROBLEM, "--questions", QUESTIONS)
 LEFT, RIGHT = "Is the left lamp lit?", "Is the right lamp lit?"
 
 
-def command(pictures: Path, out: str, *more: object) -> tuple[object, ...]:
-    return ("train", "embedded", "--pictures", pictures, *OWN, "--out", out, "--seed", 2, *more)
+Words = tuple[object, ...]
+
+
+def command(pictures: Path, out: str, *more: object) -> Words:
+    more = ("--seed", 2, "--epochs", 1, *more)
+    return ("train", "embedded", "--pictures", pictures, *OWN, "--out", out, *more)
 
 
 def answers(tpvqa: Run, folder: Path | str, picture: Path, *questions: str) -> list[dict[str, Any]]:
@@ -92,7 +96,15 @@ def test_pictures_unlike_those_taught_are_unknown(taught: Path, tpvqa: Run, tmp_
 
 
 def test_a_trial_goes_by_it(taught: Path, lamp_set: Path, tpvqa: Run) -> None:
-    words = ("run", DOMAIN, PROBLEM, "--questions", QUESTIONS, "--world", f"pictures:{lamp_set}")
+    words: Words = (
+        "run",
+        DOMAIN,
+        PROBLEM,
+        "--questions",
+        QUESTIONS,
+        "--world",
+        f"pictures:{lamp_set}",
+    )
     words += ("--vlm", f"embedded:{taught}", "--seed", "5", "--out", "episode")
     code, out, error = tpvqa(*words)
     assert code == 0, out + error

@@ -13,9 +13,10 @@ from tpvqa.training.stopping import between_steps
 from tpvqa_household.embedded.likeness import Floats
 from tpvqa_household.embedded.taught.arrays import MOST_BYTES, packed, unpacked
 from tpvqa_household.embedded.taught.sight import KIND, SIZE, Sees, glimpsed
+from tpvqa_household.teaching.variants import variant
 
 PIECE = 64
-"""Pictures in one file."""
+"""Views in one file."""
 _ROOM = "Make room, or name another folder with --out"
 
 
@@ -24,6 +25,8 @@ def glimpses(
     pictures: Sequence[Example],
     folder: Path,
     *,
+    views: int,
+    seed: int,
     done: Callable[[int], None],
 ) -> tuple[Floats, Floats]:
     """The features of pictures; what an earlier call with the same left in the folder is taken.
@@ -32,10 +35,13 @@ def glimpses(
         branch: The frozen branch.
         pictures: One example of each.
         folder: Where they are kept.
-        done: Told how many are done.
+        views: How often each is seen: as it is, and then as `variant` has it.
+        seed: Of the views.
+        done: Told how many views are done.
 
     Returns:
-        n × `SIZE` features, and the n × `KIND` by which kinds of pictures are told.
+        views × n × `SIZE` features, and the n × `KIND` by which kinds of pictures are told, as they
+        are.
 
     Raises:
         TrainingError: A picture, or what was kept, is damaged.
@@ -43,16 +49,17 @@ def glimpses(
         KeyboardInterrupt: Ctrl-C, after everything was kept.
     """
     found: list[tuple[Floats, Floats]] = []
+    every = [(each, number) for number in range(views) for each in pictures]
     with between_steps() as stop:
-        for first in range(0, len(pictures), PIECE):
-            piece = pictures[first : first + PIECE]
+        for first in range(0, len(every), PIECE):
+            piece = every[first : first + PIECE]
             path = folder / f"pictures-{first:06d}.npz"
             rows = _kept(path, len(piece))
             had = len(rows)
-            for each in piece[had:]:
+            for each, number in piece[had:]:
                 if stop():
                     break
-                rows.append(_seen(branch, each))
+                rows.append(_seen(branch, each, number, seed))
                 done(first + len(rows))
             if len(rows) > had:
                 _keep(path, rows)
@@ -60,16 +67,16 @@ def glimpses(
                 raise KeyboardInterrupt
             done(first + len(rows))
             found += rows
-    features, kinds = (np.stack(each) for each in zip(*found, strict=True))
-    return features, kinds
+    features = np.stack([row for row, _ in found]).reshape(views, len(pictures), SIZE)
+    return features, np.stack([kind for _, kind in found[: len(pictures)]])
 
 
-def _seen(branch: Sees, example: Example) -> tuple[Floats, Floats]:
+def _seen(branch: Sees, example: Example, number: int, seed: int) -> tuple[Floats, Floats]:
     try:
         picture = decoded(example.data).convert("RGB")
     except PictureError as error:
         raise TrainingError(f"A picture {error}") from error
-    return glimpsed(branch, np.asarray(picture))
+    return glimpsed(branch, np.asarray(variant(picture, example.picture, number, seed)))
 
 
 def _keep(path: Path, rows: Sequence[tuple[Floats, Floats]]) -> None:

@@ -15,8 +15,10 @@ from tpvqa_household.teaching.sureness import slopes
 STRENGTHS = (1.0, 10.0, 100.0, 1000.0)
 """Inverse penalties that are tried on what is held back."""
 FOLDS = 5
-_DIRECTIONS = 512
+_DIRECTIONS = 320
 """In which pictures differ most; what differs in no other is left out."""
+_MOST_ROWS = 1500
+"""Views from which the directions are found."""
 _SHRUNK = 0.1
 """Share of the mean spread that is added to each feature's, so that a rare one is not blown up."""
 _COMMON = 20.0
@@ -58,11 +60,12 @@ class _Space:
         scale = (spread + _SHRUNK * spread.mean() + 1e-6) * np.sqrt(counts)
         self.scale = scale.astype(np.float32)
         away = (features - self.mean) / self.scale
-        values, vectors = np.linalg.eigh((away @ away.T).astype(np.float64))
+        some = away[:: -(-len(away) // _MOST_ROWS)]
+        values, vectors = np.linalg.eigh((some @ some.T).astype(np.float64))
         kept = np.flatnonzero(values > 1e-6 * max(values[-1], 1e-9))[::-1][:_DIRECTIONS]
         roots = np.sqrt(values[kept])
-        self.places: Array = vectors[:, kept] * roots
-        self._back = away.T @ (vectors[:, kept] / roots)
+        self._back = some.T @ (vectors[:, kept] / roots).astype(np.float32)
+        self.places: Array = (away @ self._back).astype(np.float64)
 
     def outputs(self, coefficients: Array) -> tuple[Array, float]:
         """Weights and bias for what the branch gives."""
@@ -80,15 +83,17 @@ def fit_heads(
     """Fit a head for each column of the labels.
 
     Args:
-        features: n × features.
+        features: Views × n × features; of the first view is what is held back.
         labels: n × heads: 1 for yes, 0 for no, -1 for not known. Each column has both.
         folds: Of each picture.
         done: Called after each head.
     """
-    space = _Space(features)
+    views, count, wide = features.shape
+    space = _Space(features.reshape(-1, wide))
+    places = space.places.reshape(views, count, -1)
     tried = []
     for column in range(labels.shape[1]):
-        tried.append(_held_back(space.places, labels[:, column], folds))
+        tried.append(_held_back(places, labels[:, column], folds))
         done()
     every = np.stack(tried, 2)  # strengths × n × heads
     chosen = _chosen(every, labels)
@@ -97,9 +102,7 @@ def fit_heads(
     rows, offsets = [], []
     for column, best in enumerate(chosen):
         known = labels[:, column] >= 0
-        y = labels[known, column]
-        weight = even(y, float(len(y)))
-        found = fitted(space.places[known], y.astype(float), weight, STRENGTHS[best])
+        found = _fitted(places[:, known], labels[known, column], STRENGTHS[best], None)
         weights, bias = space.outputs(found)
         rows.append(weights * slope[column])
         offsets.append(bias * slope[column])
@@ -112,8 +115,14 @@ def fit_heads(
 
 
 def _held_back(x: Array, labels: NDArray[np.int64], folds: NDArray[np.int64]) -> Array:
-    """Strengths × n: log odds of each picture by heads that its fold did not teach."""
-    found = np.full((len(STRENGTHS), len(x)), np.nan)
+    """Strengths × n: log odds of each picture by heads that its fold did not teach.
+
+    Args:
+        x: Views × n × directions.
+        labels: n.
+        folds: n.
+    """
+    found = np.full((len(STRENGTHS), len(labels)), np.nan)
     for fold in range(FOLDS):
         out = (folds == fold) & (labels >= 0)
         taught = (folds != fold) & (labels >= 0)
@@ -122,9 +131,16 @@ def _held_back(x: Array, labels: NDArray[np.int64], folds: NDArray[np.int64]) ->
             continue
         at = None
         for number, strength in enumerate(STRENGTHS):
-            at = fitted(x[taught], y.astype(float), even(y, float(len(y))), strength, at)
-            found[number, out] = x[out] @ at[:-1] + at[-1]
+            at = _fitted(x[:, taught], y, strength, at)
+            found[number, out] = x[0, out] @ at[:-1] + at[-1]
     return found
+
+
+def _fitted(x: Array, y: NDArray[np.int64], strength: float, start: Array | None) -> Array:
+    """Coefficients from all views of pictures, which weigh as much as the pictures."""
+    each = np.tile(y, len(x))
+    rows = x.reshape(len(each), -1)
+    return fitted(rows, each.astype(float), even(each, float(len(y))), strength, start)
 
 
 def _chosen(every: Array, labels: NDArray[np.int64]) -> list[int]:

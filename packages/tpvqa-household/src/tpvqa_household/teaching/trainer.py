@@ -22,6 +22,8 @@ from tpvqa_household.teaching.kinds import FALSE_ALARMS, known_pictures
 from tpvqa_household.teaching.lessons import Lessons, lessons_of
 
 _ROOM = "Make room, or name another folder with --out"
+_MOST_VIEWS = 6000
+"""In all, 57 kB each."""
 _WEAK = 0.65
 """The AUROC below which a question is hardly learnt."""
 
@@ -29,12 +31,13 @@ _WEAK = 0.65
 class EmbeddedTrainer:
     """Fits a linear head for every question on the frozen branch of the embedded network.
 
-    The branch is as ImageNet left it and knows nothing of any domain; each picture goes through it
-    once, whole and in nine parts. Heads are logistic regression with yes and no weighing the same,
+    The branch is as ImageNet left it and knows nothing of any domain. Each picture goes through it
+    whole and in nine parts: as it is, and then as often as `epochs` says as another camera might
+    have taken it. Heads are logistic regression with yes and no weighing the same,
     so that P(yes) is that of a thing that is there as often as not. How far they are regularised,
     and how sure they may be, is learnt from pictures that did not teach them.
 
-    Of the settings of a training it knows the seed alone.
+    Of the settings of a training it knows seed and epochs.
 
     Attributes:
         notices: What could not be learnt, or hardly; after `fit`.
@@ -66,15 +69,21 @@ class EmbeddedTrainer:
         settings: TrainingSettings,
         progress: Callable[[int, int], None],
     ) -> None:
-        """See `Trainer`; steps are pictures, and then questions."""
+        """See `Trainer`; steps are views of pictures, and then questions."""
         lessons = lessons_of(examples)
         network = Weights.read()
         branch = Sessions(network, threads=1)
-        total = len(lessons.pictures) + len(lessons.questions)
-        seen = len(lessons.pictures)
+        views = max(1, min(settings.epochs, _MOST_VIEWS // len(lessons.pictures)))
+        seen = views * len(lessons.pictures)
+        total = seen + len(lessons.questions)
         progress(0, total)
         features, kinds = glimpses(
-            branch, lessons.pictures, folder, done=lambda done: progress(done, total)
+            branch,
+            lessons.pictures,
+            folder,
+            views=views,
+            seed=settings.seed,
+            done=lambda done: progress(done, total),
         )
 
         def one() -> None:
@@ -96,6 +105,7 @@ class EmbeddedTrainer:
             {
                 "made_by": f"{DISTRIBUTION} {version(DISTRIBUTION)}",
                 "seed": settings.seed,
+                "views": views,
                 "pictures": len(lessons.pictures),
                 "groups": len(set(lessons.groups.tolist())),
                 "false_alarms": FALSE_ALARMS,

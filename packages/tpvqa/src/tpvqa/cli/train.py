@@ -66,7 +66,10 @@ def train(
             max=0.9,
         ),
     ] = 0.25,
-    epochs: Annotated[int, typer.Option(help="hf: how often each question is seen.", min=1)] = 3,
+    epochs: Annotated[
+        int,
+        typer.Option(help="How often each question is seen; with embedded, each picture.", min=1),
+    ] = 3,
     rate: Annotated[
         float | None, typer.Option(help="hf: learning rate. Default: 0.0002.", min=1e-9, max=1)
     ] = None,
