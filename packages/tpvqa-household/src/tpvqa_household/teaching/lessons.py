@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.errors import TrainingError
-from tpvqa.training.example import Example
+from tpvqa.training.example import Example, together
 from tpvqa_household.embedded.taught.folder import spoken
 
 LEAST = 3
@@ -25,6 +25,7 @@ class Lessons:
         predicates: What they ask about.
         labels: Pictures × questions: 1, 0, -1 for not known.
         unlearnt: Questions with too few pictures, each with why; not among the others.
+        groups: Of each picture, what it shares with those that it is never taken apart from.
     """
 
     pictures: Sequence[Example]
@@ -33,11 +34,7 @@ class Lessons:
     predicates: Sequence[str]
     labels: NDArray[np.int64]
     unlearnt: Mapping[str, str]
-
-    @property
-    def groups(self) -> NDArray[np.str_]:
-        """What keeps pictures together."""
-        return np.array([each.together for each in self.pictures])
+    groups: NDArray[np.str_]
 
 
 def lessons_of(examples: Sequence[Example]) -> Lessons:
@@ -47,6 +44,7 @@ def lessons_of(examples: Sequence[Example]) -> Lessons:
         TrainingError: No question has enough pictures with either answer.
     """
     pictures: dict[str, Example] = {}
+    of = together(examples)
     asked: dict[str, Example] = {}
     said: dict[tuple[str, str], int] = {}
     for each in examples:
@@ -78,6 +76,7 @@ def lessons_of(examples: Sequence[Example]) -> Lessons:
         [asked[question].predicate for _, question in learnt],
         table[:, [i for i, _ in learnt]],
         unlearnt,
+        np.array([of[picture] for picture in pictures]),
     )
 
 

@@ -31,11 +31,6 @@ class Example:
         """Tells its picture from others, by its content."""
         return hashlib.blake2b(self.data, digest_size=16).hexdigest()
 
-    @property
-    def together(self) -> str:
-        """What is never taken apart: its group, or else its picture."""
-        return f"group {self.group}" if self.group else self.picture
-
 
 def consistent(examples: Iterable[Example]) -> list[Example]:
     """Each question about a picture once; none of those that have both answers."""
@@ -46,3 +41,25 @@ def consistent(examples: Iterable[Example]) -> list[Example]:
         if found.setdefault(key, each).truth != each.truth:
             torn.add(key)
     return [each for key, each in found.items() if key not in torn]
+
+
+def together(examples: Iterable[Example]) -> dict[str, str]:
+    """For each picture a name that it shares with those that it is never taken apart from.
+
+    These are the pictures of its group; and where the same picture is in several groups, those of
+    all of them.
+    """
+    above: dict[str, str] = {}
+
+    def top(name: str) -> str:
+        while (upper := above.setdefault(name, name)) != name:
+            name = upper
+        return name
+
+    pictures = []
+    for each in examples:
+        pictures.append(each.picture)
+        group = f"group {each.group}" if each.group else each.picture
+        first, second = sorted((top(each.picture), top(group)))
+        above[second] = first
+    return {picture: top(picture) for picture in pictures}

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from tpvqa.chance import chance
 from tpvqa.errors import TrainingError
-from tpvqa.training.example import Example
+from tpvqa.training.example import Example, together
 
 
 def split(
@@ -27,17 +27,17 @@ def split(
     Raises:
         TrainingError: There are fewer than two pictures, or groups of them.
     """
-    groups = sorted({each.together for each in examples})
+    of = together(examples)
+    groups = sorted(set(of.values()))
     if len(groups) < 2:
-        pictures = len({each.picture for each in examples})
-        of = " of one group" if pictures > 1 else ""
+        alike = " of one group" if len(of) > 1 else ""
         raise TrainingError(
-            f"{pictures} labelled pictures{of} are too few: some are learnt from, and others are "
+            f"{len(of)} labelled pictures{alike} are too few: some are learnt from, and others are "
             "held back to see what was learnt. Label more of them"
         )
     chance(seed, 0, "held back of training").shuffle(groups)
     back = set(groups[: min(max(1, math.ceil(share * len(groups))), len(groups) - 1)])
     return (
-        [each for each in examples if each.together not in back],
-        [each for each in examples if each.together in back],
+        [each for each in examples if of[each.picture] not in back],
+        [each for each in examples if of[each.picture] in back],
     )
