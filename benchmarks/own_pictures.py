@@ -3,7 +3,7 @@
 Pictures of a workshop are made in FOLDER (once; 1,624 of them, some five minutes of a core, and as
 long again for their features). Of 512 pictures 8, 16, … are drawn, five times each, taught as
 `tpvqa train embedded` does, and asked about 300 others: once in the same workshop, with other
-cameras, light and clutter, and once in workshops that were never seen. With `--photographs FOLDER` (a
+cameras, light and clutter, and once in workshops that were never seen. With `--photographs` (a
 `labels.csv` as `benchmarks/real_photographs.py` reads it) its part train teaches and its part test
 measures, beside the network as it ships.
 """
@@ -36,6 +36,7 @@ from tpvqa.worlds.pictures import MANIFEST, load_set, media_type
 from tpvqa_household.embedded import EmbeddedVLM
 from tpvqa_household.embedded.likeness import Floats
 from tpvqa_household.embedded.sessions import Sessions
+from tpvqa_household.embedded.taught.folder import spoken
 from tpvqa_household.embedded.taught.sight import WIDE
 from tpvqa_household.embedded.taught.vlm import TaughtVLM
 from tpvqa_household.embedded.weights import Weights
@@ -115,7 +116,7 @@ def _seen(branch: Sessions, where: Path, views: int) -> Seen:
     book = _book(where)
     lessons = lessons_of(list(examples_of(pictures, [book])))
     assert not lessons.unlearnt
-    order = [lessons.texts.index(text) for text in workshop_scenes.QUESTIONS.values()]
+    order = [lessons.questions.index(spoken(text)) for text in workshop_scenes.QUESTIONS.values()]
     features, kinds = glimpses(
         branch, lessons.pictures, where, views=views, seed=0, done=lambda _: None
     )

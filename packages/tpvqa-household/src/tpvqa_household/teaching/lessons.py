@@ -21,7 +21,7 @@ class Lessons:
     Attributes:
         pictures: One example of each picture.
         questions: In words, as they are looked up.
-        texts: The same as they were written.
+        texts: The same as they were written, and those that were not learnt.
         predicates: What they ask about.
         labels: Pictures × questions: 1, 0, -1 for not known.
         unlearnt: Questions with too few pictures, each with why; not among the others.
@@ -30,7 +30,7 @@ class Lessons:
 
     pictures: Sequence[Example]
     questions: Sequence[str]
-    texts: Sequence[str]
+    texts: Mapping[str, str]
     predicates: Sequence[str]
     labels: NDArray[np.int64]
     unlearnt: Mapping[str, str]
@@ -72,7 +72,7 @@ def lessons_of(examples: Sequence[Example]) -> Lessons:
     return Lessons(
         list(pictures.values()),
         [question for _, question in learnt],
-        [asked[question].text for _, question in learnt],
+        {question: each.text for question, each in asked.items()},
         [asked[question].predicate for _, question in learnt],
         table[:, [i for i, _ in learnt]],
         unlearnt,

@@ -141,27 +141,27 @@ def _told(
 ) -> list[dict[str, str | int | float | None]]:
     return [
         {
-            "text": text,
+            "text": lessons.texts[question],
             "predicate": lessons.predicates[column],
             "yes": int((lessons.labels[:, column] == 1).sum()),
             "no": int((lessons.labels[:, column] == 0).sum()),
             "strength": float(fit.strengths[column]),
             "auroc_cross_validated": areas[column],
         }
-        for column, text in enumerate(lessons.texts)
+        for column, question in enumerate(lessons.questions)
     ]
 
 
 def _notices(lessons: Lessons, areas: Sequence[float | None]) -> list[str]:
-    told = [
-        f"{json.dumps(question, ensure_ascii=False)} is unknown: {why}"
-        for question, why in lessons.unlearnt.items()
-    ]
-    for text, area in zip(lessons.texts, areas, strict=True):
+    def quoted(question: str) -> str:
+        return json.dumps(lessons.texts[question], ensure_ascii=False)
+
+    told = [f"{quoted(each)} is unknown: {why}" for each, why in lessons.unlearnt.items()]
+    for question, area in zip(lessons.questions, areas, strict=True):
         if area is None or area < _WEAK:
             said = "no figure" if area is None else f"AUROC {area:.2f}"
             told.append(
-                f"{json.dumps(text, ensure_ascii=False)} is hardly learnt ({said} on pictures "
-                "that did not teach it): label more pictures, nearer or larger ones"
+                f"{quoted(question)} is hardly learnt ({said} on pictures that did not teach it): "
+                "label more pictures, nearer or larger ones"
             )
     return told
