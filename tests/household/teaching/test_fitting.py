@@ -7,9 +7,12 @@ from hypothesis import strategies as st
 from PIL import Image
 from sklearn.linear_model import LogisticRegression
 
+from tpvqa.errors import TrainingError
+from tpvqa.training.example import Example
 from tpvqa_household.embedded.taught.sight import WIDE
 from tpvqa_household.teaching.heads import FOLDS, fit_heads, folds_of
 from tpvqa_household.teaching.kinds import FALSE_ALARMS, known_pictures
+from tpvqa_household.teaching.lessons import lessons_of
 from tpvqa_household.teaching.logistic import even, fitted
 from tpvqa_household.teaching.variants import variant
 
@@ -106,3 +109,19 @@ def test_another_view_keeps_left_and_right_and_the_first_is_the_picture() -> Non
         assert other[20:40, 60:80].max() < 60
     assert not np.array_equal(others[0], others[1])
     assert np.array_equal(others[0], np.asarray(variant(picture, "a", 1, 3)))
+
+
+def test_a_table_of_what_is_taught_holds_each_answer_once() -> None:
+    def one(picture: int, text: str, *, truth: bool) -> Example:
+        return Example(bytes([picture]), "image/png", text, truth, "lit")
+
+    said = [one(n, "Is the lamp lit?", truth=n % 2 == 0) for n in range(8)]
+    said += [one(n, "is lamp lit", truth=n % 2 == 0) for n in range(7)]
+    said += [one(7, "Is the lamp lit", truth=True)]  # and not: nothing is known of it
+    said += [one(n, "Is there a lamp?", truth=True) for n in range(8)]
+    table = lessons_of(said)
+    assert table.questions == ["is lamp lit"]
+    assert table.labels[:, 0].tolist() == [1, 0, 1, 0, 1, 0, 1, -1]
+    assert table.unlearnt == {"is there lamp": "taught with 8 yes and 0 no; it needs 3 of each"}
+    with pytest.raises(TrainingError, match="no words"):
+        lessons_of([one(1, "The?!", truth=True)])

@@ -41,7 +41,7 @@ def lessons_of(examples: Sequence[Example]) -> Lessons:
     """Sort examples into a table.
 
     Raises:
-        TrainingError: No question has enough pictures with either answer.
+        TrainingError: No question has enough pictures with either answer, or one has no words.
     """
     pictures: dict[str, Example] = {}
     of = together(examples)
@@ -49,6 +49,8 @@ def lessons_of(examples: Sequence[Example]) -> Lessons:
     said: dict[tuple[str, str], int] = {}
     for each in examples:
         question, truth = spoken(each.text), int(each.truth)
+        if not question:
+            raise TrainingError(f"The question {each.text!r} has no words. Write one that has")
         pictures.setdefault(each.picture, each)
         asked.setdefault(question, each)
         key = each.picture, question

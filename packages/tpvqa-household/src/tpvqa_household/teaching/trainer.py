@@ -24,6 +24,10 @@ from tpvqa_household.teaching.lessons import Lessons, lessons_of
 _ROOM = "Make room, or name another folder with --out"
 _MOST_VIEWS = 6000
 """In all, 57 kB each."""
+_ONE_GROUP = (
+    "all pictures that were learnt from are of one group: how sure answers may be was learnt from "
+    "pictures of the same group, and may be too much for others"
+)
 _WEAK = 0.65
 """The AUROC below which a question is hardly learnt."""
 
@@ -91,10 +95,12 @@ class EmbeddedTrainer:
             seen += 1
             progress(seen, total)
 
-        folds = folds_of(lessons.groups, settings.seed)
+        groups = lessons.groups
+        alone = len(set(groups.tolist())) == 1
+        folds = folds_of(np.arange(len(groups)).astype(str) if alone else groups, settings.seed)
         fit = fit_heads(features, lessons.labels, folds, done=one)
         areas = _areas(fit, lessons)
-        self.notices = _notices(lessons, areas)
+        self.notices = [*([_ONE_GROUP] if alone else []), *_notices(lessons, areas)]
         self._taught = Taught(
             tuple(lessons.questions),
             fit.weights,
@@ -107,7 +113,7 @@ class EmbeddedTrainer:
                 "seed": settings.seed,
                 "views": views,
                 "pictures": len(lessons.pictures),
-                "groups": len(set(lessons.groups.tolist())),
+                "groups": len(set(groups.tolist())),
                 "false_alarms": FALSE_ALARMS,
                 "heads": _told(fit, lessons, areas),
             },
