@@ -1,7 +1,7 @@
 """What the embedded network learns of others' domains: `python -m benchmarks.own_pictures FOLDER`.
 
 Pictures of a workshop are made in FOLDER (once; 1,624 of them, some five minutes of a core, and as
-long again for their features). Of 512 pictures 8, 16, … are drawn, five times each, taught as
+long again for their features). Of 512 pictures 8, 16, … are drawn, up to five times each, taught as
 `tpvqa train embedded` does, and asked about 300 others: once in the same workshop, with other
 cameras, light and clutter, and once in workshops that were never seen. With `--photographs` (a
 `labels.csv` as `benchmarks/real_photographs.py` reads it) its part train teaches and its part test
@@ -41,7 +41,7 @@ from tpvqa_household.embedded.taught.sight import WIDE
 from tpvqa_household.embedded.taught.vlm import TaughtVLM
 from tpvqa_household.embedded.weights import Weights
 from tpvqa_household.images.manifest import load_pictures
-from tpvqa_household.teaching.glimpses import glimpses
+from tpvqa_household.teaching.glimpses import glimpses, views_of
 from tpvqa_household.teaching.heads import fit_heads, folds_of
 from tpvqa_household.teaching.kinds import known_pictures
 from tpvqa_household.teaching.lessons import LEAST, lessons_of
@@ -49,7 +49,8 @@ from tpvqa_household.teaching.trainer import EmbeddedTrainer
 from tpvqa_household.training.labelled import COLUMNS, read_rows
 
 SIZES = (8, 16, 32, 64, 128, 256, 512)
-DRAWS = 5
+DRAWS = {8: 5, 16: 5, 32: 5, 64: 5, 128: 5, 256: 3, 512: 1}
+"""Of pictures, by their number; of 512 there is one."""
 VIEWS = 3
 KINDS = {"one": "the same workshop", "any": "workshops never seen"}
 _TEST, _TESTED = 100_000, 300
@@ -152,7 +153,8 @@ def measured(
     odds = np.full(test.labels.shape, np.nan)
     if enough:
         some = slice(None, wide or None)
-        fit = fit_heads(taught.features[:, rows, some], labels[:, enough], folds)
+        views = views_of(len(rows), len(taught.features))
+        fit = fit_heads(taught.features[:views, rows, some], labels[:, enough], folds)
         odds[:, enough] = test.features[0][:, some] @ fit.weights.T + fit.bias
     areas, rights, unknown = [], [], []
     for column in range(labels.shape[1]):
@@ -186,7 +188,7 @@ def _rows(size: int, draw: int) -> NDArray[np.intp]:
 def curve(taught: Seen, test: Seen, others: Sequence[Floats]) -> dict[int, list[Figures]]:
     """Figures by number of pictures, one for each draw."""
     return {
-        size: [measured(taught, _rows(size, draw), test, others) for draw in range(DRAWS)]
+        size: [measured(taught, _rows(size, draw), test, others) for draw in range(DRAWS[size])]
         for size in SIZES
     }
 
@@ -342,7 +344,7 @@ def main() -> int:
         other = test["one" if kind == "any" else "any"].kinds
         curves[kind] = curve(taught[kind], test[kind], (kitchens, other))
         print(f"\n{name}\n\n{curve_table(curves[kind])}\n\n{question_table(curves[kind])}")
-        rows = [_rows(128, draw) for draw in range(DRAWS)]
+        rows = [_rows(128, draw) for draw in range(DRAWS[128])]
         plain = Seen(taught[kind].features[:1], taught[kind].kinds, taught[kind].labels)
         for what, of, wide in (
             ("one view of each picture", plain, 0),

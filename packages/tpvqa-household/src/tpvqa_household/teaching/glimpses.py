@@ -15,9 +15,16 @@ from tpvqa_household.embedded.taught.arrays import MOST_BYTES, packed, unpacked
 from tpvqa_household.embedded.taught.sight import KIND, SIZE, Sees, glimpsed
 from tpvqa_household.teaching.variants import variant
 
+MOST_VIEWS = 600
+"""In all, where each picture is seen more than once; more cost time, and help no more."""
 PIECE = 64
 """Views in one file."""
 _ROOM = "Make room, or name another folder with --out"
+
+
+def views_of(pictures: int, epochs: int) -> int:
+    """How often each picture is seen: more views help where pictures are few."""
+    return max(1, min(epochs, MOST_VIEWS // pictures))
 
 
 def glimpses(

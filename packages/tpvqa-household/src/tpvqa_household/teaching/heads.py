@@ -15,7 +15,7 @@ from tpvqa_household.teaching.sureness import slopes
 STRENGTHS = (1.0, 10.0, 100.0, 1000.0)
 """Inverse penalties that are tried on what is held back."""
 FOLDS = 5
-_DIRECTIONS = 320
+_DIRECTIONS = 512
 """In which pictures differ most; what differs in no other is left out."""
 _MOST_ROWS = 1500
 """Views from which the directions are found."""

@@ -16,14 +16,12 @@ from tpvqa_household import DISTRIBUTION
 from tpvqa_household.embedded.sessions import Sessions
 from tpvqa_household.embedded.taught.folder import Taught
 from tpvqa_household.embedded.weights import FROZEN, Weights
-from tpvqa_household.teaching.glimpses import glimpses
+from tpvqa_household.teaching.glimpses import glimpses, views_of
 from tpvqa_household.teaching.heads import Fit, fit_heads, folds_of
 from tpvqa_household.teaching.kinds import FALSE_ALARMS, known_pictures
 from tpvqa_household.teaching.lessons import Lessons, lessons_of
 
 _ROOM = "Make room, or name another folder with --out"
-_MOST_VIEWS = 6000
-"""In all, 57 kB each."""
 _ONE_GROUP = (
     "all pictures that were learnt from are of one group: how sure answers may be was learnt from "
     "pictures of the same group, and may be too much for others"
@@ -36,10 +34,10 @@ class EmbeddedTrainer:
     """Fits a linear head for every question on the frozen branch of the embedded network.
 
     The branch is as ImageNet left it and knows nothing of any domain. Each picture goes through it
-    whole and in nine parts: as it is, and then as often as `epochs` says as another camera might
-    have taken it. Heads are logistic regression with yes and no weighing the same,
-    so that P(yes) is that of a thing that is there as often as not. How far they are regularised,
-    and how sure they may be, is learnt from pictures that did not teach them.
+    whole and in nine parts; where pictures are few also as another camera might have taken it, in
+    all at most as often as `epochs` says. Heads are logistic regression with yes and no weighing
+    the same, so that P(yes) is that of a thing that is there as often as not. How far they are
+    regularised, and how sure they may be, is learnt from pictures that did not teach them.
 
     Of the settings of a training it knows seed and epochs.
 
@@ -77,7 +75,7 @@ class EmbeddedTrainer:
         lessons = lessons_of(examples)
         network = Weights.read()
         branch = Sessions(network, threads=1)
-        views = max(1, min(settings.epochs, _MOST_VIEWS // len(lessons.pictures)))
+        views = views_of(len(lessons.pictures), settings.epochs)
         seen = views * len(lessons.pictures)
         total = seen + len(lessons.questions)
         progress(0, total)

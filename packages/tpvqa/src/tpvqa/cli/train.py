@@ -68,7 +68,9 @@ def train(
     ] = 0.25,
     epochs: Annotated[
         int,
-        typer.Option(help="How often each question is seen; with embedded, each picture.", min=1),
+        typer.Option(
+            help="How often each question is seen; embedded: each picture, at most.", min=1
+        ),
     ] = 3,
     rate: Annotated[
         float | None, typer.Option(help="hf: learning rate. Default: 0.0002.", min=1e-9, max=1)
