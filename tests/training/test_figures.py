@@ -12,14 +12,14 @@ from sklearn import metrics
 from tpvqa.errors import TrainingError
 from tpvqa.pddl import Atom
 from tpvqa.questions import FactQuestion, Way
-from tpvqa.training.example import Example, consistent
-from tpvqa.training.scoring import scores
+from tpvqa.training.example import Example, consistent, together
+from tpvqa.training.scoring import balanced_by_predicate, scores
 from tpvqa.training.splitting import split
 from tpvqa.vlm import Answer, Reply
 
 
-def example(picture: int, text: str = "Is it?", *, truth: bool = True) -> Example:
-    return Example(bytes([picture]), "image/png", text, truth)
+def example(picture: int, text: str = "Is it?", *, truth: bool = True, group: str = "") -> Example:
+    return Example(bytes([picture]), "image/png", text, truth, text, group)
 
 
 EXAMPLES = st.lists(
@@ -44,6 +44,30 @@ def test_no_picture_is_on_both_sides(every: list[Example], share: float, seed: i
     assert Counter(learnt + held) == Counter(every)
     assert len(back) - share * len(pictures) < 1
     assert split(every, share, seed=seed) == (learnt, held)
+
+
+GROUPED = st.lists(
+    st.builds(example, st.integers(0, 9), group=st.sampled_from(["", "a", "b", "c"])),
+    min_size=2,
+    max_size=30,
+)
+
+
+@given(GROUPED, st.floats(0.01, 0.9), st.integers(0, 5))
+def test_neither_a_picture_nor_a_group_is_on_both_sides(
+    every: list[Example], share: float, seed: int
+) -> None:
+    if len(set(together(every).values())) < 2:
+        with pytest.raises(TrainingError, match="too few"):
+            split(every, share, seed=seed)
+        return
+    learnt, held = split(every, share, seed=seed)
+    assert learnt
+    assert held
+    assert {e.picture for e in held}.isdisjoint({e.picture for e in learnt})
+    assert {e.group for e in held if e.group}.isdisjoint({e.group for e in learnt if e.group})
+    backwards = split(every[::-1], share, seed=seed)
+    assert Counter(backwards[1]) == Counter(held)
 
 
 @given(EXAMPLES)
@@ -82,6 +106,21 @@ def test_figures_are_those_of_scikit_learn(data: st.DataObject) -> None:
     assert found.auroc.value == pytest.approx(metrics.roc_auc_score(truth, p))
     assert found.log_loss.value == pytest.approx(metrics.log_loss(truth, p))
     assert found.abstained.value == 0
+
+
+@given(st.data())
+def test_balanced_accuracy_by_predicate_is_that_of_its_questions(data: st.DataObject) -> None:
+    every = data.draw(EXAMPLES)
+    p = data.draw(st.lists(st.sampled_from([0.1, 0.9]), min_size=40, max_size=40))[: len(every)]
+    found = balanced_by_predicate(every, answers(every, p))
+    assert set(found) == {each.predicate for each in every}
+    for name, value in found.items():
+        of = [(e.truth, x > 0.5) for e, x in zip(every, p, strict=True) if e.predicate == name]
+        truth, said = zip(*of, strict=True)
+        if len(set(truth)) < 2:
+            assert value is None
+        else:
+            assert value == pytest.approx(metrics.balanced_accuracy_score(truth, said))
 
 
 def test_an_abstention_is_wrong_and_tells_nothing() -> None:

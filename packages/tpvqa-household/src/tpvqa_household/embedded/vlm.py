@@ -20,7 +20,8 @@ from tpvqa_household.embedded.lexicon import Lexicon, Unknown
 from tpvqa_household.embedded.likeness import Floats
 from tpvqa_household.embedded.limits import Limits, Odds
 from tpvqa_household.embedded.sessions import Sessions
-from tpvqa_household.embedded.weights import SHIPPED, Weights
+from tpvqa_household.embedded.taught.vlm import TaughtVLM
+from tpvqa_household.embedded.weights import DESCRIPTION, SHIPPED, Weights
 
 REMEMBERED = 8
 """Pictures whose maps are kept, 0.1 MB each."""
@@ -90,8 +91,15 @@ class EmbeddedVLM(NeedsPictures, Deterministic, SideBySide):
         self._remember = remember
 
     @classmethod
-    def from_spec(cls, arguments: str = "", *, remember: int = REMEMBERED) -> "EmbeddedVLM":
-        """Make it from `embedded` or `embedded:FOLDER`, a folder with other weights."""
+    def from_spec(
+        cls, arguments: str = "", *, remember: int = REMEMBERED
+    ) -> "EmbeddedVLM | TaughtVLM":
+        """Make it from `embedded` or `embedded:FOLDER`.
+
+        The folder holds what `tpvqa train embedded` wrote, or another network.
+        """
+        if arguments and not (Path(arguments) / DESCRIPTION).is_file():
+            return TaughtVLM(arguments, remember=remember)
         return cls(folder=arguments or None, remember=remember)
 
     @property

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from tpvqa.errors import MissingExtraError
 from tpvqa_household import DISTRIBUTION
 from tpvqa_household.embedded.likeness import Floats
+from tpvqa_household.teaching.logistic import even
+from tpvqa_household.teaching.sureness import slopes
 from tpvqa_household.training.imagenet import CLASSES, Seen
 from tpvqa_household.training.subjects import Subject
 
@@ -24,8 +26,6 @@ _CLASSES = 0.3
 _STRENGTH = 10.0
 """Inverse strength of the regularisation."""
 _FOLDS = 5
-_NEAR = 0.5
-"""How far, as a logarithm, one head's slope is thought to lie from what suits all."""
 
 
 @dataclass(frozen=True)
@@ -114,14 +114,14 @@ def taught(
     space, plain = _Space(photographs[0].seen), photographs[0]
     rows = [_Head(space, subject, i, photographs, kitchens) for i, subject in enumerate(subjects)]
     held_back = np.stack([row.held_back() for row in rows], 1)
-    slopes = _slopes(held_back, plain.labels)
+    slope = slopes(held_back, plain.labels)
     parts = [space.outputs(*row.fit(None), row.subject) for row in rows]
     features, classes, bias = (np.stack(each) for each in zip(*parts, strict=True))
     return Heads(
-        (features * slopes[:, None]).astype(np.float32),
-        (classes * slopes[:, None]).astype(np.float32),
-        (bias * slopes).astype(np.float32),
-        held_back * slopes,
+        (features * slope[:, None]).astype(np.float32),
+        (classes * slope[:, None]).astype(np.float32),
+        (bias * slope).astype(np.float32),
+        held_back * slope,
     )
 
 
@@ -159,9 +159,7 @@ class _Head:
         of_photographs = np.tile(self._labels[labelled], len(self._photographs))
         of_kitchens = self._kitchen_labels[rendered]
         count = int(labelled.sum())
-        weight = np.concatenate(
-            [_even(of_photographs, count), _even(of_kitchens, KITCHENS * count)]
-        )
+        weight = np.concatenate([even(of_photographs, count), even(of_kitchens, KITCHENS * count)])
         y = np.concatenate([of_photographs, of_kitchens])
         model = LogisticRegression(C=_STRENGTH, max_iter=3000).fit(x, y, sample_weight=weight)
         return model.coef_[0], float(model.intercept_[0])
@@ -178,38 +176,3 @@ class _Head:
             weights, bias = self.fit(out)
             found[out] = self._photographs[0][out] @ weights + bias
         return found
-
-
-def _even(labels: NDArray[np.int64], total: float) -> NDArray[np.float64]:
-    """Weights under which yes and no weigh the same."""
-    weight = np.zeros(len(labels))
-    for value in (0, 1):
-        if (labels == value).any():
-            weight[labels == value] = total / 2 / (labels == value).sum()
-    return weight
-
-
-def _slopes(odds: NDArray[np.float64], labels: NDArray[np.int64]) -> NDArray[np.float64]:
-    """What the log odds of each head are multiplied by, so that those held back are likeliest.
-
-    A head with few photographs of one kind stays near what suits all heads together.
-    """
-    grid = np.exp(np.linspace(np.log(0.1), np.log(10.0), 120))
-    losses = np.array([_losses(odds[:, i], labels[:, i], grid) for i in range(odds.shape[1])])
-    common = grid[losses.sum(0).argmin()]
-    away = (np.log(grid / common) / _NEAR) ** 2 / 2
-    return np.asarray(grid[(losses + away).argmin(1)], np.float64)
-
-
-def _losses(
-    odds: NDArray[np.float64], labels: NDArray[np.int64], grid: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The loss of one head under each slope, as if it had as many yes and no as the fewer."""
-    asked = (labels >= 0) & ~np.isnan(odds)
-    labels, odds = labels[asked], odds[asked]
-    fewer = min(int((labels == 0).sum()), int((labels == 1).sum()))
-    if not fewer:
-        return np.zeros(len(grid))
-    signed = np.where(labels == 1, odds, -odds)
-    loss = np.logaddexp(0, -grid[:, None] * signed)
-    return np.asarray(loss @ _even(labels, 2.0 * fewer), np.float64)

@@ -30,7 +30,9 @@ def register(app: typer.Typer) -> None:
 
 
 def train(
-    vlm: Annotated[str, typer.Argument(help="What to train: hf:MODEL, a folder or a hub's name.")],
+    vlm: Annotated[
+        str, typer.Argument(help="What to train: embedded, or hf:MODEL, a folder or a hub's name.")
+    ],
     episodes: Annotated[
         list[Path] | None,
         typer.Argument(
@@ -64,12 +66,17 @@ def train(
             max=0.9,
         ),
     ] = 0.25,
-    epochs: Annotated[int, typer.Option(help="How often each question is seen.", min=1)] = 3,
+    epochs: Annotated[
+        int,
+        typer.Option(
+            help="How often each question is seen; embedded: each picture, at most.", min=1
+        ),
+    ] = 3,
     rate: Annotated[
-        float | None, typer.Option(help="Learning rate. Default for hf: 0.0002.", min=1e-9, max=1)
+        float | None, typer.Option(help="hf: learning rate. Default: 0.0002.", min=1e-9, max=1)
     ] = None,
     rank: Annotated[int, typer.Option(help="hf: rank of the adapter.", min=1, max=1024)] = 8,
-    batch: Annotated[int, typer.Option(help="Questions a step.", min=1)] = 8,
+    batch: Annotated[int, typer.Option(help="hf: questions a step.", min=1)] = 8,
     seed: Annotated[
         int, typer.Option(help="Decides what is held back, the order, and the first weights.")
     ] = 0,
@@ -83,8 +90,9 @@ def train(
 ) -> None:
     """Teach a VLM with labelled pictures or episodes, and show what it learnt.
 
-    Part of the pictures is held back; the figures before and after are on those alone. For hf:MODEL
-    an adapter is written (LoRA), to be taken as --vlm hf:FOLDER.
+    Part of the pictures is held back; the figures before and after are on those alone. The small
+    network, embedded, learns the questions of any domain in seconds, to be taken as --vlm
+    embedded:FOLDER. For hf:MODEL an adapter is written (LoRA), to be taken as --vlm hf:FOLDER.
     """
     from tpvqa.cli.progress import CountBar
     from tpvqa.config.layers import Key, Layer, combined
@@ -179,7 +187,13 @@ def _print(report: "Report") -> None:
     for name, said in _NAMED:
         before, after = getattr(report.before, name), getattr(report.after, name)
         tell(f"{said:20}{_said(before):>24}{_said(after):>24}")
-    tell(f"wrote {report.out}: take it as --vlm hf:{report.out}")
+    if len(report.balanced) > 1:
+        tell("balanced accuracy after, by predicate:")
+        for predicate, value in report.balanced.items():
+            tell(f"  {predicate:18}{'–' if value is None else f'{value:.3f}':>24}")
+    for notice in report.notices:
+        tell(f"note: {notice}", error=True)
+    tell(f"wrote {report.out}: take it as --vlm {report.taken_as}")
 
 
 def _said(figure: "Figure") -> str:

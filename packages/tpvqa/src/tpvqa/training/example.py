@@ -16,6 +16,7 @@ class Example:
         text: The question.
         truth: Whether yes is right.
         predicate: What it asks about.
+        group: Tells pictures of one scene, taken together, from others; "" for one by itself.
     """
 
     data: bytes = field(repr=False)
@@ -23,6 +24,7 @@ class Example:
     text: str
     truth: bool
     predicate: str = ""
+    group: str = ""
 
     @cached_property
     def picture(self) -> str:
@@ -39,3 +41,25 @@ def consistent(examples: Iterable[Example]) -> list[Example]:
         if found.setdefault(key, each).truth != each.truth:
             torn.add(key)
     return [each for key, each in found.items() if key not in torn]
+
+
+def together(examples: Iterable[Example]) -> dict[str, str]:
+    """For each picture a name that it shares with those that it is never taken apart from.
+
+    These are the pictures of its group; and where the same picture is in several groups, those of
+    all of them.
+    """
+    above: dict[str, str] = {}
+
+    def top(name: str) -> str:
+        while (upper := above.setdefault(name, name)) != name:
+            name = upper
+        return name
+
+    pictures = []
+    for each in examples:
+        pictures.append(each.picture)
+        group = f"group {each.group}" if each.group else each.picture
+        first, second = sorted((top(each.picture), top(group)))
+        above[second] = first
+    return {picture: top(picture) for picture in pictures}

@@ -33,4 +33,5 @@ def examples_of(
                     question.text,
                     yes_is_right(question, picture, task),
                     question.subject,
+                    picture.group,
                 )

@@ -23,7 +23,7 @@ def make_trainer(spec: str, context: Mapping[str, Any]) -> Trainer:
     name, _ = split(spec)
     if name not in names(Kind.TRAINER):
         load_spec(Kind.VLM, spec)  # an unknown name is told as such
-        known = ", ".join(f"{each}:…" for each in names(Kind.TRAINER))
+        known = ", ".join(names(Kind.TRAINER))
         raise TrainingError(f"The VLM {name!r} cannot be trained here. These can: {known}.")
     made: Trainer = make_from(Kind.TRAINER, spec, context, protocol=Trainer)[0]
     return made

@@ -32,6 +32,17 @@ class TrainingSettings:
 
 
 @runtime_checkable
+class Noticing(Protocol):
+    """A trainer that has something to say of what it learnt, or could not.
+
+    Attributes:
+        notices: Sentences, after `fit`.
+    """
+
+    notices: Sequence[str]
+
+
+@runtime_checkable
 class Trainer(Protocol):
     """Trains the VLM of a specification."""
 

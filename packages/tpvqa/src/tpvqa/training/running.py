@@ -13,9 +13,10 @@ from tpvqa.errors import TrainingError, WriteError
 from tpvqa.files import write_whole
 from tpvqa.plugins import Closing
 from tpvqa.training.example import Example, consistent
-from tpvqa.training.protocol import Trainer, TrainingSettings
-from tpvqa.training.scoring import Scores, answers_to, scores
+from tpvqa.training.protocol import Noticing, Trainer, TrainingSettings
+from tpvqa.training.scoring import Scores, answers_to, balanced_by_predicate, scores
 from tpvqa.training.splitting import split
+from tpvqa.vlm import Answer
 from tpvqa.vlm.making import make_vlm
 
 REPORT = "training.json"
@@ -46,6 +47,10 @@ class Report:
         held_back: Questions and pictures that it was judged by.
         before: Figures on what was held back, before.
         after: The same, after.
+        taken_as: The specification of what was trained, for `--vlm`.
+        balanced: Balanced accuracy after, by predicate; None where the right answers are all yes
+            or all no.
+        notices: What the trainer has to say besides.
     """
 
     vlm: str
@@ -54,6 +59,9 @@ class Report:
     held_back: tuple[int, int]
     before: Scores
     after: Scores
+    taken_as: str
+    balanced: Mapping[str, float | None]
+    notices: Sequence[str] = ()
 
     def plain(self) -> dict[str, Any]:
         """As JSON has it."""
@@ -67,6 +75,9 @@ class Report:
             **counts,
             "before": self.before.plain(),
             "after": self.after.plain(),
+            "taken_as": self.taken_as,
+            "balanced_accuracy_by_predicate": dict(self.balanced),
+            "notices": list(self.notices),
         }
 
 
@@ -122,8 +133,18 @@ def train(
     folder = part / _LEARNT
     shutil.rmtree(folder, ignore_errors=True)
     trained = trainer.save(folder)
-    after = _asked(trained, held, settings.seed, context, progress, "questions after")
-    report = Report(spec, out, _counts(learnt), _counts(held), before, after)
+    answers = _answers(trained, held, context, progress, "questions after")
+    report = Report(
+        spec,
+        out,
+        _counts(learnt),
+        _counts(held),
+        before,
+        scores(held, answers, seed=settings.seed),
+        trained.replace(str(folder), str(out)),
+        balanced_by_predicate(held, answers),
+        tuple(trainer.notices) if isinstance(trainer, Noticing) else (),
+    )
     told = {**report.plain(), "settings": settings.plain(), "held_back_share": held_back}
     _write(folder / REPORT, told)
     try:
@@ -173,8 +194,8 @@ def _identity(
 ) -> str:
     learnt = sha256()
     for each in examples:
-        learnt.update(json.dumps([each.picture, each.text, each.truth]).encode())
-    told = {"version": 1, "vlm": spec, "held_back": held_back, "examples": learnt.hexdigest()}
+        learnt.update(json.dumps([each.picture, each.text, each.truth, each.group]).encode())
+    told = {"version": 2, "vlm": spec, "held_back": held_back, "examples": learnt.hexdigest()}
     return json.dumps(told | settings.plain() | dict(context), sort_keys=True)
 
 
@@ -193,23 +214,22 @@ def _before(
 
         told = json.loads(path.read_text(encoding="utf-8"))
         return Scores(**{name: Figure(**figure) for name, figure in told.items()})
-    before = _asked(spec, held, seed, context, progress, "questions before")
+    before = scores(held, _answers(spec, held, context, progress, "questions before"), seed=seed)
     _write(path, before.plain())
     return before
 
 
-def _asked(
+def _answers(
     spec: str,
     held: Sequence[Example],
-    seed: int,
     context: Mapping[str, Any],
     progress: Progress,
     what: str,
-) -> Scores:
+) -> list[Answer]:
     progress.count(what)
     vlm, _ = make_vlm(spec, context)
     try:
-        return scores(held, answers_to(vlm, held, done=progress), seed=seed)
+        return answers_to(vlm, held, done=progress)
     finally:
         if isinstance(vlm, Closing):
             vlm.close()

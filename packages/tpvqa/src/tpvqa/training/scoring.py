@@ -120,6 +120,26 @@ def scores(examples: Sequence[Example], answers: Sequence[Answer], *, seed: int 
     return Scores(*(_figure(measure, every, drawn) for measure in measures))
 
 
+def balanced_by_predicate(
+    examples: Sequence[Example], answers: Sequence[Answer]
+) -> dict[str, float | None]:
+    """Balanced accuracy of each predicate's questions; None where one of the answers is right in
+    all of them. *Unknown* and *cannot see* count as wrong.
+
+    Args:
+        examples: What was asked.
+        answers: What was answered.
+    """
+    by: dict[str, list[tuple[bool, bool]]] = {}
+    for each, answer in zip(examples, answers, strict=True):
+        right = answer.reply is (Reply.YES if each.truth else Reply.NO)
+        by.setdefault(each.predicate, []).append((right, each.truth))
+    return {
+        name: _balanced(*(np.array(column, bool) for column in zip(*pairs, strict=True)))
+        for name, pairs in sorted(by.items())
+    }
+
+
 def _drawn(rows_of: Sequence[NDArray[np.intp]], seed: int) -> list[NDArray[np.intp]]:
     random = np.random.default_rng(seed)
     count = len(rows_of)

@@ -57,6 +57,9 @@ class Picture(BaseModel):
         seen: The facts, true or false, that can be told from it.
         visible: Names what is visible in it: the same for pictures that look alike. Without it,
             pictures look alike that show the same facts.
+        group: Names pictures that were taken together, of one scene or in one home: in training
+            none of a group is learnt from where others are held back. Without it, each picture is
+            by itself.
     """
 
     model_config = ConfigDict(frozen=True, extra="ignore")
@@ -66,6 +69,7 @@ class Picture(BaseModel):
     state: tuple[Fact, ...]
     seen: frozenset[Fact]
     visible: str = ""
+    group: Annotated[str, AfterValidator(_name)] = ""
 
     @cached_property
     def true_state(self) -> State:

@@ -1,0 +1,1 @@
+"""What a user taught the embedded network: questions of any domain, about pictures like theirs."""
