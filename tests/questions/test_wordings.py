@@ -41,7 +41,7 @@ def book(task: Task, folder: Path, text: str | bytes) -> QuestionBook:
         ("predicates:\n  near: 'Is {x!r}?'", 2, "no placeholder"),
         ("predicates:\n  near: 'Is {}?'", 2, "no placeholder"),
         ("predicates:\n  near: 'Is {0[a]}?'", 2, "no placeholder"),
-        ("predicates:\n  near: [a]", 2, "expected text, found a list"),
+        ("predicates:\n  near: [[a]]", 2, "expected text, found a list"),
         ("predicates:\n  near: {a: b}", 2, "expected text"),
         ("predicates:\n  near: 7", 2, "expected text, found '7'; write it in quotes"),
         ("predicates:\n  near: yes", 2, "write it in quotes"),
