@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tpvqa.belief.heard import Drawn, Heard, own
 from tpvqa.belief.information import Floats
 from tpvqa.belief.lasting import SUREST
-from tpvqa.belief.worth import Cases, Taken
+from tpvqa.belief.worth import SURE, Cases, Taken
 from tpvqa.questions.question import FactQuestion
 
 SHARES = np.array([0.02, 0.25, 0.5, 0.75, 0.98])
@@ -147,8 +147,8 @@ class OtherWords:
         of the other but by it, and so leave the odds ratio of the two as it was (the copula of
         Plackett 1965): what both are is known from what each is.
         """
-        was = np.clip(own(known, answer.first), SUREST, 1 - SUREST)
-        before = np.clip(answer.before, SUREST, 1 - SUREST)
+        was = np.clip(own(known, answer.first), SURE, 1 - SURE)
+        before = np.clip(answer.before, SURE, 1 - SURE)
         both = _both(before, was, _odds_ratio(answer.first, share))
         if_yes, if_no = both / before, (was - both) / (1 - before)
         now = np.clip(answer.after * if_yes + (1 - answer.after) * if_no, 0.0, 1.0)

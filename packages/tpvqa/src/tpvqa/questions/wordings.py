@@ -183,7 +183,7 @@ def _check_name(name: str, key: Place, known: Collection[str], kind: str) -> Non
 def _in_turn(place: Place, parameters: Sequence[str], known: Sequence[str]) -> list[Template]:
     """The wordings of a question: a text, or a list of them, the first one first."""
     found: dict[str, Template] = {}
-    for item in place.texts():
+    for item in place.items() if place.is_list() else [place]:
         template = _template(item, parameters, known)
         first = next(iter(found.values()), template)
         if str(template) in found:
