@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from tpvqa.errors import QuestionsError
+from tpvqa.events.records import question_record
 from tpvqa.pddl import Literal, Task, load_task
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task
@@ -31,6 +32,9 @@ def book(task: Task, folder: Path, text: str | bytes) -> QuestionBook:
     ("text", "line", "says"),
     [
         ("predicates:\n  neer: 'Is it?'", 2, "no predicate 'neer'. Did you mean 'near'?"),
+        ("predicates:\n  near: []", 2, "found an empty list"),
+        ("predicates:\n  near:\n    - Is a {x} here?\n    - Is it?", 4, "only one of this and"),
+        ("predicates:\n  near:\n    - 'Is {x}?'\n    - 'Is {x}?'", 4, "given twice"),
         ("actions:\n\n  opne: {say: open}", 3, "no action 'opne'. Did you mean 'open'?"),
         ("types:\n  frigde: box", 2, "no type 'frigde'. Did you mean 'fridge'?"),
         ("predicats:\n  near: 'Is it?'", 1, "'predicats' is not known here. Did you mean"),
@@ -41,7 +45,7 @@ def book(task: Task, folder: Path, text: str | bytes) -> QuestionBook:
         ("predicates:\n  near: 'Is {x!r}?'", 2, "no placeholder"),
         ("predicates:\n  near: 'Is {}?'", 2, "no placeholder"),
         ("predicates:\n  near: 'Is {0[a]}?'", 2, "no placeholder"),
-        ("predicates:\n  near: [a]", 2, "expected text, found a list"),
+        ("predicates:\n  near: [[a]]", 2, "expected text, found a list"),
         ("predicates:\n  near: {a: b}", 2, "expected text"),
         ("predicates:\n  near: 7", 2, "expected text, found '7'; write it in quotes"),
         ("predicates:\n  near: yes", 2, "write it in quotes"),
@@ -178,3 +182,29 @@ def test_the_examples_of_the_documentation_are_understood(task: Task, tmp_path: 
     )
     assert found.name("tv") == "TV"
     assert not any(" near;" in notice or " place " in notice for notice in found.notices)
+
+
+def test_the_first_of_several_wordings_is_asked_and_the_others_are_known(
+    task: Task, tmp_path: Path
+) -> None:
+    words = ("Is a {x} here?", "Is there an {x}?", "Is  a {x} here?!")
+    text = "predicates:\n  near:\n" + "".join(f"    - {each}\n" for each in words)
+    known = book(task, tmp_path, text)
+    near = next(atom for atom in sorted(task.atoms()) if atom.predicate == "near")
+    first = known.fact(Literal(near, False))
+    name = known.name(near.arguments[0])
+    assert (first.wording, first.family, first.expected) == (0, first.text, False)
+    second, third = known.in_other_words(first)
+    assert third.text == f"Is {'an' if name[0] in 'aeiou' else 'a'} {name} here?!"
+    assert [each.wording for each in (second, third)] == [1, 2]
+    assert {each.family for each in (first, second, third)} == {first.text}
+    assert known.in_other_words(third) == (first, second)
+    assert question_record(first).wording is None
+    assert question_record(third).wording == 2
+
+
+def test_a_question_in_one_wording_has_no_other_words(task: Task, tmp_path: Path) -> None:
+    known = book(task, tmp_path, "predicates:\n  near: ['Is a {x} here?']")
+    near = next(atom for atom in sorted(task.atoms()) if atom.predicate == "near")
+    assert known.wordings("near") == 1
+    assert known.in_other_words(known.fact(Literal(near))) == ()

@@ -2,6 +2,8 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
+from operator import eq
 
 import pytest
 from hypothesis import given
@@ -46,6 +48,35 @@ def test_two_answers_in_one_scene_correlate_by_the_square_of_the_share(share: fl
     assert correlation(first, second, 0.2) == pytest.approx(share**2, abs=0.07)
     for found in (first, second):
         assert sum(found) / len(found) == pytest.approx(0.2, abs=0.026)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_what_lasts_is_in_another_wording_the_same_as_often_as_is_said(share: float) -> None:
+    vlm = made(f"oracle:0.8:0:1:words:{share:g}", truth=SceneTruth(), seed=3)
+    others = [replace(each, text=f"{each.text}!", wording=1, first=each.text) for each in QUESTIONS]
+    first = yeses(vlm, 0)
+    other = [each.reply is Reply.YES for each in vlm.ask(look(1), others)]
+    assert correlation(first, other, 0.2) == pytest.approx(share, abs=0.07)
+    assert yeses(made("oracle:0.8:0:1", truth=SceneTruth(), seed=3), 0) == first
+
+
+@pytest.mark.parametrize("spec", ["flawed:misread:0.3:1", "recorded:gemma-3-12b"])
+def test_other_noise_models_are_told_how_far_wordings_err_alike(task: Task, spec: str) -> None:
+    atoms = sorted(task.atoms())
+    first = [FactQuestion(str(each), Way.EFFECT, each) for each in atoms]
+    others = [replace(each, text=f"{each.text}!", wording=1, first=each.text) for each in first]
+    same = {}
+    for share in ("0", "1"):
+        vlm = made(f"{spec}:words:{share}", truth=SceneTruth(), task=task, seed=3)
+        told = [[a.reply for a in vlm.ask(look(n), each)] for n, each in enumerate((first, others))]
+        same[share] = sum(map(eq, *told)) / len(atoms)
+    assert same["0"] + 0.1 < same["1"]
+
+
+@pytest.mark.parametrize("said", ["oracle:0.8:words:2", "oracle:0.8:words:", "recorded:x:words:a"])
+def test_a_share_that_is_none_is_an_error(task: Task, said: str) -> None:
+    with pytest.raises(PluginError, match="behind 'words:'"):
+        made(said, truth=SceneTruth(), task=task)
 
 
 @pytest.mark.parametrize("what", ["state", "view", "truth", "episode"])

@@ -141,6 +141,10 @@ class Place:
         """Whether it is a single value, not a list or a mapping."""
         return isinstance(self.node, yaml.ScalarNode) and not _is_empty(self.node)
 
+    def is_list(self) -> bool:
+        """Whether it is a list."""
+        return isinstance(self.node, yaml.SequenceNode)
+
     def texts(self) -> "list[Place]":
         """The items of a list, or the value alone where it is a single one."""
         return [self] if self.is_text() else list(self.items())

@@ -1,9 +1,8 @@
 """Answers as evidence: each weighs the belief by what it adds to those before."""
 
 from collections import deque
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 
@@ -12,15 +11,17 @@ from tpvqa.belief.calibration import Apart, Calibration
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.heard import EVERY, Columns, Heard
-from tpvqa.belief.information import Reliability, answers_to_be_sure
+from tpvqa.belief.information import Reliability, answers_to_be_sure, settled
 from tpvqa.belief.last_answer import LastAnswer, Picture
 from tpvqa.belief.led import Led
+from tpvqa.belief.other_words import Answered, OtherWords
 from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
 from tpvqa.belief.readings import Readings
 from tpvqa.belief.repeats import learn_repeats
 from tpvqa.belief.settling import Settling, in_doubt
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.trust import Trust
+from tpvqa.belief.weighed import Weighed
 from tpvqa.belief.worth import SURE, Cases, Said, Worth, by_truth, moved
 from tpvqa.pddl import Action, Atom, Task, literals
 from tpvqa.questions.question import FactQuestion
@@ -47,19 +48,6 @@ Pair = tuple[float, float]
 _NONE = np.zeros(0, bool)
 
 
-class Weighed(Protocol):
-    """What answers weigh: a belief, or what was believed before anything was done."""
-
-    def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
-        """The probability of a fact, or of it or any fact alike."""
-
-    def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
-        """Weigh by an answer about a fact (or any of several alike)."""
-
-    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
-        """Take in that a fact may have changed without the action model knowing."""
-
-
 class Evidence:
     """Takes answers into a belief.
 
@@ -74,6 +62,7 @@ class Evidence:
         unexplained: Chance that a fact changed without the action model knowing.
         skill: What the report of any skill is worth; by default what the calibration says.
         doubts: Chances that things were elsewhere from the start; none by default.
+        words: How far the wordings of a question err alike.
     """
 
     def __init__(
@@ -85,6 +74,7 @@ class Evidence:
         unexplained: float = UNEXPLAINED,
         skill: SkillWorth | None = None,
         doubts: Doubts | None = None,
+        words: OtherWords | None = None,
     ):
         self._belief, self._calibration, self._trust = belief, calibration, trust
         self._weighed: Weighed = belief
@@ -97,6 +87,7 @@ class Evidence:
             for apart in Apart
         }
         self._last: dict[str, LastAnswer] = {}
+        self._words = words or OtherWords()
         self.worth = Worth(trust, calibration.lasting)
         self._size = len(self.worth.weights)
         belief.suppose(self.worth.weights)
@@ -130,6 +121,16 @@ class Evidence:
                 heard.acted(each, self._belief.model.truth(last.atoms))
             last.heard, last.acted = {last.view: heard}, self._acted
         return last.heard_from(view)
+
+    def _heard_of(self, question: FactQuestion, view: str | None) -> Heard | None:
+        """What was heard of a question, in other words if not in these; None for nothing."""
+        if question.text in self._last:
+            return self._heard(self._last[question.text], view)
+        other = self._words.nearest(question)
+        if other is None:
+            return None
+        heard = self._heard(self._last[other.text], view)
+        return self._words.carried(heard, other, question)
 
     def _cases(self, question: FactQuestion, heard: Heard, columns: Columns = EVERY) -> Cases:
         """What may be the case when a question is asked."""
@@ -259,18 +260,22 @@ class Evidence:
         """
         whole = self._calibration.whole.rates
         new = self.worth.expect((whole.yes_if_true, whole.yes_if_false))
-        doubts: list[tuple[float, Reliability]] = []
+        doubts: dict[str, tuple[float, Reliability]] = {}
         for question in questions:
             true = self._weighed.probability(question.atom, question.alike)
-            last, expected = self._last.get(question.text), new
+            nearest, expected = self._words.nearest(question), new
+            last = self._last.get(question.text if nearest is None else nearest.text)
             if last is not None and in_doubt(true):
                 rates, cases = self._calibration.group(question).rates, None
-                if self.worth.lasts:
-                    heard, columns = self._heard(last, last.view), self.worth.columns
+                heard = self._heard_of(question, last.view) if self.worth.lasts else None
+                if heard is not None:
+                    columns = self.worth.columns
                     cases = self._cases(question, heard, columns).elsewhere(self.worth.stays)
                 expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false), cases)
-            doubts.append((true, expected))
-        return Settling.of(doubts, new)
+            known = doubts.get(question.family)
+            if known is None or settled(expected) > settled(known[1]):
+                doubts[question.family] = true, expected
+        return Settling.of(doubts.values(), new)
 
     def expect(self, question: FactQuestion, view: str | None) -> Reliability:
         """What the next answers to a question, at new looks from a view, are worth."""
@@ -278,10 +283,13 @@ class Evidence:
         abstains = min((rates.abstain_if_true + rates.abstain_if_false) / 2, 0.95)
         said = rates.yes_if_true, rates.yes_if_false
         last = self._last.get(question.text)
-        if last is None:
+        heard = self._heard_of(question, view)
+        if heard is None:
             return replace(self.worth.expect(said), abstains=abstains)
-        cases = self._cases(question, self._heard(last, view), self.worth.columns)
+        cases = self._cases(question, heard, self.worth.columns)
         found = self.worth.expect(said, cases)
+        if last is None:
+            return replace(found, abstains=abstains)
         rho = self._repeats[_apart(last, view)].mean
         before = 1.0 if last.reply is Reply.YES else 0.0
         if_true, if_false = (
@@ -311,7 +319,7 @@ class Evidence:
         true = self._weighed.probability(question.atom, question.alike)
         yes, rates = answer.reply is Reply.YES, (group.rates.yes_if_true, group.rates.yes_if_false)
         said = Said(yes, group.log_ratio(answer.reply, answer.p_yes))
-        heard = Heard() if last is None else self._heard(last, view)
+        heard = self._heard_of(question, view) or Heard()
         cases = self._cases(question, heard)
         if last is not None:
             repeats, same = self._repeats[_apart(last, view)], last.reply is answer.reply
@@ -334,16 +342,23 @@ class Evidence:
             self._open(atoms, held=true >= 0.5)
         elif self._doubts is not None:
             self._doubts.learn(atoms, if_true, if_false)
-        self._weigh_answer(question, heard, said, rates)
+        self._weigh_answer(question, heard, said, rates, view)
+        self._words.ask(question)
         return probable
 
-    def _weigh_answer(self, question: FactQuestion, heard: Heard, said: Said, rates: Pair) -> None:
+    def _weigh_answer(
+        self, question: FactQuestion, heard: Heard, said: Said, rates: Pair, view: str | None
+    ) -> None:
         cases = self._cases(question, heard)
         taken = self.worth.take(said, cases, rates)
         self.worth.compare(said, rates)
         masses = cases.mass * taken.likely
         if self._weighed is self._belief:
             numbers = tuple(self._belief.weights)
+            if others := self._words.besides(question):
+                came = Answered.of(said.yes, numbers, cases, taken, self.worth.shares)
+                known = [(each, self._heard(self._last[each.text], view)) for each in others]
+                self._words.hear(question, came, known)
             heard.told(numbers, taken.drawn)
             alike = masses.sum(axis=1) / np.maximum(cases.mass.sum(axis=1), 1e-300)
             learns = self._trust is not None
@@ -383,17 +398,3 @@ def _others(said: Pair) -> Pair:
 
 def _apart(last: LastAnswer, view: str | None) -> Apart:
     return Apart.SAME_VIEW if last.view == view else Apart.OTHER_VIEW
-
-
-def words(replies: Collection[Reply]) -> str:
-    """Some replies in words: "two noes and a yes"."""
-    parts = []
-    for reply, one, many in ((Reply.NO, "a no", "noes"), (Reply.YES, "a yes", "yeses")):
-        count = sum(1 for each in replies if each is reply)
-        if count:
-            number = _NUMBERS[count] if count < len(_NUMBERS) else str(count)
-            parts.append(one if count == 1 else f"{number} {many}")
-    return " and ".join(parts)
-
-
-_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")

@@ -118,7 +118,7 @@ class Inquirer:
             if not DOUBT < likely[place] < 1 - DOUBT:
                 continue
             unable = self._evidence.silent(question.text, PERSONS_VIEW)
-            if person and self._costs.person is not None and not unable:
+            if person and self._costs.person is not None and not (unable or question.wording):
                 one = slice(place, place + 1)
                 told = gains(
                     if_true[one],
@@ -167,6 +167,7 @@ class Inquirer:
                         most_saved, asked = saving, (each.question, times)
             if asked is not None:
                 found = Inquiry(asked[0], max(1, asked[1] // 4), most_saved)
+        doubted = _once(doubted)
         if now > asking:
             doubted.sort(key=lambda each: each.urgent)
         first = list(islice((each for each in doubted if _says(each.reliability)), TOGETHER))
@@ -270,6 +271,16 @@ class _Doubted:
     def reliability(self) -> Reliability:
         """What is expected of the answers."""
         return self.expect()
+
+
+def _once(doubted: "Sequence[_Doubted]") -> "list[_Doubted]":
+    """Every fact once: in the words whose answers will settle most."""
+    found: dict[str, _Doubted] = {}
+    for each in doubted:
+        known = found.setdefault(each.question.family, each)
+        if known is not each and settled(each.reliability) > settled(known.reliability) + EQUAL:
+            found[each.question.family] = each
+    return list(found.values())
 
 
 def _settled(doubted: Sequence[_Doubted]) -> float:

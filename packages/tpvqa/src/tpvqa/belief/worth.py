@@ -83,11 +83,13 @@ class Taken:
         likely: Its probability in each case, for everything that is told apart of the noise.
         whole: Its probability where yes is right and where no is.
         drawn: What is known of the scene's own answer now.
+        first: P(yes) of the scene's own answer before it is drawn.
     """
 
     likely: Floats
     whole: Pair
     drawn: Drawn
+    first: Floats
 
 
 class Worth:
@@ -102,6 +104,7 @@ class Worth:
 
     Attributes:
         stays: `Kind.stays` of everything that is told apart.
+        shares: `Kind.share` likewise.
     """
 
     def __init__(self, trust: Trust | None = None, lasting: Sequence[float] = RECORDED):
@@ -109,7 +112,7 @@ class Worth:
         first = np.ones(1) if trust is None else np.array(trust.weights)
         last = np.array(lasting) / sum(lasting)
         self._grid = np.repeat((1.0,) if trust is None else GRID, len(KINDS))
-        self._shares, self.stays = (np.tile(each, len(first)) for each in (SHARES, STAYS))
+        self.shares, self.stays = (np.tile(each, len(first)) for each in (SHARES, STAYS))
         told = [(kind.share, kind.coin) for kind in KINDS] * len(first)
         distinct = tuple(dict.fromkeys(told))
         self._groups = np.array([[float(each == other) for other in distinct] for each in told])
@@ -147,12 +150,12 @@ class Worth:
     @property
     def share(self) -> float:
         """The expected lasting share."""
-        return float(self._weights @ self._shares)
+        return float(self._weights @ self.shares)
 
     @property
     def lasts(self) -> bool:
         """Whether errors may last at all, as far as is worth a thought."""
-        return float(self._weights[self._shares > 0].sum()) > LASTS
+        return float(self._weights[self.shares > 0].sum()) > LASTS
 
     def expect(self, rates: Pair, cases: Cases | None = None) -> Reliability:
         """What further answers will be.
@@ -238,12 +241,13 @@ class Worth:
         of_yes = np.where(
             cases.truth[:, None], *((right, 1 - right) if said.yes else (1 - right, right))
         )
-        own_yes, drawn = own(cases.drawn, own_rate(of_yes)), cases.drawn
+        first, drawn = own_rate(of_yes), cases.drawn
+        own_yes = own(drawn, first)
         of_yes = fresh_rate(of_yes, drawn.answers[:, None], drawn.yeses[:, None])
         this, fresh = (own_yes, of_yes) if said.yes else (1 - own_yes, 1 - of_yes)
         repeats = said.repeats * cases.drawn.kept[:, None]
         again = repeats * said.same
-        likely = again + (1 - repeats) * (self._shares * this + (1 - self._shares) * fresh)
+        likely = again + (1 - repeats) * (self.shares * this + (1 - self.shares) * fresh)
         repeated = again / np.maximum(likely, 1e-12)
         told = after_answer(said.yes, own_yes, of_yes, repeated)
         probable = (cases.mass * likely).sum(axis=1)
@@ -253,7 +257,7 @@ class Worth:
             whole.append(float(probable[there].sum() / max(cases.mass[there].sum(), 1e-300)))
         answers, yeses = drawn.answers + 1, drawn.yeses + said.yes
         drawn = Drawn(told, np.zeros_like(told), np.ones_like(drawn.kept), answers, yeses)
-        return Taken(likely, (whole[0], whole[1]), drawn)
+        return Taken(likely, (whole[0], whole[1]), drawn, first)
 
     def compare(self, said: Said, rates: Pair) -> None:
         """Note how much an answer says beside what the rates of yes and no make one expect: a VLM

@@ -107,6 +107,7 @@ def alike(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding
     """Objects, facts and actions that are called the same."""
     yield from _same_names(task, book)
     yield from _same_questions(task, book, file)
+    yield from _same_in_other_words(task, book, file)
     yield from _contradictions(task, book, file)
     yield from _same_actions(task, book, file)
 
@@ -152,6 +153,37 @@ def _same_questions(task: Task, book: QuestionBook, file: Path | None) -> Iterat
             named(file),
             line_of_entry(file, "predicates", atom.predicate),
         )
+
+
+def _same_in_other_words(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding]:
+    """Other wordings in which two facts are asked the same that their first wordings tell apart."""
+    several = [name for name in task.predicates if book.wordings(name) > 1]
+    texts = {
+        book.fact(Literal(atom)).text: atom
+        for name in task.fluents | task.derived
+        for atom in islice(atoms_of(task, name), _LOOKED_AT)
+    }
+    told: set[tuple[str, int]] = set()
+    for name in several:
+        for atom in islice(atoms_of(task, name), _LOOKED_AT):
+            question = book.fact(Literal(atom))
+            if not book.asked(Literal(atom)):
+                continue
+            for each in book.in_other_words(question):
+                other = texts.setdefault(each.text, atom)
+                same = book.fact(Literal(other)).text == question.text
+                if other == atom or same or (name, each.wording) in told:
+                    continue
+                told.add((name, each.wording))
+                yield Finding(
+                    "same-question",
+                    Severity.WARNING,
+                    f"wording {each.wording + 1} of {name} asks about {atom.pddl()} in words that "
+                    f"ask about {other.pddl()}, too: {each.text!r}",
+                    "Leave that wording out, or name in it what tells them apart.",
+                    named(file),
+                    line_of_entry(file, "predicates", name),
+                )
 
 
 def _contradictions(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding]:

@@ -13,14 +13,15 @@ from tpvqa.drafting.things import Label, Things
 from tpvqa.pddl import Task
 from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import fallback
+from tpvqa.questions.template import Template
 
 _FELT = ("free", "empty", "full", "busy", "clean", "available", "handempty", "handsfree")
 _AGREEING = {"Is": "Are", "Does": "Do", "Has": "Have"}
 _HEAD = """\
 # Questions for the domain {domain}, drafted from its names. Read every line before a VLM does:
 # - Is each question answered yes exactly if its fact is true, by who sees nothing but a picture?
-# - "also" has other words for the same: where your VLM keeps misreading a question, put one of
-#   them in its place. `tpvqa calibrate` tells which predicates it misreads.
+# - Where there is a list, its first question is asked, and the others where the errors of the first
+#   last: each is to ask the very same. `tpvqa vlm compare` tells which your VLM reads best.
 # - What no picture can show belongs under never_asked.
 # `tpvqa questions` prints what comes of this file, `tpvqa check` what does not fit.
 """
@@ -91,9 +92,18 @@ def _text(words: str) -> str:
 def _predicate(name: str, said: Said) -> Iterator[str]:
     first, *others = said.wordings
     look = "   # LOOK: the name tells little; ask it in your own words" if said.unsure else ""
-    yield f"  {_key(name)}: {_text(first)}{look}"
-    for other in others:
-        yield f"  #   also: {_text(other)}"
+    alike = [each for each in others if _names(each) == _names(first)]
+    if said.unsure or not alike:
+        yield f"  {_key(name)}: {_text(first)}{look}"
+        return
+    yield f"  {_key(name)}:"
+    for each in (first, *alike):
+        yield f"    - {_text(each)}"
+
+
+def _names(wording: str) -> frozenset[str]:
+    """The parameters that a wording names."""
+    return frozenset(each.parameter for each in Template.parse(wording).placeholders())
 
 
 # What things are called

@@ -175,6 +175,7 @@ class QuestionRecord(Record):
     action: str | None = None
     expected: bool = True
     alike: tuple[str, ...] | None = None
+    wording: int | None = Field(default=None, ge=1)
 
 
 class Asked(_Event):

@@ -78,10 +78,15 @@ def plan_from(record: PlanMade, task: Task) -> PlanningResult:
 def question_record(question: Question) -> QuestionRecord:
     """A question as it is logged."""
     match question:
-        case FactQuestion(text, way, atom, expected, alike):
+        case FactQuestion(text, way, atom, expected, alike, wording):
             others = tuple(other.pddl() for other in alike) or None
             return QuestionRecord(
-                text=text, way=way, atom=atom.pddl(), expected=expected, alike=others
+                text=text,
+                way=way,
+                atom=atom.pddl(),
+                expected=expected,
+                alike=others,
+                wording=wording or None,
             )
         case ActionQuestion(text, way, action):
             return QuestionRecord(text=text, way=way, action=action.pddl())

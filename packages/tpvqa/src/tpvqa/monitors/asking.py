@@ -119,7 +119,7 @@ class Asking:
             self._evidence.take(question, answer, now.picture, now.view)
         if answer.reply in (Reply.YES, Reply.NO):
             told = Replies(question.atoms, before)
-            now.replies.setdefault(question.text, told).replies.append(answer.reply)
+            now.replies.setdefault(question.family, told).replies.append(answer.reply)
 
     def feel(self, atoms: Collection[Atom]) -> Generator[Request, Any, None]:
         """Look, once after an action, where that senses something of these that is in doubt: it

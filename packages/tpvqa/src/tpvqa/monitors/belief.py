@@ -101,9 +101,9 @@ class BeliefMonitor(Learning, PlainArguments):
             self.trust = learned or Trust.after(calibration.rows)
         self._trials = 0 if experience is None else experience.trials
         self._priors = priors or Priors()
-        doubts = Doubts(task, self._priors.elsewhere)
+        doubts, words = Doubts(task, self._priors.elsewhere), settings.other_words
         self.evidence = Evidence(
-            self.belief, calibration, self.trust, skill=settings.skill, doubts=doubts
+            self.belief, calibration, self.trust, skill=settings.skill, doubts=doubts, words=words
         )
         self.chances = Learned(known, self.belief, trusts=self.trust is not None)
         self._sight = Sight(self.belief.model)
@@ -335,7 +335,7 @@ class BeliefMonitor(Learning, PlainArguments):
             new = (
                 q
                 for q in questions
-                if q.text not in self._now.replies and self._asking.open_views(q)
+                if q.family not in self._now.replies and self._asking.open_views(q)
             )
             doubted = [each for each in new if DOUBT < self._asking.likely(each) < 1 - DOUBT]
             if doubted:

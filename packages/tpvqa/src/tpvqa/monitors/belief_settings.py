@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from tpvqa.belief.ablations import PARTS
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import Rates
+from tpvqa.belief.other_words import OtherWords
 from tpvqa.belief.own_words import SkillWorth
 from tpvqa.errors import PluginError, suggestion
 from tpvqa.monitors.stated_risk import risk_from
@@ -28,6 +29,7 @@ class BeliefSettings:
         skill: What the report of any skill is worth; None for what the calibration says.
         without: One of `belief.ablations.PARTS`, to be left out.
         risk: The share of all trials that may end in "done" with the goal false; None for any.
+        words: How often what lasts of the answers is the same in other words; None to learn it.
     """
 
     costs: Costs = field(default_factory=Costs)
@@ -35,6 +37,12 @@ class BeliefSettings:
     skill: SkillWorth | None = None
     without: str | None = None
     risk: float | None = None
+    words: float | None = None
+
+    @property
+    def other_words(self) -> OtherWords:
+        """How far the wordings of a question err alike, before any answer."""
+        return OtherWords(self.words)
 
     @classmethod
     def parse(cls, arguments: str) -> Self:
@@ -42,7 +50,8 @@ class BeliefSettings:
 
         Also understood: `failure_rate`, `disturbance_rate` and `spontaneous_rate`, believed
         beforehand; `notices` and `false_alarms`, the shares of its failures and of its successes
-        that a skill reports as failures; `without=PART`; `risk=0.02`.
+        that a skill reports as failures; `without=PART`; `risk=0.02`; `words=0.5`, how often what
+        lasts of the answers is the same in another wording of a question.
 
         Raises:
             PluginError: Something is unknown, or no fitting number.
@@ -66,12 +75,15 @@ class BeliefSettings:
             }
             if not all(0 <= rate <= 1 for rate in believed.values()):
                 raise ValueError("a rate lies between 0 and 1")
+            words = float(given.pop("words")) if "words" in given else None
+            if words is not None and not 0 <= words <= 1:
+                raise ValueError("words, a share, lies between 0 and 1")
             reports = {key: float(given.pop(key)) for key in _REPORTS if key in given}
             costs = Costs.model_validate(given)
         except ValidationError as error:
             first = error.errors()[0]
             where = ".".join(map(str, first["loc"]))
-            known = (*Costs.model_fields, *_RATES, *_REPORTS, "without", "risk")
+            known = (*Costs.model_fields, *_RATES, *_REPORTS, "without", "risk", "words")
             what = (
                 f"there is no cost {where!r}{suggestion(where, known).rstrip('.')}"
                 if where not in Costs.model_fields
@@ -85,7 +97,7 @@ class BeliefSettings:
             ) from None
         except ValueError as error:
             raise PluginError(f"'belief:{arguments}' is not understood: {error}") from None
-        return cls(costs, Rates(**believed), _skill(reports, arguments), without, risk)
+        return cls(costs, Rates(**believed), _skill(reports, arguments), without, risk, words)
 
 
 def _skill(reports: dict[str, float], arguments: str) -> SkillWorth | None:

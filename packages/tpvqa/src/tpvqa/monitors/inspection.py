@@ -65,7 +65,10 @@ class Inspection:
     _about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)
 
     def about(self, atoms: frozenset[Atom], book: QuestionBook) -> list[FactQuestion]:
-        """The questions about some facts; of what the action was to change, as of its effects."""
+        """The questions about some facts; of what the action was to change, as of its effects.
+
+        Those in other words than the first come last.
+        """
         if atoms not in self._about:
             questions: dict[str, FactQuestion] = {}
             for atom in sorted(atoms):
@@ -74,6 +77,9 @@ class Inspection:
                     way: FactWay = Way.EFFECT if effect else Way.PRECONDITION
                     question = book.fact(Literal(atom), way=way)
                     questions.setdefault(question.text, question)
+            for question in list(questions.values()):
+                for other in book.in_other_words(question):
+                    questions.setdefault(other.text, other)
             self._about[atoms] = list(questions.values())
         return self._about[atoms]
 

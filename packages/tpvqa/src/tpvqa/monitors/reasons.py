@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.evidence import words
+from tpvqa.belief.replies_in_words import words
 from tpvqa.belief.risk import RiskBound
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Noticed, Replies

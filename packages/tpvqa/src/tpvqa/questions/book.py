@@ -46,7 +46,7 @@ class QuestionBook:
         self._given = frozenset(wordings.predicates)
         self._say, self._done = dict(wordings.say), dict(wordings.done)
         self.fallbacks: list[str] = []
-        self._texts: dict[Atom, tuple[str, tuple[Atom, ...]]] = {}
+        self._texts: dict[tuple[Atom, int], tuple[str, tuple[Atom, ...]]] = {}
         self._why_not: dict[tuple[Literal, tuple[str, tuple[str, ...]] | None], str | None] = {}
         self._numbers = NumberWords(wordings.numbers, task)
         self._add_fallbacks()
@@ -73,18 +73,42 @@ class QuestionBook:
 
     # Facts
 
-    def fact(self, literal: Literal, *, way: FactWay = Way.PRECONDITION) -> FactQuestion:
-        """The question about a fact; a negative literal expects the answer *no*."""
-        atom = literal.atom
-        if atom not in self._texts and atom.predicate in COMPARISONS:
-            template, values = self._numbers.template(atom)
-            self._texts[atom] = self._fill(template, dict(values)), ()
-        elif atom not in self._texts:
+    def fact(
+        self, literal: Literal, *, way: FactWay = Way.PRECONDITION, wording: int = 0
+    ) -> FactQuestion:
+        """The question about a fact; a negative literal expects the answer *no*.
+
+        Args:
+            literal: The fact, or its negation.
+            way: The way of asking.
+            wording: Which of the file's wordings, counted from 0.
+        """
+        text, alike = self._said(literal.atom, wording)
+        first = self._said(literal.atom, 0)[0] if wording else ""
+        return FactQuestion(text, way, literal.atom, literal.positive, alike, wording, first)
+
+    def in_other_words(self, question: FactQuestion) -> tuple[FactQuestion, ...]:
+        """A question in every other wording of it that differs; none where a file gives one."""
+        found: dict[str, FactQuestion] = {}
+        for wording in range(self.wordings(question.subject)):
+            other = self.fact(question.literal, way=question.way, wording=wording)
+            found.setdefault(other.text, other)
+        return tuple(other for text, other in found.items() if text != question.text)
+
+    def wordings(self, predicate: str) -> int:
+        """How many wordings there are of the question about a predicate."""
+        return 1 + len(self._wordings.others.get(predicate, ()))
+
+    def _said(self, atom: Atom, wording: int) -> tuple[str, tuple[Atom, ...]]:
+        if (atom, wording) not in self._texts and atom.predicate in COMPARISONS:
+            template, named = self._numbers.template(atom)
+            self._texts[atom, wording] = self._fill(template, dict(named)), ()
+        elif (atom, wording) not in self._texts:
             values = dict(zip(self._predicates[atom.predicate], atom.arguments, strict=True))
-            text = self._fill(self._questions[atom.predicate], values)
-            self._texts[atom] = text, self._alike(atom)
-        text, alike = self._texts[atom]
-        return FactQuestion(text, way, atom, literal.positive, alike)
+            others = self._wordings.others.get(atom.predicate, ())
+            words = others[wording - 1] if wording else self._questions[atom.predicate]
+            self._texts[atom, wording] = self._fill(words, values), self._alike(atom)
+        return self._texts[atom, wording]
 
     def _alike(self, atom: Atom) -> tuple[Atom, ...]:
         """The facts that differ only in objects which the question's words leave out."""

@@ -39,6 +39,8 @@ class FactQuestion:
             a negative literal is the positive question with the answer *no* expected.
         alike: Other facts that the words do not tell from `atom`: asked whether a thing is in a
             robot's hand, yes is right whichever hand it is in.
+        wording: Which of the wordings that a file gives of it, counted from 0.
+        first: What it is in the first of them; "" where this is the first.
     """
 
     text: str
@@ -46,6 +48,8 @@ class FactQuestion:
     atom: Atom
     expected: bool = True
     alike: tuple[Atom, ...] = ()
+    wording: int = 0
+    first: str = ""
 
     def __hash__(self) -> int:
         return hash((self.text, self.way))
@@ -54,6 +58,11 @@ class FactQuestion:
     def atoms(self) -> tuple[Atom, ...]:
         """The facts of which any one makes yes right: the one asked about and those alike."""
         return (self.atom, *self.alike)
+
+    @property
+    def family(self) -> str:
+        """The same for all wordings of it: what it is in the first."""
+        return self.first or self.text
 
     @property
     def literal(self) -> Literal:

@@ -35,7 +35,8 @@ class Wordings:
     """What a questions file says; whatever it does not say is missing here.
 
     Attributes:
-        predicates: The question about each predicate.
+        predicates: The question about each predicate, in the first of its wordings.
+        others: Its other wordings, where there are any.
         say: How each action is said, as a command.
         done: How each action is said once it is done.
         attributes: The default of each attribute of objects.
@@ -49,6 +50,7 @@ class Wordings:
     """
 
     predicates: Mapping[str, Template] = field(default_factory=dict)
+    others: Mapping[str, Sequence[Template]] = field(default_factory=dict)
     say: Mapping[str, Template] = field(default_factory=dict)
     done: Mapping[str, Template] = field(default_factory=dict)
     attributes: Mapping[str, Template] = field(default_factory=dict)
@@ -130,6 +132,12 @@ def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None 
         return found
 
     said = named("actions", actions, "action", lambda name, it: _said(it, actions[name], known))
+    asked = named(
+        "predicates",
+        predicates,
+        "predicate",
+        lambda name, it: _in_turn(it, predicates[name], known),
+    )
     of_objects, notices = {}, []
     for name, place, value in _entries(sections.get("objects")):
         if name in task.objects:
@@ -139,12 +147,8 @@ def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None 
             near = suggestion(name, task.objects)
             notices.append(f"{place.file}:{place.line}: this problem has no object {name!r}{near}")
     return Wordings(
-        predicates=named(
-            "predicates",
-            predicates,
-            "predicate",
-            lambda name, it: _template(it, predicates[name], known),
-        ),
+        predicates={name: each[0] for name, each in asked.items()},
+        others={name: each[1:] for name, each in asked.items() if len(each) > 1},
         say={name: parts["say"] for name, parts in said.items() if "say" in parts},
         done={name: parts["done"] for name, parts in said.items() if "done" in parts},
         attributes=attributes,
@@ -189,6 +193,27 @@ def _items(place: Place | None) -> list[Place]:
 def _check_name(name: str, key: Place, known: Collection[str], kind: str) -> None:
     if name not in known:
         raise key.wrong(f"the domain has no {kind} {name!r}{suggestion(name, known)}")
+
+
+def _in_turn(place: Place, parameters: Sequence[str], known: Sequence[str]) -> list[Template]:
+    """The wordings of a question: a text, or a list of them, the first one first."""
+    found: dict[str, Template] = {}
+    for item in place.items() if place.is_list() else [place]:
+        template = _template(item, parameters, known)
+        first = next(iter(found.values()), template)
+        if str(template) in found:
+            raise item.wrong("this wording is given twice; leave it out once")
+        said, names = ({each.parameter for each in t.placeholders()} for t in (template, first))
+        if said != names:
+            which = ", ".join(f"{{{name}}}" for name in sorted(said ^ names))
+            raise item.wrong(
+                f"every wording of a question names the same things, and only one of this and "
+                f"the first names {which}"
+            )
+        found[str(template)] = template
+    if not found:
+        raise place.wrong("expected a question, or a list of its wordings, found an empty list")
+    return list(found.values())
 
 
 def _template(place: Place, parameters: Sequence[str], attributes: Sequence[str]) -> Template:

@@ -13,14 +13,15 @@ from tpvqa.pddl import Action, Atom, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions.question import FactQuestion, Question
 from tpvqa.vlm.oracle import Oracle
+from tpvqa.vlm.other_words import SHARED, split_words, words_drawn_for
 from tpvqa.vlm.protocol import Remembering, TruthSource
 
 SAME = "same"
 """The word that has the same questions misread in every trial of a seed."""
 FORMS = (
-    "flawed:misread:SHARE[:ACCURACY[:same[:N]]], flawed:biased:PREDICATE:YES_IF_TRUE:YES_IF_FALSE"
-    "[:ACCURACY], flawed:late[:ACCURACY] or flawed:useless[:CLAIMED], with numbers between 0 and "
-    "1, and N a whole one"
+    "flawed:misread:SHARE[:ACCURACY[:same[:N]]][:words:SHARE], flawed:biased:PREDICATE:YES_IF_TRUE:"
+    "YES_IF_FALSE[:ACCURACY], flawed:late[:ACCURACY] or flawed:useless[:CLAIMED], with "
+    "numbers between 0 and 1, and N a whole one"
 )
 
 
@@ -33,12 +34,14 @@ class Trial:
         task: Names the predicates.
         seed: The user's seed.
         episode: Number of the episode under this seed.
+        words: How often what lasts in another wording is what lasts in the first one.
     """
 
     truth: TruthSource
     task: Task
     seed: int
     episode: int
+    words: float = SHARED
 
 
 class Flawed(Oracle, PlainArguments):
@@ -55,7 +58,13 @@ class Flawed(Oracle, PlainArguments):
         self, trial: Trial, spec: str, *, accuracy: float, truth: TruthSource | None = None
     ) -> None:
         answers_from = trial.truth if truth is None else truth
-        super().__init__(answers_from, accuracy=accuracy, seed=trial.seed, episode=trial.episode)
+        super().__init__(
+            answers_from,
+            accuracy=accuracy,
+            words=trial.words,
+            seed=trial.seed,
+            episode=trial.episode,
+        )
         self._spec = spec
 
     @classmethod
@@ -68,10 +77,12 @@ class Flawed(Oracle, PlainArguments):
             PluginError: There is no such kind, or it is told something else.
             UnknownNameError: The task has no such predicate.
         """
-        kind, *words = arguments.split(":")
+        said, share = split_words(arguments)
+        kind, *words = said.split(":")
         if kind not in _KINDS:
             raise UnknownNameError("flaw", kind, _KINDS, remedy=f"Write {FORMS}.")
-        return _KINDS[kind](Trial(truth, task, seed, episode), f"flawed:{arguments}", words)
+        trial = Trial(truth, task, seed, episode, share)
+        return _KINDS[kind](trial, f"flawed:{arguments}", words)
 
     @property
     def name(self) -> str:
@@ -82,7 +93,8 @@ class Flawed(Oracle, PlainArguments):
 class Misread(Flawed):
     """A share of the questions is always answered wrongly, whatever is seen.
 
-    Which is drawn by the question's words: in other words the same fact may be read rightly.
+    Which is drawn by the question's words: in other words the same fact may be read rightly, where
+    that is not drawn as for the first wording.
 
     Args:
         trial: Which.
@@ -110,8 +122,11 @@ class Misread(Flawed):
 
     def misreads(self, question: Question) -> bool:
         """Whether a question is one of those that it always answers wrongly."""
-        key = ("misread", self._draw, question.text)
-        return chance(self._seed, 0, *key).random() < self.share
+
+        def drawn(purpose: str, words: str) -> float:
+            return chance(self._seed, 0, purpose, self._draw, words).random()
+
+        return drawn("misread", words_drawn_for(question, self.words, drawn)) < self.share
 
     def right_of(self, question: Question, *, truth: bool) -> float:
         """Never, where the question is misread."""

@@ -10,6 +10,7 @@ from tpvqa.observation import Observation
 from tpvqa.questions.question import ActionQuestion, FactQuestion, Question, Way
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import NoiseModel
+from tpvqa.vlm.other_words import SHARED, split_words, with_words, words_drawn_for
 from tpvqa.vlm.out_of_sight import out_of_sight
 from tpvqa.vlm.protocol import TruthSource
 from tpvqa.vlm.scenes import scene_of, tells_scenes
@@ -47,6 +48,8 @@ class Oracle(NoiseModel):
         accuracy: Probability that a fresh answer is right.
         rho: Probability that a further look at an unchanged fact repeats the last answer.
         persistent: The lasting share: probability that an answer is the scene's own draw.
+        words: How often the scene's own draw for another wording of a question is that for the
+            first one; otherwise it has its own.
         seed: The user's seed.
         episode: Number of the episode under this seed.
 
@@ -62,15 +65,16 @@ class Oracle(NoiseModel):
         accuracy: float = 1.0,
         rho: float = 0.0,
         persistent: float = 0.0,
+        words: float = SHARED,
         seed: int = 0,
         episode: int = 0,
     ) -> None:
-        shares = {"accuracy": accuracy, "rho": rho, "lasting share": persistent}
+        shares = {"accuracy": accuracy, "rho": rho, "lasting share": persistent, "words": words}
         for what, value in shares.items():
             if not 0 <= value <= 1:
                 raise PluginError(f"The oracle's {what} is {value}; it must lie between 0 and 1.")
         self.accuracy, self.rho = float(accuracy), float(rho)
-        self.persistent = float(persistent)
+        self.persistent, self.words = float(persistent), float(words)
         if persistent:
             fresh = f"oracle:{accuracy:g}:{rho:g}"
             tells_scenes(truth, f"{fresh}:{persistent:g}", fresh)
@@ -81,32 +85,35 @@ class Oracle(NoiseModel):
     def from_spec(
         cls, arguments: str, *, truth: TruthSource, seed: int = 0, episode: int = 0
     ) -> "Oracle":
-        """Make it from `ACCURACY[:RHO[:PERSISTENT]]`; without arguments it never errs.
+        """Make it from `ACCURACY[:RHO[:PERSISTENT]][:words:SHARE]`; without it never errs.
 
         Raises:
             PluginError: The arguments are not one to three probabilities.
         """
-        words = arguments.split(":") if arguments else []
+        said, words = split_words(arguments)
         try:
-            numbers = [float(word) for word in words]
+            numbers = [float(word) for word in said.split(":")] if said else []
         except ValueError:
             numbers = [-1.0]
         if len(numbers) > 3 or not all(0 <= number <= 1 for number in numbers):
             raise PluginError(
                 f"'oracle:{arguments}' is not understood. Write oracle, oracle:ACCURACY, "
                 "oracle:ACCURACY:RHO or oracle:ACCURACY:RHO:PERSISTENT with numbers between 0 "
-                "and 1, e.g. oracle:0.8:0.5, or oracle:0.8:0:0.74 for errors that last."
+                "and 1, e.g. oracle:0.8:0.5, or oracle:0.8:0:0.74 for errors that last; "
+                "behind it words:0.5, where half of what lasts is the same in all wordings."
             )
         given = dict(zip(("accuracy", "rho", "persistent"), numbers, strict=False))
-        return cls(truth, **given, seed=seed, episode=episode)
+        return cls(truth, **given, words=words, seed=seed, episode=episode)
 
     @property
     def name(self) -> str:
         """The specification it can be made from again, e.g. "oracle:0.8:0.5"."""
         name = f"oracle:{self.accuracy:g}"
         if self.persistent:
-            return f"{name}:{self.rho:g}:{self.persistent:g}"
-        return f"{name}:{self.rho:g}" if self.rho else name
+            name = f"{name}:{self.rho:g}:{self.persistent:g}"
+        elif self.rho:
+            name = f"{name}:{self.rho:g}"
+        return with_words(name, self.words)
 
     def ask(self, observation: Observation, questions: Sequence[Question]) -> list[Answer]:
         """Answer every question, in order; only look and scene matter, never the pictures."""
@@ -181,7 +188,10 @@ class Oracle(NoiseModel):
         drawn = self._drawn("answer", *key)
         if self.persistent and self._drawn("answer lasts", *key) < self.persistent:
             scene = scene_of(observation, self._truth)
-            drawn = self._drawn("answer of the scene", text, truth, scene)
+            words = words_drawn_for(
+                question, self.words, lambda *words: self._drawn(*words, truth, scene)
+            )
+            drawn = self._drawn("answer of the scene", words, truth, scene)
         yes = truth if drawn < self.right_of(question, truth=truth) else not truth
         if self.rho and last is not None and last.truth == truth:
             yes = last.yes if self._drawn("answer again", *key) < self.rho else yes

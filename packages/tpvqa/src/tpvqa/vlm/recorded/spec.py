@@ -5,6 +5,7 @@ from enum import StrEnum
 
 from tpvqa.errors import PluginError
 from tpvqa.pddl import Task
+from tpvqa.vlm.other_words import SHARED, split_words, with_words
 from tpvqa.vlm.recorded.answers import Recordings, models, recordings
 
 
@@ -23,20 +24,23 @@ class RecordedSpec:
         model: Its name.
         half: Half of the problems, 0 or 1; None for all.
         errors: How they hang together; None where that is not said.
+        words: How often what lasts in another wording is what lasts in the first one.
     """
 
     model: str
     half: int | None
     errors: Errors | None
+    words: float = SHARED
 
     @classmethod
     def parse(cls, arguments: str) -> "RecordedSpec":
-        """Read MODEL[:HALF][:fresh] or MODEL[:HALF][:lasting].
+        """Read MODEL[:HALF][:fresh] or MODEL[:HALF][:lasting], perhaps with :words:SHARE.
 
         Raises:
             PluginError: It is something else.
         """
-        model, *words = arguments.split(":")
+        said, share = split_words(arguments)
+        model, *words = said.split(":")
         errors = Errors(words.pop()) if words and words[-1] in (*Errors,) else None
         half = words.pop() if words and words[-1] in ("0", "1") else None
         if not model or words:
@@ -45,7 +49,7 @@ class RecordedSpec:
                 "recorded:MODEL:HALF (0 or 1) for half of its problems, either with :fresh behind "
                 f"it for errors that do not last; with a model of {', '.join(models())}."
             )
-        return cls(model, None if half is None else int(half), errors)
+        return cls(model, None if half is None else int(half), errors, share)
 
     def told(self, task: Task) -> Recordings:
         """The answers that it stands for in the environment of a task.
@@ -66,4 +70,5 @@ class RecordedSpec:
 
     def __str__(self) -> str:
         half = "" if self.half is None else f":{self.half}"
-        return f"{self.model}{half}" + (f":{self.errors}" if self.errors else "")
+        said = f"{self.model}{half}" + (f":{self.errors}" if self.errors else "")
+        return with_words(said, self.words)

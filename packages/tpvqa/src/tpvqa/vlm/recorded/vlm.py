@@ -12,6 +12,7 @@ from tpvqa.plugins import PlainArguments
 from tpvqa.questions.question import FactQuestion, Question, Way
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import FactsOnly, NoiseModel, SaidInFull
+from tpvqa.vlm.other_words import SHARED, words_drawn_for
 from tpvqa.vlm.out_of_sight import out_of_sight
 from tpvqa.vlm.protocol import TruthSource
 from tpvqa.vlm.recorded.answers import Recording, Recordings
@@ -58,6 +59,7 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments, SaidInFull):
         told: The recorded answers.
         spec: What it was made from.
         lasts: What share of them lasts; None for answers that are drawn anew at every look.
+        words: How often what lasts in another wording is what lasts in the first one.
         seed: The user's seed.
         episode: Number of the episode under this seed.
 
@@ -72,13 +74,15 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments, SaidInFull):
         *,
         spec: str,
         lasts: Lasting | None = None,
+        words: float = SHARED,
         seed: int = 0,
         episode: int = 0,
     ) -> None:
         self._truth, self._told, self._spec = truth, told, spec
         self._lasts, self._seed, self._episode = lasts, seed, episode
+        self._words = words
         if lasts is not None:
-            tells_scenes(truth, spec, f"{spec.removesuffix(f':{Errors.LASTING}')}:{Errors.FRESH}")
+            tells_scenes(truth, spec, spec.replace(f":{Errors.LASTING}", f":{Errors.FRESH}"))
 
     @classmethod
     def from_spec(
@@ -102,6 +106,7 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments, SaidInFull):
             told,
             spec=f"recorded:{spec}",
             lasts=None if fresh else lasting(told.model, told.environment),
+            words=spec.words,
             seed=seed,
             episode=episode,
         )
@@ -136,7 +141,7 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments, SaidInFull):
         if not choice:
             return _silent(question, "No answers to questions of this kind were recorded.")
         shares = list(accumulate(recording.count for recording in choice))
-        told = choice[bisect(shares, self._place(observation, question.text, shares[-1], truth))]
+        told = choice[bisect(shares, self._place(observation, question, shares[-1], truth))]
         return Answer(
             question,
             Reply.YES if told.yes else Reply.NO,
@@ -145,17 +150,28 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments, SaidInFull):
             text="yes" if told.yes else "no",
         )
 
-    def _place(self, observation: Observation, text: str, count: int, truth: bool) -> int:
+    def _place(
+        self, observation: Observation, question: FactQuestion, count: int, truth: bool
+    ) -> int:
         """Which of so many recorded answers it is."""
-        key, lasts = (text, truth), self._lasts
+        key, lasts = (question.text, truth), self._lasts
         if lasts is None or self._drawn("lasts", *key, observation.look) >= lasts.scene:
             draw = self._chance("recorded answer", *key, observation.look)
             return draw.randrange(count)
         # In one scale for all kinds: asked otherwise, the same words are answered alike.
         scene = scene_of(observation, self._truth)
         if self._drawn("lasts for the trial", *key, scene) < lasts.trial:
-            return int(self._drawn("of the trial", *key) * count)
-        return int(self._drawn("of the scene", *key, scene) * count)
+            return int(self._lasting("of the trial", question, truth) * count)
+        return int(self._lasting("of the scene", question, truth, scene) * count)
+
+    def _lasting(self, purpose: str, question: FactQuestion, *where: object) -> float:
+        """What is drawn once, for a question's words or for the first ones in which it is asked."""
+        words = words_drawn_for(
+            question,
+            self._words,
+            lambda *other: self._drawn(f"{purpose}, {other[0]}", other[1], *where),
+        )
+        return self._drawn(purpose, words, *where)
 
     def _drawn(self, purpose: str, *key: object) -> float:
         return self._chance(f"recorded answer {purpose}", *key).random()

@@ -1,0 +1,19 @@
+"""What answers weigh."""
+
+from collections.abc import Iterable
+from typing import Protocol
+
+from tpvqa.pddl import Atom
+
+
+class Weighed(Protocol):
+    """What answers weigh: a belief, or what was believed before anything was done."""
+
+    def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
+        """The probability of a fact, or of it or any fact alike."""
+
+    def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
+        """Weigh by an answer about a fact (or any of several alike)."""
+
+    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
+        """Take in that a fact may have changed without the action model knowing."""
