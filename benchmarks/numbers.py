@@ -1,6 +1,6 @@
 """How often the rover of examples/numbers gets there: monitors and answers side by side.
 
-    python -m benchmarks.numbers [SEEDS]
+python -m benchmarks.numbers [SEEDS]
 """
 
 import sys
