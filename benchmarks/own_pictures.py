@@ -1,11 +1,11 @@
 """What the embedded network learns of others' domains: `python -m benchmarks.own_pictures FOLDER`.
 
-Pictures of a workshop are made in FOLDER (once; 1,624 of them, some five minutes of a core, and as
-long again for their features). Of 512 pictures 8, 16, … are drawn, five times each, taught as
-`tpvqa train embedded` does, and asked about 300 others: once in the same workshop, with other
-cameras, light and clutter, and once in workshops that were never seen. With `--photographs` (a
-`labels.csv` as `benchmarks/real_photographs.py` reads it) its part train teaches and its part test
-measures, beside the network as it ships.
+Pictures of a workshop are made in FOLDER (once: 1,624 of them, with what the network makes of them
+some ten minutes of a core; the rest takes five). Of 512 pictures 8, 16, … are drawn, five times
+each, taught as `tpvqa train embedded` does, and asked about 300 others: once in the same workshop,
+with other cameras, light and clutter, and once in workshops that were never seen. With
+`--photographs` (a `labels.csv` as `benchmarks/real_photographs.py` reads it) its part train teaches
+and its part test measures, beside the network as it ships.
 """
 
 import argparse
