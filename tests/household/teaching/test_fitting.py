@@ -52,7 +52,7 @@ def test_heads_learn_and_are_as_sure_as_they_are_right() -> None:
     labels = (truth + rng.logistic(size=truth.shape) > 0).astype(np.int64)
     labels[rng.random(labels.shape) < 0.1] = -1
     learnt, new = slice(0, 300), slice(300, None)
-    fit = fit_heads(features[None, learnt], labels[learnt], folds_of(np.arange(300).astype(str), 0))
+    fit = fit_heads(features[None, learnt], labels[learnt], np.arange(300).astype(str))
     odds = features[new] @ fit.weights.T + fit.bias
     for column in range(2):
         known = labels[new][:, column] >= 0
@@ -69,7 +69,7 @@ def test_labels_that_hang_on_nothing_are_not_believed() -> None:
     rng = np.random.default_rng(4)
     features = rng.normal(size=(60, 2 * WIDE)).astype(np.float32)
     labels = rng.integers(0, 2, (60, 3))
-    fit = fit_heads(features[None], labels, folds_of(np.arange(60).astype(str), 0))
+    fit = fit_heads(features[None], labels, np.arange(60).astype(str))
     new = rng.normal(size=(100, 2 * WIDE)).astype(np.float32) @ fit.weights.T + fit.bias
     assert np.abs(new).mean() < 0.5
 
@@ -93,7 +93,7 @@ def test_views_of_a_picture_are_not_told_apart_from_it_when_it_is_held_back() ->
     rng = np.random.default_rng(5)
     seen = rng.normal(size=(60, 2 * WIDE)).astype(np.float32)
     labels = rng.integers(0, 2, (60, 1))
-    fit = fit_heads(np.stack([seen, seen]), labels, folds_of(np.arange(60).astype(str), 0))
+    fit = fit_heads(np.stack([seen, seen]), labels, np.arange(60).astype(str))
     right = (fit.held_back[:, 0] > 0) == (labels[:, 0] == 1)
     assert 0.25 < right.mean() < 0.75
 
@@ -125,3 +125,20 @@ def test_a_table_of_what_is_taught_holds_each_answer_once() -> None:
     assert table.unlearnt == {"is there lamp": "taught with 8 yes and 0 no; it needs 3 of each"}
     with pytest.raises(TrainingError, match="no words"):
         lessons_of([one(1, "The?!", truth=True)])
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 9), st.sampled_from([1, 0, -1])), min_size=1, max_size=40),
+    st.integers(0, 3),
+)
+def test_both_answers_are_in_several_folds_where_several_groups_have_them(
+    rows: list[tuple[int, int]], seed: int
+) -> None:
+    groups, labels = np.array([str(g) for g, _ in rows]), np.array([label for _, label in rows])
+    folds = folds_of(groups, seed, labels)
+    pairs = set(zip(groups.tolist(), folds.tolist(), strict=True))
+    assert len(pairs) == len(set(groups.tolist()))
+    with_yes = {g for g, label in rows if label == 1}
+    yes_alone = with_yes - {g for g, label in rows if label == 0}
+    spread = {fold for g, fold in pairs if int(g) in yes_alone}
+    assert len(spread) == min(FOLDS, len(yes_alone))

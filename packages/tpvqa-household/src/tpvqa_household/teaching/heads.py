@@ -43,11 +43,26 @@ class Fit:
     strengths: Array
 
 
-def folds_of(groups: NDArray[np.str_], seed: int) -> NDArray[np.int64]:
-    """A number below `FOLDS` for each picture, the same for a group."""
+def folds_of(
+    groups: NDArray[np.str_], seed: int, labels: NDArray[np.int64] | None = None
+) -> NDArray[np.int64]:
+    """A number below `FOLDS` for each picture, the same for a group.
+
+    Args:
+        groups: Of n pictures.
+        seed: Decides which groups come together.
+        labels: n: 1, 0, -1 for not known. With them groups with either answer are dealt out
+            evenly: few groups with *yes* are not all in one fold.
+    """
     names, of = np.unique(groups, return_inverse=True)
     order = chance_array(seed, 0, "folds of teaching").permutation(len(names))
-    return np.asarray(order[of] % FOLDS, np.int64)
+    if labels is not None:
+        yes, no = (np.bincount(of, labels == value, len(names)) > 0 for value in (1, 0))
+        rank = np.select([yes & ~no, yes, no], [0, 1, 2], 3)
+        order = order[np.argsort(rank[order], kind="stable")]
+    place = np.empty(len(names), np.int64)
+    place[order] = np.arange(len(names)) % FOLDS
+    return np.asarray(place[of], np.int64)
 
 
 class _Space:
@@ -76,8 +91,9 @@ class _Space:
 def fit_heads(
     features: Floats,
     labels: NDArray[np.int64],
-    folds: NDArray[np.int64],
+    groups: NDArray[np.str_],
     *,
+    seed: int = 0,
     done: Callable[[], None] = lambda: None,
 ) -> Fit:
     """Fit a head for each column of the labels.
@@ -85,7 +101,8 @@ def fit_heads(
     Args:
         features: Views × n × features; of the first view is what is held back.
         labels: n × heads: 1 for yes, 0 for no, -1 for not known. Each column has both.
-        folds: Of each picture.
+        groups: Of each picture; what is held back in turn are whole groups.
+        seed: Decides which.
         done: Called after each head.
     """
     views, count, wide = features.shape
@@ -93,6 +110,7 @@ def fit_heads(
     places = space.places.reshape(views, count, -1)
     tried = []
     for column in range(labels.shape[1]):
+        folds = folds_of(groups, seed, labels[:, column])
         tried.append(_held_back(places, labels[:, column], folds))
         done()
     every = np.stack(tried, 2)  # strengths × n × heads

@@ -95,15 +95,15 @@ class EmbeddedTrainer:
 
         groups = lessons.groups
         alone = len(set(groups.tolist())) == 1
-        folds = folds_of(np.arange(len(groups)).astype(str) if alone else groups, settings.seed)
-        fit = fit_heads(features, lessons.labels, folds, done=one)
+        held = np.arange(len(groups)).astype(str) if alone else groups
+        fit = fit_heads(features, lessons.labels, held, seed=settings.seed, done=one)
         areas = _areas(fit, lessons)
         self.notices = [*([_ONE_GROUP] if alone else []), *_notices(lessons, areas)]
         self._taught = Taught(
             tuple(lessons.questions),
             fit.weights,
             fit.bias,
-            known_pictures(kinds, folds),
+            known_pictures(kinds, folds_of(held, settings.seed)),
             lessons.unlearnt,
             str(network.description["sha256"][FROZEN]),
             {
