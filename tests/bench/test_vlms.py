@@ -267,6 +267,24 @@ def test_wordings_are_compared_in_pairs(
     assert lines["lit", "questions"]["verdict"]
 
 
+def test_wordings_of_one_file_are_compared_too(
+    tpvqa: Run,  # noqa: F811
+    lamps: tuple[object, ...],
+    tmp_path: Path,
+) -> None:
+    both = tmp_path / "both.yaml"
+    first = next(line for line in QUESTIONS.read_text().splitlines() if line.startswith("  lit:"))
+    said = first.partition(": ")[2]
+    both.write_text(
+        QUESTIONS.read_text().replace(said, f"[{said}, {said.replace('lit', 'shining')}]", 1)
+    )
+    code, out, _ = tpvqa("vlm", "compare", "bright", *lamps, "--json", "--questions", both)
+    assert code == 0
+    lines = {(each["predicate"], each["wording"]): each for each in json.loads(out)["wordings"]}
+    assert lines["lit", "both, wording 2"]["difference"]["accuracy"]["value"] == -1
+    assert lines["lit", "both"]["score"]["accuracy"]["value"] == 1
+
+
 def test_episodes_are_asked_again(tpvqa: Run) -> None:  # noqa: F811
     tpvqa("run", "eat_apple", "--seed", 7, "--out", "one", "--vlm", "embedded")
     told = [

@@ -124,6 +124,9 @@ FAULTS = {
     "two predicates in the same words": (
         "questions.yaml", "Is the {p} flat?", "Is the {p} in the gripper?", "same-question",
         Severity.WARNING, "pressed"),
+    "another wording in the words of another fact": (
+        "questions.yaml", '"Is the {p} flat?"', '["Is it {p}?", "Is the {p} in the gripper?"]',
+        "same-question", Severity.WARNING, "pressed"),
     "a question that leaves out an object": (
         "questions.yaml", "Is the {p} in the {t}?", "Is the {p} in a tray?", "same-question",
         Severity.NOTE, "lies"),

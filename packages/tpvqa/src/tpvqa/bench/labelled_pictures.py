@@ -53,20 +53,24 @@ def ask_pictures(
 
 
 def questions_about(
-    pictures: PictureSet[P], books: Sequence[QuestionBook] | None = None
+    pictures: PictureSet[P],
+    books: Sequence[QuestionBook] | None = None,
+    *,
+    in_all_words: bool = False,
 ) -> list[tuple[FactQuestion, Task]]:
     """Every question about the facts of a set, once, each with a task that it is of.
 
     Args:
         pictures: The set.
         books: The questions; by default those of the shipped tasks of the set's domain.
+        in_all_words: Whether to ask in every wording that a file gives, and not in the first alone.
 
     Raises:
         CalibrationError: The set knows no fact that there is a question about.
     """
     domain = pictures.manifest.domain
     books = shipped_books(domain) if books is None else books
-    found = list(_questions(pictures, books))
+    found = list(_questions(pictures, books, in_all_words=in_all_words))
     if not found:
         names = ", ".join(book.task.name for book in books) or f"a shipped task of {domain!r}"
         raise CalibrationError(
@@ -87,7 +91,7 @@ def shipped_books(domain: str, questions: Path | None = None) -> list[QuestionBo
 
 
 def _questions(
-    pictures: PictureSet[P], books: Sequence[QuestionBook]
+    pictures: PictureSet[P], books: Sequence[QuestionBook], *, in_all_words: bool
 ) -> Iterator[tuple[FactQuestion, Task]]:
     """Every question about the set's facts, once."""
     facts = [Atom.parse(text) for text in pictures.facts]
@@ -98,10 +102,11 @@ def _questions(
             known = atom.predicate in task.predicates and set(atom.arguments) <= set(task.objects)
             if not known or not book.asked(Literal(atom)):
                 continue
-            text = book.fact(Literal(atom)).text
-            if text not in texts:
-                texts.add(text)
-                yield book.fact(Literal(atom)), task
+            first = book.fact(Literal(atom))
+            for each in (first, *(book.in_other_words(first) if in_all_words else ())):
+                if each.text not in texts:
+                    texts.add(each.text)
+                    yield each, task
 
 
 def shows(picture: P, question: FactQuestion) -> bool:

@@ -20,8 +20,9 @@ def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAns
     known: dict[int, Said] = {}
     for episode in episodes:
         told = read_labels(episode)
+        of_fact = {_fact(each): told[each.key] for each in episode.askings if each.key in told}
         for asking in episode.askings:
-            said = told.get(asking.key) or said_in_trial(asking)
+            said = told.get(asking.key) or said_in_trial(asking) or of_fact.get(_fact(asking))
             if said is not None:
                 known[id(asking)] = said
     order = Order([asking for episode in episodes for asking in episode.askings])
@@ -34,6 +35,11 @@ def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAns
             labels += 1
             rows += rows_of(asking, truth=said == "yes", weight=weights[id(asking)])
     return rows, labels
+
+
+def _fact(asking: Asking) -> tuple[int, object]:
+    """The same for all wordings in which a fact is asked about, as one label holds for all."""
+    return asking.stretch, asking.atoms or asking.text
 
 
 def rows_of(

@@ -6,7 +6,7 @@ from functools import partial
 
 from tpvqa.bench.labelled_pictures import look_at, questions_about, shows, yes_is_right
 from tpvqa.observation import Observation
-from tpvqa.questions import Question, QuestionBook
+from tpvqa.questions import FactQuestion, Question, QuestionBook
 from tpvqa.worlds.pictures import PictureSet
 from tpvqa.worlds.pictures.manifest import P
 
@@ -47,6 +47,17 @@ class LabelledLook:
     asked: tuple[Labelled, ...]
 
 
+def named(wording: str, question: Question) -> str:
+    """What the words of a question are called, where a file gives it in several wordings.
+
+    Args:
+        wording: What those of the file are called.
+        question: It.
+    """
+    number = question.wording if isinstance(question, FactQuestion) else 0
+    return f"{wording}, wording {number + 1}" if number else wording
+
+
 def looks_at_pictures(
     pictures: PictureSet[P],
     books: Mapping[str, Sequence[QuestionBook] | None],
@@ -66,14 +77,16 @@ def looks_at_pictures(
     Raises:
         CalibrationError: There is no question about a fact of the set.
     """
-    asked = {name: questions_about(pictures, book) for name, book in books.items()}
+    asked = {
+        name: questions_about(pictures, book, in_all_words=True) for name, book in books.items()
+    }
 
     def of(picture: P) -> Iterator[Labelled]:
         for name, questions in asked.items():
             for each, task in questions:
                 if hidden or shows(picture, each):
                     truth = yes_is_right(each, picture, task)
-                    yield Labelled(each, truth, each.atom.pddl(), name, picture.scene)
+                    yield Labelled(each, truth, each.atom.pddl(), named(name, each), picture.scene)
 
     found = [
         LabelledLook(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.labelled_episodes import label_episodes
-from tpvqa.bench.vlms.looks import Labelled, LabelledLook
+from tpvqa.bench.vlms.looks import Labelled, LabelledLook, named
 from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
@@ -43,7 +43,8 @@ class _Episode:
         if record.way in OF_FACTS and record.atom is not None:
             alike = tuple(map(Atom.parse, record.alike or ()))
             atom = Atom.parse(record.atom)
-            return FactQuestion(record.text, record.way, atom, record.expected, alike)  # type: ignore[arg-type]
+            wording = record.wording or 0
+            return FactQuestion(record.text, record.way, atom, record.expected, alike, wording)  # type: ignore[arg-type]
         if self._actions is None:
             self._actions = WrittenActions(self.task)
         assert record.action is not None
@@ -128,12 +129,13 @@ def _worded(
     scene = "/".join((row.trial, row.part, row.scene))
     if not books:
         what = question.atom if isinstance(question, FactQuestion) else question.action
-        yield Labelled(question, row.truth, what.pddl(), AS_ASKED, scene)
+        yield Labelled(question, row.truth, what.pddl(), named(AS_ASKED, question), scene)
     elif isinstance(question, FactQuestion):
         for name, book in books.items():
             literal = Literal(question.atom, question.expected)
             said = book.fact(literal, way=question.way)
-            yield Labelled(said, row.truth, question.atom.pddl(), name, scene)
+            for each in (said, *book.in_other_words(said)):
+                yield Labelled(each, row.truth, question.atom.pddl(), named(name, each), scene)
 
 
 def _observed(seen: Observed, folder: Path, look: int) -> Observation:
