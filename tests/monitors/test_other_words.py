@@ -20,7 +20,9 @@ SEVERAL = '  near: ["Is there a {x} in the image?", "Can a {x} be seen?"]\n'
 def asked(folder: Path, near: str, vlm: str, episode: int) -> list[tuple[str, int | None]]:
     """Every question of a trial, with which wording it is in."""
     path = folder / "questions.yaml"
-    path.write_text(find_task("clean_dishes").questions.read_text().replace(ONE, near))
+    given = find_task("clean_dishes").questions
+    assert given is not None
+    path.write_text(given.read_text().replace(ONE, near))
     writer = MemoryWriter()
     config = TrialConfig(
         task="clean_dishes", world="symbolic", vlm=vlm, monitor="belief", seed=5, episode=episode
