@@ -83,7 +83,7 @@ $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/py
 	@echo "installing tpvqa and its robots into $(ROBOT_VENV) …"
 	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps robosuite==1.5.2
 	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check \
-	  -e packages/tpvqa -e 'packages/tpvqa-robots' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
+	  -e packages/tpvqa -e 'packages/tpvqa-robots[ros2]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
 	  'pytest>=8.2' 'hypothesis>=6.100'
 	@touch $@
 
