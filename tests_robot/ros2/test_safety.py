@@ -49,7 +49,7 @@ def test_a_camera_that_is_gone_or_frozen_ends_the_trial(
     text, _ = trial.communicate(timeout=60)
     assert trial.returncode == 1, text
     ended = json.loads((tmp_path / "episode" / "episode.jsonl").read_text().splitlines()[-1])
-    assert (ended["kind"], ended["ending"]) == ("ended", "world refused")
+    assert (ended["kind"], ended["because"]) == ("ended", "world refused")
     assert why in ended["message"]
     assert len(done(state)) == (0 if fault == "blind" else 2)  # begun and ended, once
 

@@ -64,7 +64,7 @@ class Eye:
         if stamp <= after:
             return (
                 None,
-                f"the last picture on {camera.image} was of before the last action ended",
+                f"the last picture on {camera.image} is of before the last action ended",
             )
         if not -0.5 <= now - stamp <= age:
             old = f"{now - stamp:.1f} s old, {age:g} s are allowed"
