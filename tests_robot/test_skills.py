@@ -1,6 +1,6 @@
 """What the robot's skills do to the table, and how they end."""
 
-from threading import Event
+from threading import Event, Thread
 
 import numpy as np
 import pytest
@@ -108,6 +108,34 @@ def test_a_cancelled_skill_leaves_the_arm_standing_within_a_fifth_of_a_second(
     assert machine.time - start <= ticks * TICK + 0.2 + 1e-6
     assert len(speeds) == round(0.2 / TICK)
     assert speeds[-1] < STANDING
+
+
+def test_another_thread_looks_meanwhile_and_stops_it(
+    world: ToysWorld, act: Act, never: Event
+) -> None:
+    robot, moving, done = world.robot, Event(), []
+
+    def perform() -> None:
+        done.append(
+            robot.perform(
+                act("pick_up cyan_container"),
+                deadline=60,
+                cancelled=never,
+                feedback=lambda said: moving.set() if said.startswith("grasping") else None,
+            )
+        )
+
+    thread = Thread(target=perform)
+    thread.start()
+    assert moving.wait(60)
+    looks = [robot.look("overhead") for _ in range(2)]
+    robot.stop()
+    thread.join(10)
+    assert looks[0].time < looks[1].time  # it went on while it was looked at
+    assert looks[1].frames["overhead"].pixels.std() > 10
+    assert done[0].report is Report.CANCELLED
+    assert robot.machine.speed < STANDING
+    assert set(robot.state()) >= {"gripper", "arm_elbow_joint"}
 
 
 def test_a_skill_ends_at_its_deadline(world: ToysWorld, act: Act) -> None:

@@ -47,5 +47,6 @@ def film(
     if gif:
         write_gif(out / "film.gif", recorder.pictures, rate=RATE)
     seconds = len(recorder.pictures) / RATE
-    print(f"{ended.ending}: {out / 'film.mp4'}, {seconds:.0f} s")
+    how = "goal reached" if ended.completed else f"goal not reached: {ended.ending}"
+    print(f"{how}: {out / 'film.mp4'}, {seconds:.0f} s")
     raise typer.Exit(0 if ended.completed else 1)

@@ -55,10 +55,14 @@ class Motions:
     Args:
         machine: The robot's drives.
         kinematics: Where its joints have to be.
+
+    Attributes:
+        halted: Set from another thread, it ends whatever motion there is, as a guard does.
     """
 
     def __init__(self, machine: Machine, kinematics: Kinematics):
         self._machine, self._kinematics = machine, kinematics
+        self.halted = Event()
 
     @property
     def grip(self) -> Grip:
@@ -119,7 +123,7 @@ class Motions:
 
     def _tick(self, guard: Guard | None) -> None:
         if guard is not None:
-            if guard.cancelled.is_set():
+            if guard.cancelled.is_set() or self.halted.is_set():
                 raise Stopped(Report.CANCELLED)
             if self._machine.time >= guard.until:
                 raise Stopped(Report.LATE)

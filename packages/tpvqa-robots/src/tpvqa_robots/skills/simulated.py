@@ -138,8 +138,8 @@ class SimulatedRobot:
         """
         if view not in CAMERAS:
             raise UnknownNameError("view", view, tuple(CAMERAS))
-        with self._lock:
-            shot, now = self._shot(view), self.machine.time
+        with self.machine.lock:
+            shot, now, facts = self._shot(view), self.machine.time, self.sensed()
         frame = Frame(
             id=view,
             view=view,
@@ -149,12 +149,14 @@ class SimulatedRobot:
             intrinsics=shot.intrinsics,
             depth=Depth.from_metres(shot.depth),
         )
-        return Observation(time=now, frames={view: frame}, facts=self.sensed())
+        return Observation(time=now, frames={view: frame}, facts=facts)
 
     def stop(self) -> None:
-        """Have the arm stand still."""
+        """Have the arm stand still; a skill that runs ends as cancelled."""
+        self._motions.halted.set()
         with self._lock:
             self._motions.stop()
+            self._motions.halted.clear()
 
     def state(self) -> Mapping[str, float]:
         """All joints, radians, and the gripper's opening, metres."""

@@ -1,5 +1,6 @@
 """The robot's motors: torques that follow a reference, a base that turns, two fingers, a clock."""
 
+import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -46,12 +47,16 @@ class Machine:
     Args:
         model: The compiled scene.
         on_tick: Told after every `TICK`: for a film.
+
+    Attributes:
+        lock: Held while time passes; whoever looks from another thread takes it.
     """
 
     def __init__(self, model: Any, on_tick: Callable[[], None] | None = None):
         self._mj = mj = load_mujoco()
         self.model, self.data = model, mj.MjData(model)
         self.on_tick = on_tick
+        self.lock = threading.RLock()
         self.slips: list[Slip] = []
         joints = [model.joint(name) for name in ARM_JOINTS]
         self.qpos = np.array([joint.qposadr[0] for joint in joints])
@@ -116,15 +121,17 @@ class Machine:
         self.closing = SHUT if shut else 0.0
 
     def refresh(self) -> None:
-        """Bring places and contacts up to the state: a step leaves those of before it."""
+        """Bring places, contacts and forces up to the state: a step leaves those of before it."""
         self._mj.mj_fwdPosition(self.model, self.data)
+        self._mj.mj_fwdVelocity(self.model, self.data)
 
     def tick(self) -> None:
         """Let one `TICK` pass."""
-        for _ in range(round(TICK / self.model.opt.timestep)):
-            self._drive()
-            self._mj.mj_step(self.model, self.data)
-        self.refresh()
+        with self.lock:
+            for _ in range(round(TICK / self.model.opt.timestep)):
+                self._drive()
+                self._mj.mj_step(self.model, self.data)
+            self.refresh()
         if self.on_tick is not None:
             self.on_tick()
 

@@ -41,7 +41,7 @@ _ROOM = """<mujoco model="toys">
 <option timestep="0.002" integrator="implicitfast" cone="elliptic" impratio="20"/>
 <visual>
   <headlight ambient=".38 .38 .40" diffuse=".22 .22 .22" specular="0 0 0"/>
-  <quality shadowsize="2048" offsamples="4"/><map znear="0.007" zfar="4"/>
+  <quality shadowsize="4096" offsamples="4"/><map znear="0.007" zfar="4"/>
   <global offwidth="1280" offheight="960"/>
 </visual>
 <asset>
