@@ -216,7 +216,8 @@ def test_the_server_itself_starts_nothing_on_an_old_picture(start: Start, state:
 
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.floats(0, 3)), max_size=30))
 def test_never_two_controllers_hold_a_robot(beats: list[tuple[str, float]]) -> None:
-    lease, now, held = Lease(), 0.0, {}
+    lease, now = Lease(), 0.0
+    held: dict[str, float] = {}
     for who, pause in beats:
         now += pause
         if lease.beat(who, now):

@@ -20,10 +20,11 @@ _BROUGHT: Mapping[str, Mapping[str, str]] = {
         ("clean_dishes", "collect_toys", "eat_apple", "serve_breakfast"), HOUSEHOLD
     ),
     "VLM": {"embedded": HOUSEHOLD, "paper-table": EXPERIMENTS, "recorded-scenes": EXPERIMENTS},
-    "world": {"images": HOUSEHOLD, "kitchen": HOUSEHOLD, "toys": ROBOTS},
+    "world": {"images": HOUSEHOLD, "kitchen": HOUSEHOLD, "toys": ROBOTS, "ros2": ROBOTS},
     "command": {
         "dataset": HOUSEHOLD,
         "film": ROBOTS,
+        "skill-server": ROBOTS,
         "bench paper": EXPERIMENTS,
         "bench belief": EXPERIMENTS,
         "bench viplan": EXPERIMENTS,
