@@ -6,8 +6,11 @@ BIN := $(VENV)/bin
 PROJECTS := packages/tpvqa/pyproject.toml packages/tpvqa-household/pyproject.toml experiments/pyproject.toml
 DEMO := episodes/demo
 SEED ?= 20
+ROBOT_VENV := .venv-robot
+ROBOT_BIN := $(ROBOT_VENV)/bin
+ROBOT_DEMO := episodes/robot
 
-.PHONY: demo test lint types tests gl install install-dev clean
+.PHONY: demo test lint types tests gl install install-dev clean robot robot-env test-robot
 
 demo: install
 	@rm -rf $(DEMO)
@@ -59,5 +62,30 @@ gl:
 	    echo "  sudo apt-get install libosmesa6"; exit 1; \
 	  fi; }
 
+# The robot has an environment of its own: MuJoCo is pinned there. Of robosuite only its models are
+# read, so it is installed without what its own Python needs.
+robot: robot-env
+	@rm -rf $(ROBOT_DEMO)
+	@$(ROBOT_BIN)/tpvqa film --seed 1 --out $(ROBOT_DEMO)
+	@$(ROBOT_BIN)/tpvqa report $(ROBOT_DEMO) > /dev/null
+	@echo "report:  $$PWD/$(ROBOT_DEMO)/report.html"
+	@echo "film:    $$PWD/$(ROBOT_DEMO)/film.mp4"
+
+robot-env: $(ROBOT_VENV)/.installed
+
+test-robot: robot-env gl
+	MUJOCO_GL=osmesa $(ROBOT_BIN)/python -m pytest tests_robot
+
+$(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "tpvqa needs Python 3.11 or newer as '$(PYTHON)'. Name one: make PYTHON=python3.12 …"; exit 1; }
+	@$(PYTHON) -m venv $(ROBOT_VENV)
+	@echo "installing tpvqa and its robots into $(ROBOT_VENV) …"
+	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps robosuite==1.5.2
+	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check \
+	  -e packages/tpvqa -e 'packages/tpvqa-robots[ros2]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
+	  'pytest>=8.2' 'hypothesis>=6.100'
+	@touch $@
+
 clean:
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(ROBOT_VENV) .mypy_cache .ruff_cache .pytest_cache

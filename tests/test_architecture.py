@@ -11,7 +11,12 @@ ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "packages" / "tpvqa" / "src" / "tpvqa"
 HOUSEHOLD = ROOT / "packages" / "tpvqa-household" / "src" / "tpvqa_household"
 PAGE = (ROOT / "docs" / "architecture.md").read_text()
-TABLES = {SOURCE: "Rooms of the core", HOUSEHOLD: "Rooms of the household"}
+ROBOTS = ROOT / "packages" / "tpvqa-robots" / "src" / "tpvqa_robots"
+TABLES = {
+    SOURCE: "Rooms of the core",
+    HOUSEHOLD: "Rooms of the household",
+    ROBOTS: "Rooms of the robots",
+}
 
 
 def rooms(source: Path) -> dict[str, set[str]]:
@@ -85,6 +90,7 @@ FILES = sorted(
 )
 OF_THE_CORE = [path for path in FILES if SOURCE in path.parents]
 OF_THE_HOUSEHOLD = [path for path in FILES if HOUSEHOLD in path.parents]
+OF_THE_ROBOTS = [path for path in FILES if ROBOTS in path.parents]
 
 
 def test_every_room_is_in_the_table() -> None:
@@ -103,7 +109,7 @@ def test_a_room_imports_only_what_the_table_allows(path: Path) -> None:
 def test_the_core_imports_nothing_of_the_other_distributions() -> None:
     for path in OF_THE_CORE:
         roots = {name.partition(".")[0] for name in imports(path.read_text())}
-        assert roots.isdisjoint({"tpvqa_household", "tpvqa_experiments"}), path
+        assert roots.isdisjoint({"tpvqa_household", "tpvqa_robots", "tpvqa_experiments"}), path
 
 
 def test_the_household_imports_what_is_public_and_nothing_of_the_experiments() -> None:
@@ -114,6 +120,15 @@ def test_the_household_imports_what_is_public_and_nothing_of_the_experiments() -
         assert "tpvqa_experiments" not in roots, path
         assert imported_rooms(path, "tpvqa") <= public(), path
         assert not re.search(r"from tpvqa\.[\w.]+ import [^\n]*\b_\w", text), path
+
+
+def test_the_robots_import_what_is_public_and_their_film_the_log() -> None:
+    for path in OF_THE_ROBOTS:
+        text = path.read_text()
+        allowed = public() | ({"episodes"} if room_of(path) == "film" else set())
+        assert imported_rooms(path, "tpvqa") <= allowed, path
+        roots = {name.partition(".")[0] for name in imports(text)}
+        assert roots.isdisjoint({"tpvqa_household", "tpvqa_experiments", "robosuite"}), path
 
 
 def test_nothing_imports_the_planners_gpl_code_into_the_packages_process() -> None:

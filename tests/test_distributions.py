@@ -14,7 +14,7 @@ import pytest
 
 import tpvqa
 from tests.lamps import make_set
-from tpvqa.distributions import EXPERIMENTS, HOUSEHOLD
+from tpvqa.distributions import EXPERIMENTS, HOUSEHOLD, ROBOTS
 from tpvqa_household import DISTRIBUTION
 
 ROOT = Path(__file__).parents[1]
@@ -22,9 +22,12 @@ TOYS = ROOT / "tests" / "fixtures" / "toys"
 FOLDERS = {
     "tpvqa": ROOT / "packages" / "tpvqa",
     "tpvqa-household": ROOT / "packages" / "tpvqa-household",
+    "tpvqa-robots": ROOT / "packages" / "tpvqa-robots",
     "tpvqa-experiments": ROOT / "experiments",
 }
-PUBLISHED = ("tpvqa", "tpvqa-household")
+PUBLISHED = ("tpvqa", "tpvqa-household", "tpvqa-robots")
+NEEDS = {"tpvqa": 0, "tpvqa-household": 1, "tpvqa-robots": 1, "tpvqa-experiments": 2}
+"""How many of the others each needs."""
 CORE_BYTES = 1_500_000
 IMPORT_SECONDS = 0.3
 """Of the processor, for `from tpvqa import Trial` in a fresh process, the best of five."""
@@ -43,8 +46,8 @@ def test_all_have_one_version_and_need_each_other_in_it() -> None:
         assert (found["name"], found["version"]) == (name, tpvqa.__version__)
         own = [need for need in found["dependencies"] if need.startswith("tpvqa")]
         assert all(need.endswith(f"=={tpvqa.__version__}") for need in own)
-        assert len(own) == list(FOLDERS).index(name)
-    assert tuple(FOLDERS)[1:] == (HOUSEHOLD, EXPERIMENTS)
+        assert len(own) == NEEDS[name]
+    assert tuple(FOLDERS)[1:] == (HOUSEHOLD, ROBOTS, EXPERIMENTS)
     assert DISTRIBUTION == HOUSEHOLD
 
 

@@ -6,11 +6,13 @@ Names only: nothing here is imported, and whatever is installed is found by its 
 from collections.abc import Mapping
 
 HOUSEHOLD = "tpvqa-household"
+ROBOTS = "tpvqa-robots"
 EXPERIMENTS = "tpvqa-experiments"
 
 _FOLDERS: Mapping[str, str] = {
     "tpvqa": "packages/tpvqa",
     HOUSEHOLD: "packages/tpvqa-household",
+    ROBOTS: "packages/tpvqa-robots",
     EXPERIMENTS: "experiments",
 }
 _BROUGHT: Mapping[str, Mapping[str, str]] = {
@@ -18,9 +20,11 @@ _BROUGHT: Mapping[str, Mapping[str, str]] = {
         ("clean_dishes", "collect_toys", "eat_apple", "serve_breakfast"), HOUSEHOLD
     ),
     "VLM": {"embedded": HOUSEHOLD, "paper-table": EXPERIMENTS, "recorded-scenes": EXPERIMENTS},
-    "world": dict.fromkeys(("images", "kitchen"), HOUSEHOLD),
+    "world": {"images": HOUSEHOLD, "kitchen": HOUSEHOLD, "toys": ROBOTS, "ros2": ROBOTS},
     "command": {
         "dataset": HOUSEHOLD,
+        "film": ROBOTS,
+        "skill-server": ROBOTS,
         "bench paper": EXPERIMENTS,
         "bench belief": EXPERIMENTS,
         "bench viplan": EXPERIMENTS,

@@ -1,0 +1,3 @@
+"""Robots for tpvqa: a simulated arm that picks, places and finds by physics."""
+
+DISTRIBUTION = "tpvqa-robots"

@@ -1,0 +1,1 @@
+"""A trial on the toys' table as a film."""

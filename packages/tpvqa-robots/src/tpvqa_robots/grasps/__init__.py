@@ -1,0 +1,1 @@
+"""Where to grasp, from what a depth camera sees."""

@@ -1,0 +1,85 @@
+"""What goes wrong on the toys' table besides what physics and cameras do by themselves."""
+
+from dataclasses import dataclass, fields
+from typing import Self
+
+from tpvqa.chance import chance
+from tpvqa.errors import PluginError
+
+APPENDIX = "appendix"
+
+
+@dataclass(frozen=True, slots=True)
+class Mishaps:
+    """How often something is made to go wrong.
+
+    Attributes:
+        slip: Probability that the fingers give way while the base turns with a container.
+        bad: Probability that a grasp is made 8 cm beside the thing.
+        noise: A factor on all errors of the cameras.
+        appendix: The trial of the paper's appendix instead: the first container slips, the first
+            grasp of the toy is bad, and nothing else.
+    """
+
+    slip: float = 0.0
+    bad: float = 0.0
+    noise: float = 1.0
+    appendix: bool = False
+
+    @classmethod
+    def read(cls, words: str) -> Self:
+        """Read `appendix` (also where nothing is said), or `slip=0.2:bad=0.1:noise=1`.
+
+        Raises:
+            PluginError: A word is not known, or no number from 0 to 1 (noise: 0 to 10) follows it.
+        """
+        if words in ("", APPENDIX):
+            return cls(appendix=True)
+        said: dict[str, float] = {}
+        known = [field.name for field in fields(cls) if field.name != "appendix"]
+        for word in words.split(":"):
+            name, _, number = word.partition("=")
+            try:
+                value = float(number)
+            except ValueError:
+                value = -1.0
+            if name not in known or not 0 <= value <= (10 if name == "noise" else 1):
+                raise PluginError(
+                    f"The world 'toys' does not understand {word[:40]!r}. Write toys, "
+                    "toys:appendix, or toys:slip=0.2:bad=0.1:noise=1: two probabilities and a "
+                    "factor on the cameras' errors from 0 to 10."
+                )
+            said[name] = value
+        return cls(said.get("slip", 0.0), said.get("bad", 0.0), said.get("noise", 1.0))
+
+
+class Drawn:
+    """The mishaps of one trial.
+
+    Args:
+        mishaps: How often.
+        seed: With `episode`, see `tpvqa.chance`.
+        episode: The same.
+    """
+
+    def __init__(self, mishaps: Mishaps, seed: int, episode: int):
+        self._mishaps, self._seed, self._episode = mishaps, seed, episode
+        self.turns = 0
+        self.grasps: dict[str, int] = {}
+
+    def slips(self) -> bool:
+        """Whether the grip slips in this turn with a container in the hand."""
+        self.turns += 1
+        if self._mishaps.appendix:
+            return self.turns == 1
+        return self._draw("slip", self.turns) < self._mishaps.slip
+
+    def is_bad(self, thing: str) -> bool:
+        """Whether this grasp of a thing goes wrong."""
+        count = self.grasps[thing] = self.grasps.get(thing, 0) + 1
+        if self._mishaps.appendix:
+            return thing.startswith("toy") and count == 1
+        return self._draw("bad grasp", thing, count) < self._mishaps.bad
+
+    def _draw(self, purpose: str, *key: object) -> float:
+        return chance(self._seed, self._episode, purpose, *key).random()

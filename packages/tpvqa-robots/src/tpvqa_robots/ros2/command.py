@@ -1,0 +1,66 @@
+"""`tpvqa skill-server`: offer a simulated robot on ROS 2 topics."""
+
+from typing import Annotated
+
+import typer
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the application."""
+    app.command("skill-server")(skill_server)
+
+
+def skill_server(
+    task: Annotated[str, typer.Argument(help="A shipped task.")] = "collect_toys",
+    world: Annotated[str, typer.Option(help="The simulated world, as of `tpvqa run`.")] = "toys",
+    seed: Annotated[int, typer.Option(help="Of the world.")] = 1,
+    prefix: Annotated[str, typer.Option(help="Of the topics.")] = "/tpvqa",
+    stop: Annotated[str, typer.Option(help="Topic of emergency stops.")] = "/tpvqa/stop",
+    rate: Annotated[float, typer.Option(min=0.1, max=60, help="Pictures a second.")] = 5.0,
+) -> None:
+    """Offer a simulated robot's skills, pictures and joints on ROS 2 topics, until Ctrl-C.
+
+    Exit codes: 0 ended by Ctrl-C or SIGTERM, 2 bad input.
+    """
+    import signal
+
+    from tpvqa import load_task
+    from tpvqa.pddl import State
+    from tpvqa.plugins import Closing
+    from tpvqa.tasks import find_task
+    from tpvqa.worlds.capabilities import truth_of
+    from tpvqa.worlds.making import make_world
+    from tpvqa_robots.ros2.link import load_rclpy
+    from tpvqa_robots.ros2.of_world import WorldRobot
+    from tpvqa_robots.ros2.server import SkillServer
+    from tpvqa_robots.toys.truth import atoms_of
+
+    load_rclpy()
+    files = find_task(task)
+    loaded = load_task(files.domain, files.problem)
+    made, _ = make_world(world, {"task": loaded, "seed": seed, "episode": 0})
+    try:
+        tells = truth_of(made)
+        atoms = atoms_of(loaded) if tells is not None else ()
+
+        def true() -> State:
+            assert tells is not None
+            return frozenset(atom for atom in atoms if tells.holds(atom))
+
+        robot = WorldRobot(made, loaded)
+        server = SkillServer(
+            robot,
+            loaded,
+            tuple(made.views()),
+            prefix=prefix,
+            stop=stop,
+            rate=rate,
+            truth=None if tells is None else true,
+        )
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: server.close())
+        typer.echo(f"{world} is offered on {prefix}; Ctrl-C ends it.")
+        server.run()
+    finally:
+        if isinstance(made, Closing):
+            made.close()

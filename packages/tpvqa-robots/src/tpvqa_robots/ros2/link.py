@@ -1,0 +1,124 @@
+"""A node of ROS 2 with a thread of its own, that ends cleanly whatever happens around it."""
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from tpvqa.errors import MissingExtraError, WorldError
+
+
+def load_rclpy() -> Any:
+    """ROS 2's client library.
+
+    Raises:
+        MissingExtraError: It is not installed.
+    """
+    try:
+        import rclpy
+        import sensor_msgs.msg  # noqa: F401
+        import std_msgs.msg  # noqa: F401
+    except ImportError as error:
+        raise MissingExtraError(
+            "rclpy", "ros2", "A robot behind ROS 2", distribution="tpvqa-robots"
+        ) from error
+    return rclpy
+
+
+class Link:
+    """A node, its publishers and subscriptions, spun in a thread.
+
+    Signals are left to whoever runs the program: `close` ends everything, also after Ctrl-C.
+
+    Args:
+        name: Of the node.
+
+    Raises:
+        MissingExtraError: ROS 2 is not installed.
+        WorldError: The node cannot be made.
+    """
+
+    def __init__(self, name: str):
+        rclpy = load_rclpy()
+        from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+        from rclpy.signals import SignalHandlerOptions
+
+        self._ended = ExternalShutdownException
+        self._context = rclpy.Context()
+        try:
+            rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+            self.node = rclpy.create_node(name, context=self._context, enable_rosout=False)
+        except Exception as error:
+            self._context.try_shutdown()
+            raise WorldError(
+                f"No ROS 2 node can be made ({type(error).__name__}: {error}); see "
+                "RMW_IMPLEMENTATION and ROS_DOMAIN_ID."
+            ) from error
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self._thread = threading.Thread(target=self._spin, name=name, daemon=True)
+        self._closed = False
+
+    def start(self) -> None:
+        """Begin to listen; what is subscribed to beforehand misses nothing."""
+        self._thread.start()
+
+    def _spin(self) -> None:
+        while not self._closed and self._context.ok():
+            try:
+                self._executor.spin_once(timeout_sec=0.1)
+            except self._ended:
+                return
+
+    def now(self) -> float:
+        """Seconds by the clock that stamps are of."""
+        return float(self.node.get_clock().now().nanoseconds) / 1e9
+
+    def listen(self, kind: Any, topic: str, heard: Callable[[Any], None], qos: Any) -> None:
+        """Have messages of a topic given to a function."""
+        self.node.create_subscription(kind, topic, heard, qos)
+
+    def speaker(self, kind: Any, topic: str, qos: Any) -> Any:
+        """A publisher."""
+        return self.node.create_publisher(kind, topic, qos)
+
+    def every(self, seconds: float, do: Callable[[], None]) -> None:
+        """Do something again and again."""
+        self.node.create_timer(seconds, do)
+
+    def close(self) -> None:
+        """End the node. Can be called twice."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._thread.is_alive() and threading.current_thread() is not self._thread:
+            self._thread.join(2.0)
+        self._executor.shutdown(timeout_sec=1.0)
+        self.node.destroy_node()
+        self._context.try_shutdown()
+
+
+def said(depth: int = 50) -> Any:
+    """Quality of service of what must arrive: reliable, volatile, the last 50 kept."""
+    from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=depth,
+        reliability=ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.VOLATILE,
+    )
+
+
+def seen() -> Any:
+    """Quality of service of pictures and joints as they are read: best effort, the latest alone.
+
+    It fits cameras that send reliably, and those that do not.
+    """
+    from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=1,
+        reliability=ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.VOLATILE,
+    )

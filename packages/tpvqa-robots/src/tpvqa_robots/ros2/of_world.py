@@ -1,0 +1,51 @@
+"""Any world as a `Robot`, so that a skill server can offer it: the simulated ones above all."""
+
+import threading
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tpvqa.observation import Observation
+from tpvqa.pddl import Action, Task
+from tpvqa.worlds import Execution, World
+from tpvqa_robots.skills.protocol import Robot
+
+
+class WorldRobot:
+    """A world behind `skills.protocol.Robot`.
+
+    Args:
+        world: The world; where it has a `robot`, that one's joints are told.
+        task: Names its actions.
+    """
+
+    def __init__(self, world: World, task: Task):
+        self._world = world
+        self.skills: Mapping[str, Any] = {schema.name: schema for schema in task.schemas}
+        self._cancelled: threading.Event | None = None
+
+    def perform(
+        self,
+        action: Action,
+        *,
+        deadline: float,
+        cancelled: threading.Event,
+        feedback: Callable[[str], None],
+    ) -> Execution:
+        """Execute it in the world; see `Robot.perform`."""
+        feedback(f"begins {action.pddl()}")
+        self._cancelled = cancelled
+        return self._world.execute(action, deadline=deadline, cancel=cancelled)
+
+    def look(self, view: str) -> Observation:
+        """Observe the world."""
+        return self._world.observe(view)
+
+    def stop(self) -> None:
+        """Cancel what is running."""
+        if self._cancelled is not None:
+            self._cancelled.set()
+
+    def state(self) -> Mapping[str, float]:
+        """The joints of the world's robot; none where it has none."""
+        robot = getattr(self._world, "robot", None)
+        return robot.state() if isinstance(robot, Robot) else {}

@@ -1,0 +1,293 @@
+"""The world `ros2`: a robot behind topics, watched so closely that it can be stopped."""
+
+import threading
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+from time import monotonic
+from typing import Any
+
+from tpvqa.errors import ConfigError, UnknownNameError
+from tpvqa.observation import Frame, Observation, SensedFact
+from tpvqa.pddl import Action, Task
+from tpvqa.worlds.protocol import Execution, Report
+from tpvqa_robots.ros2.client import Doing, SkillClient
+from tpvqa_robots.ros2.eyes import open_eyes
+from tpvqa_robots.ros2.feeling import Joints
+from tpvqa_robots.ros2.link import Link, said
+from tpvqa_robots.ros2.setup import Setup, load_setup
+from tpvqa_robots.ros2.truth import PublishedTruth
+
+TICK = 0.02
+"""Seconds between two looks at what has changed."""
+ENDS = 1.0
+"""Seconds in which a cancelled skill has to say that it ended."""
+
+
+class Ros2World:
+    """A robot behind ROS 2 topics, as a setup file says.
+
+    No skill starts but on a picture taken after the last action ended; where there is none within
+    `wait` seconds, where the robot is another's, stopped or gone, or where an action would leave
+    the workspace, it is refused and the trial ends there, saying why.
+
+    Args:
+        task: The task.
+        setup: Topics, servers and bounds.
+
+    Raises:
+        MissingExtraError: ROS 2 is not installed.
+    """
+
+    def __init__(self, task: Task, setup: Setup):
+        from std_msgs.msg import Bool, String
+
+        self._task, self._setup = task, setup
+        self._link = Link("tpvqa_loop")
+        self._changed = threading.Condition()
+        self._eyes = open_eyes(self._link, setup, self._changed)
+        self._clients = {
+            server: SkillClient(self._link, server, self._changed, setup.gone)
+            for server in dict.fromkeys(skill.server for skill in setup.skills.values())
+        }
+        self._joints: Joints | None = None
+        if setup.joints is not None:
+            self._joints = Joints(self._link, setup.joints, setup.sensed, self._notify)
+        self._published: PublishedTruth | None = None
+        if setup.truth is not None:
+            self._published = PublishedTruth(task, setup.truth)
+            self._link.listen(String, setup.truth, self._hear_truth, said(1))
+        self._stop = ""
+        self._link.listen(Bool, setup.stop, self._hear_stop, said())
+        self._start = self._link.now()
+        self._ended = -1.0
+        self._looked: float | None = None
+        self._told: tuple[SensedFact, ...] = ()
+        self._link.start()
+
+    @classmethod
+    def from_spec(cls, arguments: str, *, task: Task) -> "Ros2World":
+        """The world of `ros2:FILE`.
+
+        Raises:
+            ConfigError: The file is missing or broken, or does not fit the task.
+        """
+        if not arguments:
+            raise ConfigError("The world 'ros2' needs its file: --world ros2:robot.yaml")
+        setup = load_setup(Path(arguments), task)
+        return cls(task, setup) if setup.truth is None else SimulatedRos2World(task, setup)
+
+    def views(self) -> Sequence[str]:
+        """The cameras of the setup file."""
+        return tuple(self._eyes)
+
+    def senses(self) -> Collection[str]:
+        """What joints tell, and what skills tell of themselves."""
+        rules = (rule.atom.predicate for rule in self._setup.sensed)
+        return tuple(dict.fromkeys((*rules, *self._setup.told)))
+
+    def observe(self, view: str | None = None) -> Observation:
+        """Wait for a picture taken after the last action ended.
+
+        Where none comes in time the look shows nothing, and `detail` says why.
+
+        Raises:
+            UnknownNameError: There is no such view.
+        """
+        view = next(iter(self._eyes)) if view is None else view
+        if view not in self._eyes:
+            raise UnknownNameError("view", view, tuple(self._eyes))
+        frame, why = self._picture(view)
+        now = self._link.now()
+        facts = self._facts(self._told)
+        if frame is None or frame.stamp is None:
+            return Observation(time=now - self._start, detail={"no picture": why}, facts=facts)
+        self._looked = frame.stamp
+        time = frame.stamp - self._start
+        shown = replace(frame, stamp=time)
+        return Observation(
+            time=time, frames={view: shown}, detail={"stamp": frame.stamp}, facts=facts
+        )
+
+    def execute(
+        self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
+    ) -> Execution:
+        """Have a skill server carry out an action; seconds are of the clock on the wall."""
+        began = monotonic()
+        skill = self._setup.skills.get(action.name)
+        if skill is None:
+            known = ", ".join(self._setup.skills)
+            return _refused(began, f"no skill server is named for {action.name!r}; for {known}")
+        if self._setup.workspace is not None:
+            outside = self._setup.workspace.left_by(action.arguments)
+            if outside is not None:
+                return _refused(began, f"{action.pddl()} would leave the workspace: {outside}")
+        client = self._clients[skill.server]
+        why = self._not_ready(client, cancel)
+        if why:
+            return _refused(began, why)
+        if self._looked is None or self._looked <= self._ended:
+            shown = self.observe()
+            if self._looked is None or self._looked <= self._ended:
+                return _refused(
+                    began,
+                    f"no skill starts without a picture of after the last action: "
+                    f"{shown.detail.get('no picture', 'none came')}",
+                )
+        if cancel is not None and cancel.is_set():
+            return Execution(Report.CANCELLED, 0.0, "cancelled before it began")
+        seconds = skill.deadline if deadline is None else min(deadline, skill.deadline)
+        for eye in self._eyes.values():
+            eye.acted()
+        doing = client.do(action.pddl(), seconds, self._looked)
+        self._told = ()
+        try:
+            return self._await(client, doing, action, began, seconds, cancel)
+        except BaseException:
+            client.cancel(doing)
+            self._ended = self._link.now()
+            raise
+
+    def close(self) -> None:
+        """Give the robot back and end the node. Can be called twice."""
+        for client in self._clients.values():
+            client.release()
+        self._clients = {}
+        self._link.close()
+
+    def _await(
+        self,
+        client: SkillClient,
+        doing: Doing,
+        action: Action,
+        began: float,
+        seconds: float,
+        cancel: Event | None,
+    ) -> Execution:
+        """What comes of a skill that was asked for."""
+        cancelled: float | None = None
+        while True:
+            with self._changed:
+                if doing.result is None and not doing.refused and not doing.malformed:
+                    self._changed.wait(TICK)
+            took = monotonic() - began
+            stopped = self._stopped(client)
+            if stopped:
+                client.cancel(doing)
+                self._ended = self._link.now()
+                said = f"{stopped} in {action.pddl()}; {self._where()}"
+                return Execution(Report.UNAVAILABLE, took, said, self._facts(()))
+            result = doing.result
+            if result is not None:
+                self._ended, self._told = result.ended, tuple(result.facts)
+                facts = self._facts(self._told)
+                return Execution(result.report, took, result.message, facts)
+            if doing.refused:
+                return _refused(began, doing.refused)
+            gone = not client.there or client.server != doing.server
+            if doing.malformed or gone:
+                self._ended = self._link.now()
+                what = "answered what is not understood" if doing.malformed else "went away"
+                said = f"the skill server {client.prefix} {what} in the middle of {action.pddl()}"
+                return Execution(Report.FAILED, took, f"{said}: what came of it is for a new look")
+            if cancelled is None and cancel is not None and cancel.is_set():
+                cancelled = took
+                client.cancel(doing)
+            if cancelled is not None and took - cancelled > ENDS:
+                self._ended = self._link.now()
+                said = "cancelled, but the skill server did not say that it stopped"
+                return Execution(Report.CANCELLED, took, said, self._facts(()))
+            if took > seconds + self._setup.grace:
+                client.cancel(doing)
+                self._ended = self._link.now()
+                said = f"{action.pddl()} did not return within {seconds:g} s, and was cancelled"
+                return Execution(Report.LATE, took, said, self._facts(()))
+
+    def _not_ready(self, client: SkillClient, cancel: Event | None) -> str:
+        """Wait until a server is there and this controller has it; why not, in the end."""
+
+        def over() -> bool:
+            given_up = cancel is not None and cancel.is_set()
+            return given_up or bool(self._stopped(client)) or (client.holds and not client.busy)
+
+        self._wait(over)
+        stopped = self._stopped(client)
+        if stopped:
+            return f"{stopped}; {self._where()}"
+        if cancel is not None and cancel.is_set():
+            return ""
+        waited = f"for {self._setup.wait:g} s"
+        if not client.there:
+            return f"the skill server {client.prefix} was not heard {waited}: is it running?"
+        if not client.holds:
+            return f"the robot of {client.prefix} is held by another controller, {client.holder}"
+        if client.busy:
+            return f"the skill server {client.prefix} is still at {client.busy} {waited}"
+        return ""
+
+    def _picture(self, view: str) -> tuple[Frame | None, str]:
+        eye, age = self._eyes[view], self._setup.age
+        found: tuple[Frame | None, str] = (None, "")
+
+        def over() -> bool:
+            nonlocal found
+            found = eye.frame(self._link.now(), self._ended, age)
+            true = self._published
+            return bool(self._stop) or (
+                found[0] is not None and (true is None or true.stamp > self._ended)
+            )
+
+        self._wait(over)
+        return found
+
+    def _wait(self, over: Callable[[], bool]) -> None:
+        until = monotonic() + self._setup.wait
+        with self._changed:
+            while not over() and monotonic() < until:
+                self._changed.wait(TICK)
+
+    def _facts(self, told: tuple[SensedFact, ...]) -> tuple[SensedFact, ...]:
+        """What skill and joints tell: the skill's word counts where both speak."""
+        own = {fact.atom for fact in told}
+        felt: tuple[SensedFact, ...] = ()
+        if self._joints is not None:
+            felt = self._joints.facts(self._link.now(), self._ended, self._setup.age)
+        return (*told, *(fact for fact in felt if fact.atom not in own))
+
+    def _where(self) -> str:
+        """Where things are, as far as the robot feels it."""
+        joints = "its joints are not known" if self._joints is None else self._joints.said()
+        felt = ", ".join(f"{f.atom.pddl()} {f.probability:.2f}" for f in self._facts(()))
+        return f"the robot stands; {joints}" + (f"; it feels {felt}" if felt else "")
+
+    def _stopped(self, client: SkillClient) -> str:
+        return self._stop or client.stopped
+
+    def _hear_stop(self, message: Any) -> None:
+        if message.data:
+            self._stop = f"emergency stop on {self._setup.stop}"
+            self._notify()
+
+    def _hear_truth(self, message: Any) -> None:
+        if self._published is not None:
+            self._published.hear(message)
+            self._notify()
+
+    def _notify(self) -> None:
+        with self._changed:
+            self._changed.notify_all()
+
+
+class SimulatedRos2World(Ros2World):
+    """A simulated robot behind topics, which says what is true."""
+
+    @property
+    def truth(self) -> PublishedTruth:
+        """What is true now."""
+        assert self._published is not None
+        return self._published
+
+
+def _refused(began: float, why: str) -> Execution:
+    return Execution(Report.UNAVAILABLE, monotonic() - began, why)

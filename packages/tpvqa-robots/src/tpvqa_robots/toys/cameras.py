@@ -1,0 +1,175 @@
+"""The robot's cameras: pictures and depth with the errors of a real one, and what they show."""
+
+import threading
+from collections.abc import Mapping
+from dataclasses import astuple, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tpvqa.chance import chance_array
+from tpvqa.errors import WorldError
+from tpvqa.observation import Intrinsics
+from tpvqa_robots.toys.mujoco import load_mujoco
+
+OVERHEAD, WRIST, ROOM = "overhead", "wrist", "room"
+CAMERAS: Mapping[str, str] = {OVERHEAD: "overhead", WRIST: "arm_eye_in_hand"}
+"""The robot's own views, and what they are called in the model."""
+WIDTH, HEIGHT = 640, 480
+
+
+@dataclass(frozen=True, slots=True)
+class Errors:
+    """What is wrong with the cameras.
+
+    Attributes:
+        depth: Standard deviation of a distance of one metre, metres; grows with its square.
+        missing: The share of pixels without a distance.
+        colour: Standard deviation of a colour, of 255.
+        shift: Standard deviation of where the camera is taken to be, metres along each axis;
+            drawn once a trial.
+        turn: The same of how it is taken to be turned, radians.
+    """
+
+    depth: float = 0.0015
+    missing: float = 0.002
+    colour: float = 2.0
+    shift: float = 0.002
+    turn: float = 0.003
+
+    def times(self, factor: float) -> "Errors":
+        """All errors larger or smaller by a factor."""
+        return Errors(*(factor * error for error in astuple(self)))
+
+
+NO_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """A picture with its distances.
+
+    Attributes:
+        rgb: Height × width × 3, 0 to 255.
+        depth: Metres along the camera's axis, height × width; NaN where nothing was measured.
+        points: Where the robot takes each pixel to be: height × width × 3, metres from the arm's
+            foot, x ahead and y to the left, z above the floor; NaN likewise.
+        intrinsics: Of the camera.
+    """
+
+    rgb: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    points: NDArray[np.float64]
+    intrinsics: Intrinsics
+
+
+class Cameras:
+    """Draws what the robot's cameras see. One canvas for all: a second one garbles the first.
+
+    Args:
+        model: The compiled scene.
+        errors: What is wrong with them.
+        seed: Of their errors; with `episode`, see `tpvqa.chance`.
+        episode: The same.
+    """
+
+    def __init__(self, model: Any, errors: Errors, *, seed: int, episode: int = 0):
+        self._mj = mj = load_mujoco()
+        self._model, self._errors, self._seed = model, errors, (seed, episode)
+        self._lock = threading.Lock()
+        try:
+            self._canvas = mj.Renderer(model, HEIGHT, WIDTH)
+        except Exception as error:
+            raise WorldError(
+                f"MuJoCo cannot draw: {error!r}. Software rendering needs the library OSMesa: "
+                "`apt-get install libosmesa6`, then set the environment variable MUJOCO_GL=osmesa."
+            ) from error
+        self._option = mj.MjvOption()
+        self._option.geomgroup[:] = [0, 1, 0, 0, 0, 0]
+        self._option.sitegroup[:] = 0
+        drawn = chance_array(seed, episode, "camera")
+        self._shift = drawn.normal(0, errors.shift, 3)
+        self._turn = drawn.normal(0, errors.turn, 3)
+
+    def close(self) -> None:
+        """Free the canvas. Can be called twice."""
+        self._canvas.close()
+
+    def picture(self, data: Any, camera: str) -> NDArray[np.uint8]:
+        """What a camera of the model sees, without errors; the room's too."""
+        with self._lock:
+            self._canvas.update_scene(data, camera, self._option)
+            return np.array(self._canvas.render())
+
+    def shot(self, data: Any, view: str, number: int) -> Shot:
+        """A picture with depth.
+
+        Args:
+            data: The state.
+            view: One of `CAMERAS`.
+            number: Tells one draw of the errors from another.
+        """
+        camera = CAMERAS[view]
+        rgb = self.picture(data, camera).astype(np.float64)
+        with self._lock:
+            self._canvas.enable_depth_rendering()
+            self._canvas.update_scene(data, camera, self._option)
+            depth = np.array(self._canvas.render(), np.float64)
+            self._canvas.disable_depth_rendering()
+        drawn, errors = chance_array(*self._seed, "shot", number), self._errors
+        rgb += drawn.normal(0, 1, rgb.shape) * errors.colour
+        depth += drawn.normal(0, 1, depth.shape) * errors.depth * depth**2
+        depth[drawn.random(depth.shape) < errors.missing] = np.nan
+        here = self.intrinsics(view)
+        return Shot(
+            np.clip(np.rint(rgb), 0, 255).astype(np.uint8),
+            depth.astype(np.float32),
+            self._points(data, camera, depth, here),
+            here,
+        )
+
+    def intrinsics(self, view: str) -> Intrinsics:
+        """A view's pinhole camera."""
+        angle = np.radians(self._model.camera(CAMERAS[view]).fovy[0])
+        f = HEIGHT / 2 / np.tan(angle / 2)
+        return Intrinsics(f, f, (WIDTH - 1) / 2, (HEIGHT - 1) / 2, WIDTH, HEIGHT)
+
+    def pixels_of(self, data: Any, view: str) -> Mapping[str, int]:
+        """How many pixels truly show each body; for the truth alone."""
+        with self._lock:
+            self._canvas.enable_segmentation_rendering()
+            self._canvas.update_scene(data, CAMERAS[view], self._option)
+            drawn = np.array(self._canvas.render())
+            self._canvas.disable_segmentation_rendering()
+        geoms = drawn[..., 0][drawn[..., 1] == int(self._mj.mjtObj.mjOBJ_GEOM)]
+        found: dict[str, int] = {}
+        for geom, count in zip(*np.unique(geoms[geoms >= 0], return_counts=True), strict=True):
+            body = self._model.body(self._model.geom_bodyid[geom]).name
+            name = "goal_area" if self._model.geom(geom).name == "goal_area" else body
+            found[name] = found.get(name, 0) + int(count)
+        return found
+
+    def _points(
+        self, data: Any, camera: str, depth: NDArray[np.float64], of: Intrinsics
+    ) -> NDArray[np.float64]:
+        rows, columns = np.indices(depth.shape)
+        rays = np.stack(
+            [(columns - of.cx) / of.fx, -(rows - of.cy) / of.fy, -np.ones_like(depth)], -1
+        )
+        foot = data.body("support").xmat.reshape(3, 3)
+        turned = _rotation(self._turn) @ foot.T @ data.camera(camera).xmat.reshape(3, 3)
+        at = foot.T @ (data.camera(camera).xpos - data.body("support").xpos) + self._shift
+        points: NDArray[np.float64] = rays * depth[..., None] @ turned.T + at
+        points[..., 2] += float(self._model.body("support").pos[2]) + _BASE_HEIGHT
+        return points
+
+
+_BASE_HEIGHT = 0.5
+"""Of what the arm's foot is fixed to in robosuite's model of the base, metres."""
+
+
+def _rotation(vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    x, y, z = vector
+    turned: NDArray[np.float64] = np.eye(3) + np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return turned

@@ -1,0 +1,101 @@
+"""Skill servers in processes of their own, in a DDS domain that no other test uses."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tpvqa import Task
+from tpvqa_robots.ros2.setup import load_setup
+from tpvqa_robots.ros2.world import Ros2World
+
+SETUP = """\
+skills:
+  find: {server: /tpvqa, deadline: 10}
+  pick_up: {server: /tpvqa, deadline: 10}
+  place: {server: /tpvqa, deadline: 10}
+cameras:
+  overhead: {image: /tpvqa/overhead/image, depth: /tpvqa/overhead/depth,
+             info: /tpvqa/overhead/camera_info, frame_id: overhead}
+joints: /tpvqa/joints
+sensed:
+  - {fact: (hand_empty), joint: gripper, below: 0.003, sure: 0.98}
+stop: /tpvqa/stop
+truth: /tpvqa/truth
+limits: {age: 1.0, wait: 8, gone: 1.5, grace: 0.5}
+workspace:
+  low: [-1, -1, 0]
+  high: [1, 1, 1.2]
+  places: {table: [0.5, 0, 0.8], goal_area: [0.4, 0.3, 0.8], floor: [0.5, 0, -0.1]}
+"""
+
+Start = Callable[..., "subprocess.Popen[bytes]"]
+Open = Callable[..., Ros2World]
+
+
+@pytest.fixture(autouse=True)
+def domain(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(time.monotonic_ns() // 1000 % 100 + 1))
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+
+
+@pytest.fixture
+def state(tmp_path: Path) -> Path:
+    """Where the stand-in keeps how its world is, and what it did."""
+    return tmp_path / "state.json"
+
+
+@pytest.fixture
+def setup_file(tmp_path: Path) -> Path:
+    file = tmp_path / "robot.yaml"
+    file.write_text(SETUP)
+    return file
+
+
+@pytest.fixture
+def start(state: Path) -> Iterator[Start]:
+    """Start a skill server: faults, then seconds that a skill takes."""
+    running = []
+
+    def begin(*faults: str, seconds: float = 0.05) -> "subprocess.Popen[bytes]":
+        words = [word for fault in faults for word in ("--fault", fault)]
+        words += ["--seconds", str(seconds)]
+        server = subprocess.Popen(
+            [sys.executable, "-m", "tests_robot.ros2.standin", str(state), *words],
+            stdout=subprocess.PIPE,
+            cwd=Path(__file__).parents[2],
+            env=os.environ.copy(),
+        )
+        running.append(server)
+        assert server.stdout is not None
+        assert server.stdout.readline() == b"ready\n"
+        return server
+
+    yield begin
+    for server in running:
+        server.kill()
+        server.wait()
+
+
+@pytest.fixture
+def open_world(task: Task, setup_file: Path) -> Iterator[Open]:
+    """The world `ros2` on that server; changes to the setup file are given as pairs."""
+    opened = []
+
+    def make(*changes: tuple[str, str]) -> Ros2World:
+        text = setup_file.read_text()
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        setup_file.write_text(text)
+        load_setup(setup_file, task)
+        opened.append(Ros2World.from_spec(str(setup_file), task=task))
+        return opened[-1]
+
+    yield make
+    for world in opened:
+        world.close()

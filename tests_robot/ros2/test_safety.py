@@ -1,0 +1,247 @@
+"""What goes wrong around a robot, each injected: nothing moves on, and it is said why."""
+
+import json
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests_robot.conftest import Act
+from tests_robot.ros2.conftest import Open, Start
+from tests_robot.ros2.test_world import done, run
+from tpvqa.worlds import Execution, Report
+from tpvqa_robots.ros2 import wire
+from tpvqa_robots.ros2.lease import EXPIRES, Lease
+from tpvqa_robots.ros2.link import Link, said
+from tpvqa_robots.ros2.world import Ros2World
+
+SHORT = ("wait: 8", "wait: 3")
+FIND, PICK = "find blue_container table", "pick_up blue_container"
+
+
+def in_thread(
+    world: Ros2World, action: Any, **more: Any
+) -> tuple[threading.Thread, list[Execution]]:
+    came: list[Execution] = []
+    thread = threading.Thread(target=lambda: came.append(world.execute(action, **more)))
+    thread.start()
+    return thread, came
+
+
+def until_begun(state: Path) -> None:
+    until = time.monotonic() + 10
+    while (not state.exists() or not done(state)) and time.monotonic() < until:
+        time.sleep(0.01)
+    assert done(state)
+
+
+@pytest.mark.parametrize(("fault", "why"), [("blind", "no picture"), ("frozen", "frozen")])
+def test_a_camera_that_is_gone_or_frozen_ends_the_trial(
+    fault: str, why: str, start: Start, setup_file: Path, state: Path, tmp_path: Path
+) -> None:
+    setup_file.write_text(setup_file.read_text().replace(*SHORT))
+    start(fault)
+    trial = run(setup_file, tmp_path / "episode")
+    text, _ = trial.communicate(timeout=60)
+    assert trial.returncode == 1, text
+    ended = json.loads((tmp_path / "episode" / "episode.jsonl").read_text().splitlines()[-1])
+    assert (ended["kind"], ended["because"]) == ("ended", "world refused")
+    assert why in ended["message"]
+    assert len(done(state)) == (0 if fault == "blind" else 2)  # begun and ended, once
+
+
+def test_pictures_that_are_old_are_no_observation(start: Start, open_world: Open, act: Act) -> None:
+    server = start()
+    world = open_world(SHORT)
+    assert world.observe().frames
+    server.kill()
+    time.sleep(1.2)
+    seen = world.observe()
+    assert not seen.frames
+    assert "s old" in seen.detail["no picture"]
+    refused = world.execute(act(FIND))
+    assert refused.report is Report.UNAVAILABLE
+    assert "was not heard" in refused.message
+
+
+def test_a_server_that_goes_in_the_middle_is_told_of(
+    start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    server = start("endless")
+    world = open_world(SHORT)
+    thread, came = in_thread(world, act(FIND))
+    until_begun(state)
+    server.kill()
+    thread.join(10)
+    assert came[0].report is Report.FAILED
+    assert "went away in the middle" in came[0].message
+    again = world.execute(act(FIND))
+    assert again.report is Report.UNAVAILABLE
+    assert len(done(state)) == 1
+
+
+@pytest.mark.parametrize("deaf", [False, True])
+def test_a_skill_that_never_returns_is_stopped(
+    deaf: bool, start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    start("endless", *(("deaf",) if deaf else ()))
+    world = open_world(SHORT)
+    world.observe()
+    late = world.execute(act(FIND), deadline=0.5)
+    assert late.report is Report.LATE, late.message
+    assert late.seconds < 1.5
+    if deaf:
+        again = world.execute(act(FIND))
+        assert again.report is Report.UNAVAILABLE
+        assert "is still at" in again.message
+        assert len(done(state)) == 1
+    else:
+        assert done(state)[-1][1] == "stood"
+
+
+def test_cancel_in_the_middle_stops_the_arm(
+    start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    start("endless")
+    world, cancel = open_world(), threading.Event()
+    thread, came = in_thread(world, act(FIND), cancel=cancel)
+    until_begun(state)
+    began = time.time()
+    cancel.set()
+    thread.join(5)
+    assert came[0].report is Report.CANCELLED
+    stood = json.loads(state.read_text())["done"][-1]
+    assert (stood[1], stood[2] - began < 0.2) == ("stood", True)
+
+
+def test_an_emergency_stop_ends_it_within_a_fifth_of_a_second(
+    start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    from std_msgs.msg import Bool
+
+    start("endless")
+    world = open_world()
+    button = Link("button")
+    try:
+        speaker = button.speaker(Bool, "/tpvqa/stop", said())
+        button.start()
+        thread, came = in_thread(world, act(FIND))
+        until_begun(state)
+        until = time.monotonic() + 5
+        while speaker.get_subscription_count() < 2 and time.monotonic() < until:
+            time.sleep(0.02)
+        pressed, began = time.time(), time.monotonic()
+        speaker.publish(Bool(data=True))
+        thread.join(5)
+        took = time.monotonic() - began
+        time.sleep(0.3)
+        stood = json.loads(state.read_text())["done"][-1]
+        assert (stood[1], stood[2] - pressed < 0.2, took < 0.2) == ("stood", True, True)
+        assert came[0].report is Report.UNAVAILABLE
+        for part in ("emergency stop", "(find blue_container table)", "gripper 0.000"):
+            assert part in came[0].message
+        again = world.execute(act(FIND))
+        assert again.report is Report.UNAVAILABLE
+        assert "emergency stop" in again.message
+    finally:
+        button.close()
+
+
+def test_a_second_controller_is_refused_until_the_first_lets_go(
+    start: Start, open_world: Open, act: Act
+) -> None:
+    start()
+    first, second = open_world(SHORT), open_world()
+    assert first.execute(act(FIND)).report is Report.DONE
+    refused = second.execute(act(FIND))
+    assert refused.report is Report.UNAVAILABLE
+    assert "another controller" in refused.message
+    first.close()
+    assert second.execute(act(PICK)).report is Report.DONE
+
+
+def test_what_leaves_the_workspace_is_refused(
+    start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    start()
+    world = open_world(("places: {table: [0.5, 0, 0.8]", "places: {table: [0.5, 0, 1.8]"))
+    refused = world.execute(act(FIND))
+    assert refused.report is Report.UNAVAILABLE
+    assert "would leave the workspace: table" in refused.message
+    assert not state.exists() or not done(state)
+
+
+def test_the_server_itself_starts_nothing_on_an_old_picture(start: Start, state: Path) -> None:
+    """Whoever commands it: what was seen before the last action, or before it started, is old."""
+    from std_msgs.msg import String
+
+    start()
+    heard: list[wire.Said] = []
+    link = Link("stranger")
+    try:
+        link.listen(
+            String, "/tpvqa/status", lambda m: heard.append(wire.read(m.data) or {}), said()
+        )
+        speaker = link.speaker(String, "/tpvqa/command", said())
+        link.start()
+        until = time.monotonic() + 10
+        while not heard and time.monotonic() < until:
+            time.sleep(0.05)
+
+        def do(name: str, seen: float, **more: Any) -> wire.Said:
+            message = {"from": "me", "id": name, "action": f"({FIND})", "deadline": 5.0, **more}
+            speaker.publish(String(data=wire.write("do", seen=seen, **message)))
+            until = time.monotonic() + 5
+            while time.monotonic() < until:
+                for each in heard:
+                    if each.get("id") == name and each["say"] in ("refused", "result"):
+                        return each
+                time.sleep(0.02)
+            raise AssertionError("no answer")
+
+        early = time.time() - 100
+        assert "look again" in do("a", early)["message"]
+        assert do("b", time.time())["report"] == "done"
+        ended = next(each["ended"] for each in heard if each["say"] == "result")
+        assert "look again" in do("c", ended)["message"]
+        assert "no action" in do("d", time.time(), action="(fly away)")["message"]
+        assert len(done(state)) == 2
+    finally:
+        link.close()
+
+
+@given(st.lists(st.tuples(st.sampled_from("abc"), st.floats(0, 3)), max_size=30))
+def test_never_two_controllers_hold_a_robot(beats: list[tuple[str, float]]) -> None:
+    lease, now = Lease(), 0.0
+    held: dict[str, float] = {}
+    for who, pause in beats:
+        now += pause
+        if lease.beat(who, now):
+            for other, at in held.items():
+                assert other == who or now - at > EXPIRES
+            held = {who: now}
+
+
+@given(st.text() | st.recursive(st.none() | st.floats() | st.text(), st.lists).map(json.dumps))
+def test_what_is_not_understood_is_no_message(text: str) -> None:
+    heard = wire.read(text)
+    assert heard is None or isinstance(heard["say"], str)
+
+
+@given(
+    st.dictionaries(
+        st.sampled_from(["report", "seconds", "ended", "message", "facts"]),
+        st.none() | st.booleans() | st.text() | st.floats() | st.just([["(a)", 2]]),
+    )
+)
+def test_a_malformed_result_is_no_result(given: dict[str, Any]) -> None:
+    good = {"report": "done", "seconds": 1.0, "ended": 2.0, "message": "", "facts": []}
+    result = wire.result_of({**good, **given})
+    if result is not None:
+        assert isinstance(result.report, Report)
+        assert all(0 <= fact.probability <= 1 for fact in result.facts)
+    assert wire.result_of(good) is not None

@@ -1,0 +1,116 @@
+"""The world `ros2` over DDS, with the skill server in a process of its own."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests_robot.conftest import Act
+from tests_robot.ros2.conftest import Open, Start
+from tpvqa import Atom
+from tpvqa.worlds import Report
+
+
+def done(state: Path) -> list[list[str]]:
+    return [entry[:2] for entry in json.loads(state.read_text())["done"]]
+
+
+def run(setup_file: Path, folder: Path) -> "subprocess.Popen[str]":
+    command = [str(Path(sys.executable).parent / "tpvqa"), "run", "collect_toys", "--world"]
+    return subprocess.Popen(
+        [*command, f"ros2:{setup_file}", "--vlm", "oracle", "--out", str(folder)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env=os.environ.copy(),
+    )
+
+
+def test_pictures_depth_joints_and_facts_arrive(start: Start, open_world: Open, act: Act) -> None:
+    start()
+    world = open_world()
+    seen = world.observe()
+    frame = seen.frames["overhead"]
+    assert frame.pixels.shape == (24, 32, 3)
+    assert frame.depth is not None
+    assert np.allclose(frame.depth.metres, 1.25)
+    assert frame.intrinsics is not None
+    assert frame.intrinsics.fx == 30.0
+    done = world.execute(act("find blue_container table"))
+    assert done.report is Report.DONE, done.message
+    done = world.execute(act("pick_up blue_container"))
+    assert {fact.atom: fact.probability for fact in done.facts} == {Atom("hand_empty"): 0.02}
+    later = world.observe()
+    assert later.time > seen.time
+    assert {fact.atom for fact in later.facts} == {Atom("hand_empty")}
+
+
+def test_a_trial_goes_on_after_its_server_was_killed(
+    start: Start, setup_file: Path, state: Path, tmp_path: Path
+) -> None:
+    """Killed in the middle of a skill and started again: a look comes before anything else."""
+    server = start(seconds=0.8)
+    trial = run(setup_file, tmp_path / "episode")
+    until = time.monotonic() + 30
+    while (not state.exists() or len(done(state)) < 3) and time.monotonic() < until:
+        time.sleep(0.02)
+    server.send_signal(signal.SIGKILL)
+    server.wait()
+    start(seconds=0.1)
+    said, _ = trial.communicate(timeout=60)
+    assert trial.returncode == 0, said
+    lines = (tmp_path / "episode" / "episode.jsonl").read_text().splitlines()
+    kinds = [(e := json.loads(line))["kind"] + (e.get("report") or "") for line in lines]
+    broken = kinds.index("actedfailed")
+    following = [kind for kind in kinds[broken + 1 :] if kind in ("observed", "acting")]
+    assert following[0] == "observed"
+    facts = set(json.loads(state.read_text())["facts"])
+    assert (
+        "(on toy_eggplant cyan_container)" in facts or "(on toy_eggplant blue_container)" in facts
+    )
+
+
+def test_ctrl_c_stops_the_arm_and_ends_the_log(
+    start: Start, setup_file: Path, state: Path, tmp_path: Path
+) -> None:
+    server = start("endless")
+    trial = run(setup_file, tmp_path / "episode")
+    until = time.monotonic() + 30
+    while (not state.exists() or not done(state)) and time.monotonic() < until:
+        time.sleep(0.02)
+    trial.send_signal(signal.SIGINT)
+    said, _ = trial.communicate(timeout=20)
+    assert "Traceback" not in said
+    assert trial.returncode != 0
+    time.sleep(0.3)
+    assert done(state)[-1][1] == "stood"
+    server.send_signal(signal.SIGINT)
+    assert server.wait(10) == 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("find:", "fined:", "no action 'fined'"),
+        ("age: 1.0", "age: soon", "expected a number"),
+        ("image: /tpvqa", "image: tpvqa", "leading slash"),
+        ("(hand_empty)", "(hand_full)", "hand_full"),
+        ("low: [-1, -1, 0]", "low: [-1, 0]", "three numbers"),
+    ],
+)
+def test_a_broken_setup_is_refused_with_its_line(
+    old: str, new: str, said: str, setup_file: Path
+) -> None:
+    setup_file.write_text(setup_file.read_text().replace(old, new))
+    trial = run(setup_file, setup_file.parent / "episode")
+    text, _ = trial.communicate(timeout=30)
+    assert trial.returncode == 2
+    assert "Traceback" not in text
+    assert said in " ".join(text.split())
+    assert "robot.yaml:" in "".join(text.split())
