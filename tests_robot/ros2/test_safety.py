@@ -43,7 +43,7 @@ def until_begun(state: Path) -> None:
 def test_a_camera_that_is_gone_or_frozen_ends_the_trial(
     fault: str, why: str, start: Start, setup_file: Path, state: Path, tmp_path: Path
 ) -> None:
-    setup_file.write_text(setup_file.read_text().replace("wait: 8", "wait: 2"))
+    setup_file.write_text(setup_file.read_text().replace("wait: 8", "wait: 4"))
     start(fault)
     trial = run(setup_file, tmp_path / "episode")
     text, _ = trial.communicate(timeout=60)

@@ -124,6 +124,15 @@ def test_a_trial_without_its_setup_ends_in_one_message(tmp_path: Path) -> None:
     assert "Traceback" not in text
 
 
+def test_a_trial_without_a_skill_server_does_not_begin(setup_file: Path, tmp_path: Path) -> None:
+    setup_file.write_text(setup_file.read_text().replace("wait: 8", "wait: 1"))
+    trial = run(setup_file, tmp_path / "episode")
+    text, _ = trial.communicate(timeout=30)
+    assert trial.returncode == 2
+    assert "is the skill server running" in " ".join(text.split())
+    assert "Traceback" not in text
+
+
 def test_the_simulated_arm_acts_over_dds(open_world: Open, act: Act) -> None:
     command = [str(Path(sys.executable).parent / "tpvqa"), "skill-server", "collect_toys"]
     server = subprocess.Popen([*command, "--rate", "2"], stdout=subprocess.PIPE)
