@@ -43,7 +43,7 @@ def until_begun(state: Path) -> None:
 def test_a_camera_that_is_gone_or_frozen_ends_the_trial(
     fault: str, why: str, start: Start, setup_file: Path, state: Path, tmp_path: Path
 ) -> None:
-    setup_file.write_text(setup_file.read_text().replace(*SHORT))
+    setup_file.write_text(setup_file.read_text().replace("wait: 8", "wait: 4"))
     start(fault)
     trial = run(setup_file, tmp_path / "episode")
     text, _ = trial.communicate(timeout=60)
@@ -155,8 +155,9 @@ def test_a_second_controller_is_refused_until_the_first_lets_go(
     start: Start, open_world: Open, act: Act
 ) -> None:
     start()
-    first, second = open_world(SHORT), open_world()
+    first = open_world(SHORT)
     assert first.execute(act(FIND)).report is Report.DONE
+    second = open_world()
     refused = second.execute(act(FIND))
     assert refused.report is Report.UNAVAILABLE
     assert "another controller" in refused.message
@@ -212,6 +213,21 @@ def test_the_server_itself_starts_nothing_on_an_old_picture(start: Start, state:
         assert len(done(state)) == 2
     finally:
         link.close()
+
+
+def test_a_loop_that_is_killed_leaves_no_arm_in_motion(
+    start: Start, setup_file: Path, state: Path, tmp_path: Path
+) -> None:
+    start("endless")
+    trial = run(setup_file, tmp_path / "episode")
+    until_begun(state)
+    trial.kill()
+    trial.communicate()
+    killed, until = time.time(), time.monotonic() + 10
+    while done(state)[-1][1] != "stood" and time.monotonic() < until:
+        time.sleep(0.02)
+    stood = json.loads(state.read_text())["done"][-1]
+    assert (stood[1], stood[2] - killed < EXPIRES + 1) == ("stood", True)
 
 
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.floats(0, 3)), max_size=30))

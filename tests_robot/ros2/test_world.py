@@ -13,8 +13,11 @@ import pytest
 
 from tests_robot.conftest import Act
 from tests_robot.ros2.conftest import Open, Start
-from tpvqa import Atom
+from tpvqa import Atom, Task
+from tpvqa.errors import ConfigError
 from tpvqa.worlds import Report
+from tpvqa.worlds.capabilities import truth_of
+from tpvqa_robots.ros2.setup import load_setup
 
 
 def done(state: Path) -> list[list[str]]:
@@ -105,12 +108,51 @@ def test_ctrl_c_stops_the_arm_and_ends_the_log(
     ],
 )
 def test_a_broken_setup_is_refused_with_its_line(
-    old: str, new: str, said: str, setup_file: Path
+    old: str, new: str, said: str, setup_file: Path, task: Task
 ) -> None:
     setup_file.write_text(setup_file.read_text().replace(old, new))
-    trial = run(setup_file, setup_file.parent / "episode")
+    with pytest.raises(ConfigError, match=r"robot\.yaml:\d+") as refused:
+        load_setup(setup_file, task)
+    assert said in str(refused.value)
+
+
+def test_a_trial_without_its_setup_ends_in_one_message(tmp_path: Path) -> None:
+    trial = run(tmp_path / "robot.yaml", tmp_path / "episode")
     text, _ = trial.communicate(timeout=30)
     assert trial.returncode == 2
+    assert "robot.yaml" in "".join(text.split())
     assert "Traceback" not in text
-    assert said in " ".join(text.split())
-    assert "robot.yaml:" in "".join(text.split())
+
+
+def test_a_trial_without_a_skill_server_does_not_begin(setup_file: Path, tmp_path: Path) -> None:
+    setup_file.write_text(setup_file.read_text().replace("wait: 8", "wait: 1"))
+    trial = run(setup_file, tmp_path / "episode")
+    text, _ = trial.communicate(timeout=30)
+    assert trial.returncode == 2
+    assert "is the skill server running" in " ".join(text.split())
+    assert "Traceback" not in text
+
+
+def test_the_simulated_arm_acts_over_dds(open_world: Open, act: Act) -> None:
+    command = [str(Path(sys.executable).parent / "tpvqa"), "skill-server", "collect_toys"]
+    server = subprocess.Popen([*command, "--rate", "2"], stdout=subprocess.PIPE)
+    try:
+        assert server.stdout is not None
+        assert b"offered" in server.stdout.readline()
+        world = open_world(
+            ("age: 1.0", "age: 3"), ("wait: 8", "wait: 20"), ("gone: 1.5", "gone: 5")
+        )
+        found = world.execute(act("find blue_container table"))
+        assert found.report is Report.DONE, found.message
+        frame = world.observe().frames["overhead"]
+        truth = truth_of(world)
+        assert truth is not None
+        assert truth.holds(Atom("found", ("blue_container",)))
+        assert frame.depth is not None
+        assert 0.3 < float(np.nanmedian(frame.depth.metres)) < 3.0
+        world.close()
+        server.send_signal(signal.SIGINT)
+        assert server.wait(15) == 0
+    finally:
+        server.kill()
+        server.wait()

@@ -8,7 +8,7 @@ from threading import Event
 from time import monotonic
 from typing import Any
 
-from tpvqa.errors import ConfigError, UnknownNameError
+from tpvqa.errors import ConfigError, UnknownNameError, WorldError
 from tpvqa.observation import Frame, Observation, SensedFact
 from tpvqa.pddl import Action, Task
 from tpvqa.worlds.protocol import Execution, Report
@@ -281,6 +281,19 @@ class Ros2World:
 
 class SimulatedRos2World(Ros2World):
     """A simulated robot behind topics, which says what is true."""
+
+    def check(self) -> None:
+        """Wait until it says so: without it no trial can be judged.
+
+        Raises:
+            WorldError: Nothing comes within `wait` seconds.
+        """
+        self._wait(lambda: self.truth.state is not None)
+        if self.truth.state is None:
+            raise WorldError(
+                f"Nothing came on {self._setup.truth} within {self._setup.wait:g} s: is the skill "
+                "server running, in the same ROS_DOMAIN_ID? Leave 'truth' out for a real robot."
+            )
 
     @property
     def truth(self) -> PublishedTruth:
