@@ -81,10 +81,10 @@ $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/py
 	  echo "tpvqa needs Python 3.11 or newer as '$(PYTHON)'. Name one: make PYTHON=python3.12 …"; exit 1; }
 	@$(PYTHON) -m venv $(ROBOT_VENV)
 	@echo "installing tpvqa and its robots into $(ROBOT_VENV) …"
-	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps robosuite==1.5.2
 	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check \
 	  -e packages/tpvqa -e 'packages/tpvqa-robots[ros2]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
 	  'pytest>=8.2' 'hypothesis>=6.100'
+	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps robosuite==1.5.2
 	@touch $@
 
 clean:

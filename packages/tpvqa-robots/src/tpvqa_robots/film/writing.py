@@ -10,7 +10,9 @@ from PIL import Image
 from tpvqa.errors import MissingExtraError, WriteError
 from tpvqa_robots import DISTRIBUTION
 
-GIF_SIZE, GIF_COLOURS = (720, 360), 64
+GIF_SIZE, GIF_COLOURS = (720, 360), 128
+_RARE = 48
+"""Colours of small things, among the others."""
 GIF_BYTES = 3_000_000
 """How large a GIF may be."""
 
@@ -50,7 +52,7 @@ def write_gif(file: Path, pictures: Sequence[NDArray[np.uint8]], *, rate: int) -
             Image.fromarray(picture).resize(GIF_SIZE, Image.Resampling.LANCZOS)
             for picture in pictures[::every]
         ]
-        palette = small[len(small) // 2].quantize(GIF_COLOURS)
+        palette = _palette(small[:: max(1, len(small) // 6)])
         frames = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in small]
         try:
             frames[0].save(
@@ -67,3 +69,19 @@ def write_gif(file: Path, pictures: Sequence[NDArray[np.uint8]], *, rate: int) -
             return
     file.unlink()
     raise WriteError(f"{file} would be larger than {GIF_BYTES / 1e6:g} MB.")
+
+
+def _palette(pictures: Sequence[Image.Image]) -> Image.Image:
+    """Colours for all of some pictures: the commonest, and those of small things."""
+    width, height = pictures[0].size
+    together = Image.new("RGB", (width, height * len(pictures)))
+    for number, picture in enumerate(pictures):
+        together.paste(picture, (0, number * height))
+    most = together.quantize(GIF_COLOURS - _RARE, method=Image.Quantize.MEDIANCUT)
+    rare = together.quantize(_RARE, method=Image.Quantize.MAXCOVERAGE)
+    colours: list[int] = []
+    for found, wanted in ((most, GIF_COLOURS - _RARE), (rare, _RARE)):
+        colours += (found.getpalette() or [])[: 3 * wanted]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(colours)
+    return palette

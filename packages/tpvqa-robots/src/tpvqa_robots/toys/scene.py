@@ -41,7 +41,7 @@ _ROOM = """<mujoco model="toys">
 <option timestep="0.002" integrator="implicitfast" cone="elliptic" impratio="20"/>
 <visual>
   <headlight ambient=".38 .38 .40" diffuse=".22 .22 .22" specular="0 0 0"/>
-  <quality shadowsize="4096" offsamples="4"/><map znear="0.007" zfar="4"/>
+  <quality shadowsize="4096" offsamples="4"/><map znear="0.007" zfar="4" shadowclip="1.4"/>
   <global offwidth="1280" offheight="960"/>
 </visual>
 <asset>
@@ -151,9 +151,9 @@ def _part(file: Path) -> Any:
 def _linked(hand: Any) -> Any:
     """The gripper with its fingers' linkages closed, as they are on the real one.
 
-    The model leaves each finger's inner joints to a soft tendon, and its knuckles' convex hulls
-    wedge the fingers at 46 mm. Here four bars keep the pads parallel, one motor's turn goes to
-    both fingers, and only what the fingers touch outside themselves stops them.
+    The model leaves each finger's inner joints to a soft tendon, by which they close too far. Here
+    four bars keep the pads parallel, one motor's turn goes to both fingers, and only what the
+    fingers touch outside themselves stops them.
     """
     mj = load_mujoco()
     for tendon in list(hand.tendons):
