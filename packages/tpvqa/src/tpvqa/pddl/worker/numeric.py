@@ -18,7 +18,8 @@ COMPARISONS: Mapping[str, str] = {">": "<=", "<": ">=", ">=": "<", "<=": ">"}
 CHANGES = ("increase", "decrease", "assign", "scale-up", "scale-down")
 _ARITHMETIC = ("+", "-", "*", "/")
 _REQUIREMENTS = (":fluents", ":numeric-fluents")
-_PREFIX = "number-"
+_PREFIX = "|number-"
+"""No name of PDDL begins so."""
 _COST = "total-cost"
 
 
@@ -108,16 +109,7 @@ class Numbers:
         if _compares(block):
             self._put(block, self._condition(str(block[0]), block, known))
             return
-        if block[:1] == ["not"] and len(block) == 2:
-            inner = block[1]
-            if isinstance(inner, Block) and _compares(inner):
-                if inner[0] in COMPARISONS:
-                    self._put(block, self._condition(COMPARISONS[str(inner[0])], inner, known))
-                    return
-                raise self._wrong(
-                    f"{said(block)} is not known; expected (or (< …) (> …))", block.line
-                )
-        if block and block[0] in CHANGES and self._is_change(block):
+        if block and block[0] in CHANGES and _is_about_numbers(block):
             self._put(block, self._effect(block, known))
             return
         if block[:1] in (["forall"], ["exists"]) and len(block) > 1:
@@ -125,11 +117,6 @@ class Numbers:
         for part in block:
             if isinstance(part, Block):
                 self._rewrite(part, known)
-
-    def _is_change(self, block: Block) -> bool:
-        about = block[1] if len(block) > 1 else None
-        words = about if isinstance(about, Block) else [about]
-        return words != [_COST]
 
     def _put(self, block: Block, name: str) -> None:
         block[:] = [Word(name, block.line)]
@@ -294,7 +281,7 @@ class Numbers:
             tag, *rest = written
             if tag == "literal":
                 found = self._conditions.get(rest[1])
-                return written if found is None else ["compare", *found]
+                return written if found is None else _compared(*found, holds=rest[0])
             if tag in ("and", "or"):
                 return [tag, *map(condition, rest)]
             return [tag, rest[0], condition(rest[1])]
@@ -334,6 +321,15 @@ class Numbers:
         }
 
 
+def _compared(operator: str, left: Any, right: Any, *, holds: bool) -> list[Any]:
+    """A comparison, or its opposite."""
+    if holds:
+        return ["compare", operator, left, right]
+    if operator == "=":
+        return ["or", ["compare", "<", left, right], ["compare", ">", left, right]]
+    return ["compare", COMPARISONS[operator], left, right]
+
+
 def _declared(domain: Block) -> Iterator[tuple[str, list[list[str]]]]:
     """The functions with the variables and types of their arguments."""
     for section in sections(domain, ":functions"):
@@ -357,7 +353,7 @@ def _declared(domain: Block) -> Iterator[tuple[str, list[list[str]]]]:
 def _is_about_numbers(block: Block) -> bool:
     head = block[0] if block else None
     if head in CHANGES and len(block) > 1:
-        return isinstance(block[1], Block) and block[1] != [_COST] and block[1][:1] != [_COST]
+        return _is_numeric(block[1]) and block[1] != [_COST]
     return _compares(block)
 
 

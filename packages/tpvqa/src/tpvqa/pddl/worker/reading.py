@@ -199,7 +199,7 @@ def _names_that_exist(error: _LocatedError) -> str:
         elif "predicate name" in error.message:
             known = set(names.get("predicate_dict", known))
         trace = trace.tb_next
-    names = sorted(str(name) for name in known)
+    names = sorted(str(name) for name in known if not str(name).startswith("|"))
     return suggestion_or_list(error.item, names) if names else ""
 
 
