@@ -225,7 +225,7 @@ def test_a_signal_ends_it_cleanly_and_the_token_is_never_said(
         (("--vlm", "oracle:0.9"), "noise model"),
         (("--vlm", "recorded:gemma-3-12b"), "noise model"),
         (("--vlm", "embeded"), "Did you mean 'embedded'?"),
-        (("--vlm", "embedded:/nowhere"), "weights are missing"),
+        (("--vlm", "embedded:/nowhere"), "taught.json: cannot be read"),
         (("--host", "0.0.0.0"), "TPVQA_SERVE_TOKEN"),
         (("--option", "device"), "NAME=VALUE"),
         (("--option", "device=cpu"), "device"),

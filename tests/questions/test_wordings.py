@@ -175,7 +175,7 @@ def test_no_slip_of_the_keyboard_in_a_good_file_gives_another_error(
 def test_the_examples_of_the_documentation_are_understood(task: Task, tmp_path: Path) -> None:
     page = (Path(__file__).parents[2] / "docs" / "questions.md").read_text()
     blocks = [block.partition("```")[0] for block in page.split("```yaml\n")[1:]]
-    assert len(blocks) == 5
+    assert len(blocks) == 6
     found = book(task, tmp_path, "\n".join(blocks))
     assert (
         found.say(task.action("place", ["knife", "sink", "left"])) == "place the knife on the sink"
