@@ -1,30 +1,48 @@
-"""How often the rover of examples/numbers gets there: monitors and answers side by side.
+"""How often tasks with numbers get there: monitors and answers side by side.
 
-python -m benchmarks.numbers [SEEDS]
+python -m benchmarks.numbers rover|aircraft [SEEDS]
+
+The rover has questions and world files of its own. For the aircraft nobody wrote any: it is tried
+without, and with questions as `tpvqa questions --draft` makes them.
 """
 
 import sys
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
+from tpvqa.drafting.draft import draft
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events.events import Acted, Asked, Ended
-from tpvqa.pddl import State, Task
+from tpvqa.pddl import State, Task, load_task
 from tpvqa.planning import PlanningResult
 from tpvqa.planning.unified_engine import UnifiedEngine
 
-ROVER = Path(__file__).parents[1] / "examples" / "numbers" / "rover"
+TASKS = Path(__file__).parents[1] / "examples" / "numbers"
 LIMIT = 5.0
-CELLS = (
-    ("none", "1.0"),
-    ("tpvqa", "1.0"),
-    ("tpvqa", "0.95"),
-    ("tpvqa", "0.9"),
-    ("tpvqa:3", "0.9"),
-    ("tpvqa:5", "0.9"),
-)
+CELLS = {
+    "rover": (
+        ("none", "oracle:1.0"),
+        ("tpvqa", "oracle:1.0"),
+        ("tpvqa", "oracle:0.95"),
+        ("tpvqa", "oracle:0.9"),
+        ("tpvqa:3", "oracle:0.9"),
+        ("tpvqa:5", "oracle:0.9"),
+    ),
+    "aircraft": (
+        ("none", "oracle:1.0"),
+        ("tpvqa", "oracle:1.0"),
+        ("tpvqa", "oracle:0.9"),
+        ("tpvqa", "oracle:0.9:0:0.74"),
+        ("tpvqa", "flawed:late:0.9"),
+        ("tpvqa:5", "oracle:0.9"),
+        ("tpvqa:5", "oracle:0.9:0:0.74"),
+        ("tpvqa:5", "flawed:late:0.9"),
+    ),
+}
 
 
 class Known(UnifiedEngine):
@@ -44,43 +62,62 @@ class Known(UnifiedEngine):
         return self._known[key]
 
 
-def configuration(world: str, monitor: str, right: str) -> TrialConfig:
+def configurations(name: str, folder: Path) -> Iterator[tuple[str, dict[str, str]]]:
+    """The files of a task, and what each choice of them is called."""
+    files = {part: str(TASKS / name / f"{part}.pddl") for part in ("domain", "problem")}
+    if name == "rover":
+        questions = str(TASKS / name / "questions.yaml")
+        for world in ("world.yaml", "world-sensed.yaml"):
+            world_file = str(TASKS / name / world)
+            yield world, {**files, "questions": questions, "world_file": world_file}
+        return
+    yield "no questions", files
+    task = load_task(Path(files["domain"]), Path(files["problem"]))
+    drafted = folder / "questions.yaml"
+    drafted.write_text(draft(task))
+    yield "drafted questions", {**files, "questions": str(drafted)}
+
+
+def configuration(files: dict[str, str], monitor: str, vlm: str) -> TrialConfig:
     """What a cell's trials are made from."""
-    task = {
-        "domain": str(ROVER / "domain.pddl"),
-        "problem": str(ROVER / "problem.pddl"),
-        "questions": str(ROVER / "questions.yaml"),
-        "world_file": str(ROVER / world),
-    }
-    parts = {"planner": "up:aries", "monitor": monitor, "vlm": f"oracle:{right}"}
+    parts = {"planner": "up:aries", "monitor": monitor, "vlm": vlm}
     return TrialConfig.model_validate(
-        {"task": task, **{name: {"spec": spec} for name, spec in parts.items()}}
+        {"task": files, **{name: {"spec": spec} for name, spec in parts.items()}}
     )
 
 
-def main(seeds: int) -> None:
+def main(name: str, seeds: int) -> None:
     """Print a line for each cell."""
     planner = Known()
-    for world in ("world.yaml", "world-sensed.yaml"):
-        for monitor, right in CELLS:
-            config, ends, asked, acted = configuration(world, monitor, right), Counter[str](), 0, 0
-            for seed in range(1, seeds + 1):
-                writer = MemoryWriter()
-                with Trial(config.but(seed=seed), planner=planner) as trial:
-                    trial.run(writer)
-                end = writer.events[-1]
-                assert isinstance(end, Ended)
-                wrongly = "wrongly " if end.believed_goal and not end.completed else ""
-                ends["reached" if end.completed else wrongly + end.because] += 1
-                asked += sum(len(e.questions) for e in writer.events if isinstance(e, Asked))
-                acted += sum(isinstance(e, Acted) for e in writer.events)
-            print(
-                f"{world:18} {monitor:8} {right:5} reached {ends['reached'] / seeds:.2f}  "
-                f"{asked / seeds:.0f} questions  {acted / seeds:.1f} actions  {dict(ends)}",
-                flush=True,
-            )
+    with TemporaryDirectory() as folder:
+        for called, files in configurations(name, Path(folder)):
+            for monitor, vlm in CELLS[name]:
+                print(f"{called:18} {monitor:8} {vlm:17} ", end="", flush=True)
+                print(of_cell(configuration(files, monitor, vlm), planner, seeds), flush=True)
     planner.close()
 
 
+def of_cell(config: TrialConfig, planner: Known, seeds: int) -> str:
+    """What the trials of one cell came to."""
+    ends, asked, acted = Counter[str](), 0, 0
+    for seed in range(1, seeds + 1):
+        writer = MemoryWriter()
+        with Trial(config.but(seed=seed), planner=planner) as trial:
+            trial.run(writer)
+        end = writer.events[-1]
+        assert isinstance(end, Ended)
+        wrongly = "wrongly " if end.believed_goal and not end.completed else ""
+        ends["reached" if end.completed else wrongly + end.because] += 1
+        asked += sum(len(e.questions) for e in writer.events if isinstance(e, Asked))
+        acted += sum(isinstance(e, Acted) for e in writer.events)
+    return (
+        f"reached {ends['reached'] / seeds:.2f}  {asked / seeds:.0f} questions  "
+        f"{acted / seeds:.1f} actions  {dict(ends)}"
+    )
+
+
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 50)
+    main(
+        sys.argv[1] if len(sys.argv) > 1 else "rover",
+        int(sys.argv[2]) if len(sys.argv) > 2 else 50,
+    )

@@ -18,14 +18,15 @@ from tpvqa.errors import QuestionsError, TpvqaError, WorldFileError
 from tpvqa.events import Event, Started
 from tpvqa.events.events import Acted, Asked, Decided, Ended
 from tpvqa.pddl import State, Task, load_task
-from tpvqa.pddl.arithmetic import number
+from tpvqa.pddl.arithmetic import number, values_in
 from tpvqa.pddl.numeric import with_values
-from tpvqa.planning import Plan, Planner, PlanningResult
+from tpvqa.planning import Plan, Planner, PlanningResult, Unsolvable
 from tpvqa.planning.clingo import ClingoPlanner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.unified_engine import UnifiedEngine
 from tpvqa.questions import QuestionBook
 from tpvqa.resuming import trial_of
+from tpvqa.worlds.capabilities import simulation_of
 from tpvqa.worlds.world_file import load_world_file
 
 pytest.importorskip("up_aries")
@@ -151,6 +152,63 @@ def test_plans_are_found_where_there_are_any(planner: Planner, task: Task) -> No
         solvable = _solvable(task, state)
         result = planner.plan(task, state, timeout=5)
         assert isinstance(result, Plan) or not solvable  # what is found is replayed
+
+
+def test_what_numbers_cannot_come_to_is_told_without_a_search(planner: Planner, task: Task) -> None:
+    """A basket that is believed full of nothing cannot be emptied."""
+    state = with_values(task.init, {("load",): number("3")})
+    result = planner.plan(task, state, timeout=5)
+    assert isinstance(result, Unsolvable)
+    assert not _solvable(task, state)
+
+
+def test_nothing_to_do_is_a_plan(planner: Planner, task: Task) -> None:
+    state = task.init
+    plan = planner.plan(task, state, timeout=10)
+    assert isinstance(plan, Plan)
+    for action in plan.actions:
+        state = task.apply(state, action)
+    nothing = planner.plan(task, state, timeout=5)
+    assert isinstance(nothing, Plan)
+    assert nothing.actions == ()
+
+
+AIRCRAFT = configured(
+    domain=str(ROVER.parent / "aircraft" / "domain.pddl"),
+    problem=str(ROVER.parent / "aircraft" / "problem.pddl"),
+    planner="up:aries",
+    monitor="tpvqa",
+    vlm="oracle:1.0",
+)
+
+
+@pytest.mark.parametrize("seed", range(1, 7))
+def test_without_a_world_file_numbers_go_with_what_is_undone(seed: int, planner: Planner) -> None:
+    """As many are on board as are in the aircraft, whatever fell out of it."""
+    writer = MemoryWriter()
+    config = AIRCRAFT.but(seed=seed, simulation={"disturbance": 0.5})
+    with Trial(config, planner=planner) as trial:
+        trial.run(writer)
+        true = simulation_of(trial.parts.world).state
+    inside = sum(atom.predicate == "in" for atom in true)
+    assert values_in(true)["onboard", "plane1"] == inside
+    assert isinstance(writer.events[-1], Ended)
+
+
+def test_a_number_that_nobody_sees_is_doubted_after_three_failures(planner: Planner) -> None:
+    reached = doubted = 0
+    for seed in range(1, 9):
+        writer = MemoryWriter()
+        with Trial(AIRCRAFT.but(seed=seed), planner=planner) as trial:
+            trial.run(writer)
+        reached += completed(writer.events)
+        for event in writer.events:
+            if isinstance(event, Decided) and "of what is never asked" in event.reason:
+                doubted += 1
+                assert event.decision == "replan"
+                assert re.search(r"failed 3 times.* fuel\(plane1\) = \d+ is believed", event.reason)
+    assert doubted
+    assert reached >= 5
 
 
 def _solvable(task: Task, start: State) -> bool:

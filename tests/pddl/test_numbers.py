@@ -24,6 +24,7 @@ from tpvqa.pddl.arithmetic import (
     written,
 )
 from tpvqa.pddl.numeric import steps_of, value_of, with_values
+from tpvqa.planning.propositional import propositional
 
 ROVER = Path(__file__).parents[2] / "examples/numbers/rover"
 FUNCTIONS = [("load",), ("charge", "rover"), ("way", "hill", "lake")]
@@ -117,6 +118,7 @@ def test_numbers_go_as_in_another_simulator(seed: int) -> None:
     domain, problem = _random_task(draw)
     task = task_from_text(domain, problem)
     assert task.numeric is not None
+    within_reach = set(map(str, propositional(task, task.init).actions))
     theirs = io.PDDLReader().parse_problem_string(domain, problem)
     with shortcuts.SequentialSimulator(theirs) as simulator:
         there, here = simulator.get_initial_state(), task.init
@@ -133,6 +135,7 @@ def test_numbers_go_as_in_another_simulator(seed: int) -> None:
             assert simulator.is_goal(there) == task.goal_holds(here)
             if not possible:
                 break
+            assert {str(action) for action, _ in possible} <= within_reach
             action, instance = draw.choice(possible)
             there, here = simulator.apply(there, instance), task.apply(here, action)
             for words, value in values_in(here).items():
@@ -201,7 +204,7 @@ PROBLEM = (ROVER / "problem.pddl").read_text()
         ("(= (load) 0)", "", "(load) has no value at first, though collect"),
         ("(= (load) 0)", "(= (load) none)", "gives no number"),
         ("(= (weight flint) 2)", "(= (weight stone) 2)", "there is no object 'stone'"),
-        ("(:goal", "(:metric minimize (battery)) (:goal", "(:metric minimize (total-cost))"),
+        ("(:goal", "(:metric shrink (battery)) (:goal", "(:metric minimize (total-cost))"),
         ("(decrease (battery) (way ?a ?b))", "(decrease (battery))", "is no change of a number"),
     ],
 )
@@ -233,3 +236,11 @@ def test_a_function_of_costs_alone_is_no_number() -> None:
     task = task_from_text(domain, problem)
     assert task.numeric is None
     assert task.action("a").cost == 3
+
+
+def test_a_metric_of_a_number_is_passed_over() -> None:
+    metric = "(:metric minimize (+ (battery) (* 2 (total-time))))"
+    task = task_from_text(DOMAIN, PROBLEM.replace("(:goal", f"{metric} (:goal"))
+    assert task.metric is not None
+    assert "(* 2 (total-time))" in task.metric
+    assert rover().metric is None

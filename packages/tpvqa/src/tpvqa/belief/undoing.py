@@ -3,13 +3,16 @@
 from collections.abc import Callable, Sequence
 
 from tpvqa.pddl import Atom, State, Task
+from tpvqa.pddl.arithmetic import VALUE
+from tpvqa.pddl.likewise import numbers_likewise
 
 
 class BackToBefore:
     """An undone fact gives way to what held before it in its groups.
 
     A thing that is no longer in the hand is where it was taken from; the hand is free again. A
-    fact without an exactly-one group is false again.
+    fact without an exactly-one group is false again. Numbers go with that as with the action that
+    does it, where there is one; a number is never without a value.
 
     Args:
         task: Gives the mutex groups.
@@ -44,7 +47,9 @@ class BackToBefore:
             others = self._groups[number] - {atom}
             return next((each for each in reversed(history) if each in others), None)
 
-        after = self.undone(atom, state, before)
+        after = None if atom.predicate == VALUE else self.undone(atom, state, before)
+        if after is not None and task.numeric is not None:
+            after = numbers_likewise(task, state, after) or after
         return [] if after is None else [("it is as before", after)]
 
     def undone(

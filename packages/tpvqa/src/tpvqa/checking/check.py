@@ -69,6 +69,7 @@ def _findings(
         yield of_error("world", error)
     rules_into = str(world_file) if world_file is not None else WORLD
     yield from possible.of_goal(task, planner, timeout)
+    yield from possible.of_metric(task)
     yield from possible.of_actions(task, _undone(rules))
     yield from possible.of_predicates(task)
     yield from wordings.in_vain(task, given, questions)

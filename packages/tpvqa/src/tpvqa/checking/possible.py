@@ -180,6 +180,18 @@ def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
             )
 
 
+def of_metric(task: Task) -> Iterator[Finding]:
+    """A metric by which no plan is chosen."""
+    if task.metric is not None:
+        yield Finding(
+            "metric-passed-over",
+            Severity.NOTE,
+            f"plans are not chosen by {task.metric}",
+            "Give actions a total-cost where the price of a plan matters.",
+            named(task.problem_path),
+        )
+
+
 def of_predicates(task: Task) -> Iterator[Finding]:
     """Predicates that are declared and play no part."""
     spoken = _spoken_of(task)

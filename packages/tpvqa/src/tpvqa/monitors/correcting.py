@@ -6,6 +6,7 @@ from typing import Any
 
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.asker import Asks, check_effects, give_up, tally
+from tpvqa.monitors.doubting import doubted
 from tpvqa.monitors.measuring import is_of_number, measured
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.numbers_back import numbers_back
@@ -14,6 +15,7 @@ from tpvqa.monitors.requests import Request
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.pddl import Atom, Literal, State
 from tpvqa.pddl.lasting import Phase
+from tpvqa.planning.propositional import propositional
 from tpvqa.questions import FactQuestion, Way
 from tpvqa.vlm import Answer, Reply
 
@@ -58,9 +60,12 @@ class CorrectingMonitor:
     def after(self, step: Step) -> Check:
         """Check the effects: go on, or repeat the action; after the last one the goal, too.
 
-        What the robot measures of numbers is believed.
+        What the robot measures of numbers is believed, and what nobody sees of them is doubted
+        where the action fails again and again.
         """
         verdict = measured(step, (yield from check_effects(self._asker, step)))
+        if step.task.numeric is not None:
+            verdict = doubted(step, verdict, self._remember(step))
         if verdict.decision is Decision.REPLAN and verdict.state is not None:
             self._remember(step).record(step.state, verdict.state)
             return verdict
@@ -110,6 +115,10 @@ class CorrectingMonitor:
                 seen += affirmed
                 unseen += refused
         corrected = memory.take_out(step.state, denied, seen=seen, unseen=unseen)
+        if step.task.numeric is not None and not propositional(step.task, corrected).in_reach:
+            # What is said of numbers would leave no way to the goal: it is not taken at its word.
+            denied = [literal for literal in denied if not is_of_number(literal.atom)]
+            corrected = memory.take_out(step.state, denied, seen=seen, unseen=unseen)
         if corrected == step.state or step.task.numeric is None:
             return corrected
         return (yield from numbers_back(self._asker, step, memory, denied, corrected))

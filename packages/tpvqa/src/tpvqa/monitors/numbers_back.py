@@ -8,7 +8,8 @@ from tpvqa.monitors.memory import FactMemory
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import Request
 from tpvqa.pddl import Atom, Literal, State
-from tpvqa.pddl.arithmetic import values_in, written
+from tpvqa.pddl.arithmetic import Words, values_in, written
+from tpvqa.pddl.likewise import numbers_likewise
 from tpvqa.pddl.numeric import with_values
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
@@ -19,7 +20,9 @@ def numbers_back(
 ) -> Generator[Request, Any, State]:
     """The state in which what came with denied facts is taken back from numbers, too.
 
-    Where a question can tell it is asked, and only a yes takes anything back.
+    Where a question can tell it is asked, and only a yes takes anything back. Of what cannot be
+    asked it is as after the action that undoes what was denied, where there is one; else what had
+    become more is taken back, and what was used up is gone.
 
     Args:
         asker: Who asks.
@@ -28,6 +31,8 @@ def numbers_back(
         denied: The facts that were denied.
         state: The state without them.
     """
+    likewise = numbers_likewise(step.task, step.state, state)
+    values = {} if likewise is None else values_in(likewise)
     for literal in denied:
         for words, by in memory.came_with(literal.atom).items() if literal.positive else ():
             value = values_in(state)[words]
@@ -38,5 +43,12 @@ def numbers_back(
                 (answer,) = yield from asker.tell((question,))
                 if answer.reply is not Reply.YES:
                     continue
+            elif words in values or by < 0:
+                continue
             state = with_values(state, {words: value - by})
-    return state
+    unasked = {words: value for words, value in values.items() if not _asked(step, words)}
+    return with_values(state, unasked)
+
+
+def _asked(step: Step, words: Words) -> bool:
+    return step.book.asked(Literal(Atom(">=", (*words, "0"))))

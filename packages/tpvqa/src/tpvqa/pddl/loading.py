@@ -131,6 +131,7 @@ def task_from_text(
         problem_text=problem,
         lasting=Lasting.of(description["durative"]),
         numeric=numeric,
+        metric=description["metric"],
         **grounded_fields(description, None if numeric is None else numeric.init),
         **unsure_fields(description),
     )

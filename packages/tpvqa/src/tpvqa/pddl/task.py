@@ -31,8 +31,7 @@ class Task:
         types: The parent of each type; None for `object` and other roots.
         predicates: The types of each predicate's arguments; `a|b` for `(either a b)`.
         predicate_variables: The variables that each predicate is declared with, e.g. `?x`.
-        init: The initial state, static facts included, derived ones not; one of the possible ones
-            where the problem leaves something open.
+        init: The initial state, static facts included, derived ones not; one of the possible ones.
         goal: The goal.
         fluents: The predicates that actions change.
         derived: The predicates that follow from axioms.
@@ -51,12 +50,13 @@ class Task:
         problem_path: Where the problem was read from.
         domain_text: The text of the domain.
         problem_text: The text of the problem.
-        unknown: Facts that the problem says may hold at first or not: `(unknown …)`.
+        unknown: Facts that may hold at first or not: `(unknown …)`.
         oneof: Facts of which exactly one holds at first: `(oneof …)`.
         clauses: Literals of which at least one holds at first: `(or …)`.
         besides: Further facts that may hold at first, see `opened_to`.
         lasting: Its durative actions; None for a domain without any.
         numeric: Its numbers; None where no action changes any but the cost of a plan.
+        metric: The problem's metric, where plans are not chosen by it: one of other numbers.
     """
 
     name: str
@@ -87,6 +87,7 @@ class Task:
     besides: frozenset[Atom] = field(default=frozenset(), repr=False)
     lasting: Lasting | None = field(default=None, repr=False)
     numeric: Numeric | None = field(default=None, repr=False)
+    metric: str | None = field(default=None, repr=False)
 
     @cached_property
     def key(self) -> str:

@@ -5,12 +5,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tpvqa.pddl import Action, Atom, Condition, Conjunction, Literal, State, Task
-from tpvqa.pddl.arithmetic import COMPARISONS
+from tpvqa.pddl.arithmetic import COMPARISONS, values_in
 from tpvqa.pddl.derivation import GroundAxiom
 from tpvqa.pddl.ground import Effect
 from tpvqa.pddl.numeric import numbers_of
 from tpvqa.pddl.schema import FALSE, TRUE, join
 from tpvqa.planning.numbers import Numbering
+from tpvqa.planning.ranges import Ranges
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +100,8 @@ def propositional(task: Task, state: State) -> Propositional:
     if state - fluent != task.static or not fluent <= task.reachable_atoms:
         task = task.with_init(state | values)
     rules = task.derivation(state).rules if task.axioms else ()
-    possible, stays, actions = _within_reach(task.ground_actions(), rules, state)
+    reach, actions = _within_reach(task.ground_actions(), rules, state, Ranges(values_in(values)))
+    possible = reach.possible
     added = {e.literal.atom for a in actions for e in a.effects if e.literal.positive}
     deleted = {e.literal.atom for a in actions for e in a.effects if not e.literal.positive}
     heads = {rule.head for rule in rules} & possible
@@ -144,45 +146,66 @@ def propositional(task: Task, state: State) -> Propositional:
             if rule.head in heads
             if (condition := _decided(rule.condition, known)) != FALSE
         ),
-        in_reach=_may_hold(task.goal, possible, stays),
+        in_reach=reach.allows(task.goal),
         whole=not task.left_out,
         values=values,
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _Reach:
+    """What can come to hold where nothing is ever undone.
+
+    Attributes:
+        possible: The atoms that can.
+        stays: The atoms that hold and never cease to.
+        ranges: What numbers can be.
+    """
+
+    possible: set[Atom]
+    stays: set[Atom]
+    ranges: Ranges
+
+    def allows(self, condition: Condition) -> bool:
+        """Whether a condition can come to hold, where each literal is taken by itself."""
+        if isinstance(condition, Literal):
+            if condition.atom.predicate in COMPARISONS:
+                return not condition.positive or self.ranges.allows(condition.atom)
+            held = condition.atom in (self.possible if condition.positive else self.stays)
+            return held == condition.positive
+        parts = map(self.allows, condition.parts)
+        return all(parts) if isinstance(condition, Conjunction) else any(parts)
+
+
 def _within_reach(
-    actions: tuple[Action, ...], rules: tuple[GroundAxiom, ...], state: State
-) -> tuple[set[Atom], set[Atom], tuple[Action, ...]]:
-    """Atoms and actions that can be reached where nothing is ever undone, and what never is."""
+    actions: tuple[Action, ...], rules: tuple[GroundAxiom, ...], state: State, ranges: Ranges
+) -> tuple[_Reach, tuple[Action, ...]]:
+    """What can be reached where nothing is ever undone, and by which actions."""
     deleted = {e.literal.atom for a in actions for e in a.effects if not e.literal.positive}
-    stays = set(state) - deleted
-    possible, waiting = set(state), list(actions)
+    reach = _Reach(set(state), set(state) - deleted, ranges)
+    possible, waiting = reach.possible, list(actions)
     reached: list[Action] = []
-    before = (-1, -1)
-    while before != (len(possible), len(reached)):
+    before, wider = (-1, -1), False
+    while wider or before != (len(possible), len(reached)):
         before = len(possible), len(reached)
-        possible.update(rule.head for rule in rules if _may_hold(rule.condition, possible, stays))
+        possible.update(rule.head for rule in rules if reach.allows(rule.condition))
         left: list[Action] = []
         for action in waiting:
-            (reached if _may_hold(action.precondition, possible, stays) else left).append(action)
+            (reached if reach.allows(action.precondition) else left).append(action)
         waiting = left
         possible.update(
             effect.literal.atom
             for action in reached
             for effect in action.effects
-            if effect.literal.positive and _may_hold(effect.condition, possible, stays)
+            if effect.literal.positive and reach.allows(effect.condition)
         )
-    return possible, stays, tuple(reached)
-
-
-def _may_hold(condition: Condition, possible: set[Atom], stays: set[Atom]) -> bool:
-    """Whether a condition can come to hold, where each literal is taken by itself."""
-    if isinstance(condition, Literal):
-        if condition.atom.predicate in COMPARISONS:
-            return True  # what numbers can come to is left to who plans
-        return condition.atom in possible if condition.positive else condition.atom not in stays
-    parts = (_may_hold(part, possible, stays) for part in condition.parts)
-    return all(parts) if isinstance(condition, Conjunction) else any(parts)
+        wider = ranges.widen(
+            change
+            for action in reached
+            for change in action.changes
+            if reach.allows(change.condition)
+        )
+    return reach, tuple(reached)
 
 
 def _decided(condition: Condition, known: Callable[[Atom], bool | None]) -> Condition:

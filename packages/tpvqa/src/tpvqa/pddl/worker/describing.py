@@ -110,6 +110,7 @@ def static_description(task: Any) -> dict[str, Any]:
         ],
         "durative": getattr(task, "durative", None),
         "numeric": None,
+        "metric": task.metric,
     }
 
 

@@ -96,7 +96,6 @@ class Numbers:
         for section in sections(problem, ":goal"):
             self._rewrite(section, self._things)
         changed = {words[0] for _, words, _ in self._effects.values()}
-        self._check_metric(problem)
         self._values = self._valued(domain, problem)
         self._changed = sorted(changed)
         self._make_room(domain, place)
@@ -194,16 +193,6 @@ class Numbers:
                     item.line,
                 )
         return words
-
-    def _check_metric(self, problem: Block) -> None:
-        for section in sections(problem, ":metric"):
-            if any(word == _COST for block in blocks(section) for word in block):
-                continue
-            raise self._wrong(
-                f"{said(section)} is not known; expected (:metric minimize (total-cost)), or none "
-                "for any plan",
-                section.line,
-            )
 
     def _valued(self, domain: Block, problem: Block) -> list[list[Any]]:
         """The values of all functions at first. Those that only numbers speak of are taken out."""

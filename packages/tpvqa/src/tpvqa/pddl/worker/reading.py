@@ -12,6 +12,7 @@ from fast_downward.translate.pddl_parser.parse_error import ParseError
 from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.pddl.worker.durative import taken_apart
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
+from tpvqa.pddl.worker.metric import passed_over
 from tpvqa.pddl.worker.numeric import taken_out as numbers_taken_out
 from tpvqa.pddl.worker.reading_error import ReadingError
 from tpvqa.pddl.worker.requirements import beyond
@@ -56,6 +57,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
             raise ReadingError(error.message, part, error.line) from None
         _check_kind(part, blocks[part])
     durative = taken_apart(blocks["domain"], blocks["problem"])
+    metric = passed_over(blocks["problem"])
     numeric = numbers_taken_out(blocks["domain"], blocks["problem"], durative=durative is not None)
     found = beyond(blocks["domain"])
     if found is not None:
@@ -67,7 +69,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         raise ReadingError(error.message, "problem", error.line) from None
     try:
         task = parsing_functions.parse_task(blocks["domain"], blocks["problem"])
-        task.durative, task.numeric = durative, numeric
+        task.durative, task.numeric, task.metric = durative, numeric, metric
         _check_types(task, blocks)
         _check_derived(task)
         _check_names(task)

@@ -63,6 +63,8 @@ def solve(request: dict[str, Any]) -> dict[str, Any]:
         result = engine.solve(problem, timeout=request["seconds"])
     plan = result.plan
     if plan is not None and result.status in MET:
+        if plan.kind == PlanKind.TIME_TRIGGERED_PLAN and not plan.timed_actions:
+            return {"kind": "plan", "steps": []}  # as aries says that nothing is to be done
         if not hasattr(plan, "actions"):  # partly ordered, or with times
             plan = plan.convert_to(PlanKind.SEQUENTIAL_PLAN, problem)
         for convert in reversed(back):
