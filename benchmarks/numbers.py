@@ -1,6 +1,6 @@
 """How often tasks with numbers get there: monitors and answers side by side.
 
-python -m benchmarks.numbers rover|aircraft [SEEDS]
+python -m benchmarks.numbers rover|aircraft [SEEDS [ENGINE]]
 
 The rover has questions and world files of its own. For the aircraft nobody wrote any: it is tried
 without, and with questions as `tpvqa questions --draft` makes them.
@@ -46,10 +46,10 @@ CELLS = {
 
 
 class Known(UnifiedEngine):
-    """Aries, which plans from no state twice and has five seconds for it."""
+    """An engine that plans from no state twice and has five seconds for it."""
 
-    def __init__(self) -> None:
-        super().__init__("aries")
+    def __init__(self, engine: str) -> None:
+        super().__init__(engine)
         self._known: dict[object, PlanningResult] = {}
 
     def plan(
@@ -86,9 +86,9 @@ def configuration(files: dict[str, str], monitor: str, vlm: str) -> TrialConfig:
     )
 
 
-def main(name: str, seeds: int) -> None:
+def main(name: str, seeds: int = 50, engine: str = "aries") -> None:
     """Print a line for each cell."""
-    planner = Known()
+    planner = Known(engine)
     with TemporaryDirectory() as folder:
         for called, files in configurations(name, Path(folder)):
             for monitor, vlm in CELLS[name]:
@@ -117,7 +117,5 @@ def of_cell(config: TrialConfig, planner: Known, seeds: int) -> str:
 
 
 if __name__ == "__main__":
-    main(
-        sys.argv[1] if len(sys.argv) > 1 else "rover",
-        int(sys.argv[2]) if len(sys.argv) > 2 else 50,
-    )
+    task, *rest = sys.argv[1:] or ["rover"]
+    main(task, int(rest[0]) if rest else 50, rest[1] if rest[1:] else "aries")

@@ -1,0 +1,165 @@
+"""How many trials on the toys' table are completed: monitors and answers side by side, by physics.
+
+.venv-robot/bin/python -m benchmarks.toys FILE [TRIALS]      runs and writes rows; goes on where it was
+.venv/bin/python -m benchmarks.toys FILE --table             prints what stands in the file
+
+Every cell meets the same tables, slips and bad grasps by its seeds; a seed is run in all cells before
+the next. No limit but 45 actions, five times the plan.
+"""
+
+import json
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from tpvqa.assembly import Trial
+from tpvqa.bench.statistics import wilson
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import MemoryWriter
+from tpvqa.events import Event
+from tpvqa.events.events import Acted, Acting, Asked, Ended
+
+WORLD = "toys:slip=0.25:bad=0.25"
+ANSWERS = ("oracle:0.95:0:0.74", "oracle:0.8:0:0.74")
+CELLS = (
+    *((monitor, "oracle") for monitor in ("none", "blind:2", "blind:3", "tpvqa")),
+    *((monitor, vlm) for vlm in ANSWERS for monitor in ("tpvqa", "tpvqa:5", "belief")),
+)
+LIMITS = {"actions": 45, "repeats": 45, "replans": 45}
+
+
+def trial(monitor: str, vlm: str, seed: int) -> dict[str, Any]:
+    """One trial, as a row."""
+    parts = {"world": WORLD, "monitor": monitor, "vlm": vlm}
+    config = TrialConfig.model_validate(
+        {
+            "task": "collect_toys",
+            "seed": seed,
+            "limits": LIMITS,
+            **{name: {"spec": spec} for name, spec in parts.items()},
+        }
+    )
+    writer = MemoryWriter()
+    with Trial(config) as made:
+        made.run(writer)
+        believed = list(_believed(made.monitor))
+    end = writer.events[-1]
+    assert isinstance(end, Ended)
+    acted = [event for event in writer.events if isinstance(event, Acted)]
+    return {
+        "monitor": monitor,
+        "vlm": vlm,
+        "seed": seed,
+        "completed": end.completed,
+        "believed_goal": end.believed_goal,
+        "because": end.because,
+        "actions": len(acted),
+        "questions": sum(len(e.questions) for e in writer.events if isinstance(e, Asked)),
+        "robot_seconds": sum(each.seconds for each in acted),
+        "tried": [list(each) for each in _tried(writer.events)],
+        "believed": believed,
+    }
+
+
+def _tried(events: list[Event]) -> Iterator[tuple[str, str]]:
+    """Every action with what came of it, in truth."""
+    action = ""
+    for event in events:
+        if isinstance(event, Acting):
+            action = event.action.pddl()
+        elif isinstance(event, Acted) and event.truth is not None:
+            failure = event.truth.failure
+            yield action, "done" if failure is None else f"{failure.value}: {event.message}"
+
+
+def _believed(monitor: object) -> Iterator[tuple[str, float, float]]:
+    """Of every action how often it was tried and failed, as a belief monitor reckons."""
+    chances = getattr(monitor, "chances", None)
+    if chances is None:
+        return
+    skills = chances.likeliest.skills
+    for action in skills.all():
+        tried = skills.tried(action)
+        yield str(action), tried.times, tried.failed
+
+
+def table(rows: list[dict[str, Any]]) -> None:
+    """Print completion by cell, and failure rates by skill and object."""
+    for monitor, vlm in CELLS:
+        of = [row for row in rows if (row["monitor"], row["vlm"]) == (monitor, vlm)]
+        if not of:
+            continue
+        rate = wilson(sum(row["completed"] for row in of), len(of))
+        wrongly = sum(bool(row["believed_goal"]) and not row["completed"] for row in of)
+        ends = Counter(row["because"] for row in of if not row["completed"])
+        mean = {
+            name: sum(row[name] for row in of) / len(of)
+            for name in ("actions", "questions", "robot_seconds")
+        }
+        print(
+            f"| `{monitor}` | {vlm} | {rate.rate:.2f} ({rate.low:.2f}–{rate.high:.2f}) of {len(of)} "
+            f"| {wrongly} | {mean['actions']:.1f} | {mean['questions']:.0f} "
+            f"| {mean['robot_seconds'] / 60:.1f} | {dict(ends)}"
+        )
+    truly: dict[str, Counter[str]] = defaultdict(Counter)
+    for row in rows:
+        for action, came in row["tried"]:
+            truly[action]["tried"] += 1
+            truly[action]["failed"] += came != "done"
+            truly[action][came] += came != "done"
+    for action, count in sorted(truly.items()):
+        reasons = {k: n for k, n in count.items() if k not in ("tried", "failed") and n}
+        print(f"{action}: failed {count['failed']} of {count['tried']}", reasons)
+    print("as the belief monitor reckons, and in truth in the same trials:")
+    reckoned: dict[str, list[float]] = defaultdict(lambda: [0.0, 0.0])
+    same: dict[str, list[int]] = defaultdict(lambda: [0, 0])
+    for row in rows:
+        if row["monitor"] != "belief":
+            continue
+        for action, times, failed in row["believed"]:
+            reckoned[action][0] += times
+            reckoned[action][1] += failed
+        for action, came in row["tried"]:
+            same[action][0] += 1
+            same[action][1] += came != "done"
+    for action in sorted(reckoned):
+        times, failed = reckoned[action]
+        tries, fails = same[action]
+        print(f"| `{action}` | {failed:.1f} of {times:.1f} | {fails} of {tries} |")
+
+
+def main(file: Path, trials: int) -> None:
+    """Run what is missing in a file."""
+    rows = read(file)
+    done = {(row["monitor"], row["vlm"], row["seed"]) for row in rows}
+    with file.open("a") as out:
+        for seed in range(1, trials + 1):
+            for monitor, vlm in CELLS:
+                if (monitor, vlm, seed) not in done:
+                    row = trial(monitor, vlm, seed)
+                    out.write(json.dumps(row) + "\n")
+                    out.flush()
+                    print(
+                        seed,
+                        monitor,
+                        vlm,
+                        row["completed"],
+                        row["because"],
+                        row["actions"],
+                        flush=True,
+                    )
+
+
+def read(file: Path) -> list[dict[str, Any]]:
+    """The whole rows of a file."""
+    lines = file.read_text().splitlines() if file.exists() else []
+    return [json.loads(line) for line in lines if line.endswith("}")]
+
+
+if __name__ == "__main__":
+    if "--table" in sys.argv:
+        table(read(Path(sys.argv[1])))
+    else:
+        main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 100)
