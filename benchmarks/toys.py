@@ -1,10 +1,10 @@
 """How many trials on the toys' table are completed: monitors and answers side by side, by physics.
 
-.venv-robot/bin/python -m benchmarks.toys FILE [TRIALS]      runs and writes rows; goes on where it was
-.venv/bin/python -m benchmarks.toys FILE --table             prints what stands in the file
+.venv-robot/bin/python -m benchmarks.toys FILE [TRIALS]     runs, writes rows, goes on where it was
+.venv/bin/python -m benchmarks.toys FILE --table            prints what stands in the file
 
-Every cell meets the same tables, slips and bad grasps by its seeds; a seed is run in all cells before
-the next. No limit but 45 actions, five times the plan.
+Every cell meets the same tables, slips and bad grasps by its seeds; a seed is run in all cells
+before the next. No limit but 45 actions, five times the plan.
 """
 
 import json
@@ -99,8 +99,8 @@ def table(rows: list[dict[str, Any]]) -> None:
             for name in ("actions", "questions", "robot_seconds")
         }
         print(
-            f"| `{monitor}` | {vlm} | {rate.rate:.2f} ({rate.low:.2f}–{rate.high:.2f}) of {len(of)} "
-            f"| {wrongly} | {mean['actions']:.1f} | {mean['questions']:.0f} "
+            f"| `{monitor}` | {vlm} | {rate.rate:.2f} ({rate.low:.2f}–{rate.high:.2f}) of "
+            f"{len(of)} | {wrongly} | {mean['actions']:.1f} | {mean['questions']:.0f} "
             f"| {mean['robot_seconds'] / 60:.1f} | {dict(ends)}"
         )
     truly: dict[str, Counter[str]] = defaultdict(Counter)
