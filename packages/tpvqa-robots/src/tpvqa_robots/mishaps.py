@@ -27,13 +27,17 @@ class Mishaps:
     appendix: bool = False
 
     @classmethod
-    def read(cls, words: str) -> Self:
+    def read(cls, words: str, world: str = "toys") -> Self:
         """Read `appendix` (also where nothing is said), or `slip=0.2:bad=0.1:noise=1`.
+
+        Args:
+            words: The words.
+            world: The world that they are for; named in errors. Only `toys` has an appendix.
 
         Raises:
             PluginError: A word is not known, or no number from 0 to 1 (noise: 0 to 10) follows it.
         """
-        if words in ("", APPENDIX):
+        if world == "toys" and words in ("", APPENDIX):
             return cls(appendix=True)
         said: dict[str, float] = {}
         known = [field.name for field in fields(cls) if field.name != "appendix"]
@@ -45,9 +49,10 @@ class Mishaps:
                 value = -1.0
             if name not in known or not 0 <= value <= (10 if name == "noise" else 1):
                 raise PluginError(
-                    f"The world 'toys' does not understand {word[:40]!r}. Write toys, "
-                    "toys:appendix, or toys:slip=0.2:bad=0.1:noise=1: two probabilities and a "
-                    "factor on the cameras' errors from 0 to 10."
+                    f"The world {world!r} does not understand {word[:40]!r}. Write {world}, "
+                    + ("toys:appendix, " if world == "toys" else "")
+                    + f"or {world}:slip=0.2:bad=0.1:noise=1: two probabilities and a factor on "
+                    "the cameras' errors from 0 to 10."
                 )
             said[name] = value
         return cls(said.get("slip", 0.0), said.get("bad", 0.0), said.get("noise", 1.0))

@@ -4,6 +4,7 @@ Buss 2004, Introduction to Inverse Kinematics with Jacobian Transpose, Pseudoinv
 Least Squares Methods; on MuJoCo's own Jacobians. The gripper always points down.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa_robots.toys.mujoco import load_mujoco
+from tpvqa_robots.toys.scene import YAW_JOINT
 
 Vector = NDArray[np.float64]
 
@@ -55,12 +57,22 @@ class Kinematics:
         model: The compiled scene.
         joints: Addresses of the arm's joints in `qpos`.
         dofs: The same in `qvel`.
+        yaw: Tells how far the base has turned, radians: what stands around it is elsewhere then.
     """
 
-    def __init__(self, model: Any, joints: NDArray[np.int64], dofs: NDArray[np.int64]):
+    def __init__(
+        self,
+        model: Any,
+        joints: NDArray[np.int64],
+        dofs: NDArray[np.int64],
+        *,
+        yaw: Callable[[], float] = lambda: 0.0,
+    ):
         self._mj = mj = load_mujoco()
         self._model, self._data = model, mj.MjData(model)
         self._joints, self._dofs = joints, dofs
+        self._yaw = yaw
+        self._yaw_joint = model.joint(YAW_JOINT).qposadr[0]
         self._site = model.site("arm_hand_grip_site").id
         self._foot = model.body("support").id
         self._range = model.jnt_range[[model.dof_jntid[dof] for dof in dofs]]
@@ -128,13 +140,15 @@ class Kinematics:
         return arms
 
     def _place(self, arm: Vector) -> None:
-        # The foot stands where it stands when the base has not turned: all is seen from there.
+        # All is seen from the arm's foot, as where the base has not turned.
         self._data.qpos[self._joints] = arm
         self._mj.mj_kinematics(self._model, self._data)
         self._mj.mj_comPos(self._model, self._data)
 
     def _see_free(self, arm: Vector) -> None:
+        self._data.qpos[self._yaw_joint] = self._yaw()
         self._place(arm)
+        self._data.qpos[self._yaw_joint] = 0.0
         self._mj.mj_collision(self._model, self._data)
         for contact in self._data.contact[: self._data.ncon]:
             bodies = {int(self._model.geom_bodyid[geom]) for geom in contact.geom}

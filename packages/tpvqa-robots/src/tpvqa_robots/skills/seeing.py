@@ -72,8 +72,18 @@ def see(shot: Shot, thing: str, *, table: float) -> Seen | None:
         thing: One of `HUES`.
         table: Height of the table's top, metres.
     """
-    z = shot.points[..., 2]
-    mask = hue_mask(shot.rgb, *HUES[thing]) & (z > table - LOW)
+    return seen_as(shot, hue_mask(shot.rgb, *HUES[thing]), table=table)
+
+
+def seen_as(shot: Shot, mask: NDArray[np.bool_], *, table: float) -> Seen | None:
+    """A thing that some pixels show; None where they are too few, or not on the table or above it.
+
+    Args:
+        shot: The picture.
+        mask: The pixels, height × width.
+        table: Height of the table's top, metres.
+    """
+    mask = mask & (shot.points[..., 2] > table - LOW)
     if mask.sum() < ENOUGH:
         return None
     points = shot.points[mask]

@@ -1,9 +1,10 @@
 """The simulated robot: its skills find, pick up and place, on what its camera and joints tell."""
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,8 @@ SURE = 0.98
 """How sure the gripper is of that."""
 TRIES = 12
 """Grasps that are looked at for one that the arm can reach."""
+UNLIKE = 0.012, 0.3
+"""Metres or radians by which they differ from each other."""
 HIGH = 0.005
 """Metres above where it stood at which a thing is let go."""
 INTO = 0.045
@@ -86,7 +89,9 @@ class SimulatedRobot:
     ):
         self.machine, self.cameras = machine, cameras
         self._bad_grasp = bad_grasp
-        self._kinematics = Kinematics(machine.model, machine.qpos, machine.dofs)
+        self._kinematics = Kinematics(
+            machine.model, machine.qpos, machine.dofs, yaw=lambda: machine.yaw
+        )
         self._motions = Motions(machine, self._kinematics)
         self._lock = threading.Lock()
         self._shots = 0
@@ -191,7 +196,11 @@ class SimulatedRobot:
         return self.cameras.shot(self.machine.data, view, self._shots)
 
     def _see(self, thing: str) -> Seen | None:
-        return None if thing not in HUES else see(self._shot(), thing, table=TABLE)
+        return self._seen(self._shot(), thing)
+
+    def _seen(self, shot: Shot, thing: str) -> Seen | None:
+        """Where a thing is in a picture."""
+        return None if thing not in HUES else see(shot, thing, table=TABLE)
 
     def _find(self, args: tuple[str, ...], guard: Guard, feedback: Told) -> str:
         thing = args[0]
@@ -220,7 +229,7 @@ class SimulatedRobot:
             raise SkillError("something is in the hand already")
         self._retreat(guard)
         shot = self._shot()
-        seen = None if thing not in HUES else see(shot, thing, table=TABLE)
+        seen = self._seen(shot, thing)
         if seen is None:
             raise SkillError(f"{thing} is not in sight")
         feedback(f"looking for a grasp of {thing}")
@@ -287,7 +296,7 @@ class SimulatedRobot:
         )
         if not grasps:
             raise SkillError("no grasp is seen")
-        for grasp in grasps[:TRIES]:
+        for grasp in islice(_unlike(grasps), TRIES):
             try:
                 start = self._kinematics.line(
                     _grip(grasp).at(z=grasp.z + ABOVE), self.machine.reference
@@ -320,6 +329,20 @@ class SimulatedRobot:
         if self.shut and not self.closed_on_something:
             self._motions.fingers(guard, shut=False)
             self.shut, self.held = False, None
+
+
+def _unlike(grasps: Sequence[Grasp]) -> Iterator[Grasp]:
+    """The best grasp, then the best that is unlike all before it: what is near one that cannot be
+    reached can hardly be reached either."""
+    before: list[Grasp] = []
+    for grasp in grasps:
+        if not any(
+            np.hypot(grasp.x - b.x, grasp.y - b.y) < UNLIKE[0]
+            and abs(np.sin(grasp.angle - b.angle)) < np.sin(UNLIKE[1])
+            for b in before
+        ):
+            before.append(grasp)
+            yield grasp
 
 
 def _grip(grasp: Grasp) -> Grip:

@@ -1,4 +1,4 @@
-"""The task of the paper's appendix: its domain, problem and questions."""
+"""The tasks of these robots: their domains, problems and questions."""
 
 from functools import cache
 from importlib.util import find_spec
@@ -9,7 +9,10 @@ from tpvqa.tasks import TaskFiles, tasks_in
 
 @cache
 def task_files() -> tuple[TaskFiles, ...]:
-    """The files of `collect_toys`; none where the household is installed, which brings the same."""
+    """The files of `collect_toys`, unless the household is installed, which brings the same; and
+    of `sort_groceries`."""
+    here = Path(__file__).parent
+    groceries = tasks_in(here.parent / "bins" / "task", default_world="bins")
     if find_spec("tpvqa_household") is not None:
-        return ()
-    return tasks_in(Path(__file__).parent, default_world="toys")
+        return groceries
+    return (*tasks_in(here, default_world="toys"), *groceries)

@@ -137,18 +137,28 @@ class Cameras:
 
     def pixels_of(self, data: Any, view: str) -> Mapping[str, int]:
         """How many pixels truly show each body; for the truth alone."""
-        with self._lock:
-            self._canvas.enable_segmentation_rendering()
-            self._canvas.update_scene(data, CAMERAS[view], self._option)
-            drawn = np.array(self._canvas.render())
-            self._canvas.disable_segmentation_rendering()
-        geoms = drawn[..., 0][drawn[..., 1] == int(self._mj.mjtObj.mjOBJ_GEOM)]
+        geoms = self._geoms(data, view)
         found: dict[str, int] = {}
         for geom, count in zip(*np.unique(geoms[geoms >= 0], return_counts=True), strict=True):
             body = self._model.body(self._model.geom_bodyid[geom]).name
             name = "goal_area" if self._model.geom(geom).name == "goal_area" else body
             found[name] = found.get(name, 0) + int(count)
         return found
+
+    def mask_of(self, data: Any, view: str, body: str) -> NDArray[np.bool_]:
+        """Which pixels truly show a body: a recogniser without errors, where one stands in."""
+        own = np.nonzero(self._model.geom_bodyid == self._model.body(body).id)[0]
+        found: NDArray[np.bool_] = np.isin(self._geoms(data, view), own)
+        return found
+
+    def _geoms(self, data: Any, view: str) -> NDArray[np.int64]:
+        """The geom that each pixel shows; -1 for none."""
+        with self._lock:
+            self._canvas.enable_segmentation_rendering()
+            self._canvas.update_scene(data, CAMERAS[view], self._option)
+            drawn = np.array(self._canvas.render(), np.int64)
+            self._canvas.disable_segmentation_rendering()
+        return np.where(drawn[..., 1] == int(self._mj.mjtObj.mjOBJ_GEOM), drawn[..., 0], -1)
 
     def _points(
         self, data: Any, camera: str, depth: NDArray[np.float64], of: Intrinsics

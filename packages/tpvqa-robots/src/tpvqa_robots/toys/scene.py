@@ -129,7 +129,7 @@ def _room(spots: Mapping[str, Spot]) -> str:
     )
 
 
-def _part(file: Path) -> Any:
+def part_of_robosuite(file: Path) -> Any:
     """A model of robosuite's as a spec; two meshes of one name are one, as robosuite has it."""
     tree = ET.parse(file)
     for assets in tree.iter("asset"):
@@ -189,7 +189,7 @@ def _linked(hand: Any) -> Any:
 
 
 def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
-    """The compiled model: UR5e and Robotiq 85 on an Omron base that turns, as robosuite has them.
+    """The compiled model of the toys' table with the robot before it.
 
     Args:
         spots: Where the things stand.
@@ -197,21 +197,33 @@ def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
     Raises:
         MissingExtraError: MuJoCo or robosuite is not installed.
     """
+    return with_robot(load_mujoco().MjSpec.from_string(_room(spots)))
+
+
+def with_robot(room: Any) -> Any:
+    """The compiled model: UR5e and Robotiq 85 on an Omron base that turns, as robosuite has them.
+
+    Args:
+        room: A spec in which the arm's foot is to stand over the origin; what the arm has to keep
+            off is its body `table`.
+
+    Raises:
+        MissingExtraError: MuJoCo or robosuite is not installed.
+    """
     mj = load_mujoco()
     assets = robosuite_models()
-    base = _part(assets / "bases" / "omron_mobile_base.xml")
+    base = part_of_robosuite(assets / "bases" / "omron_mobile_base.xml")
     for name in ("mobile_forward", "mobile_side", "torso_height"):
         base.delete(base.actuator(f"actuator_{name}"))
         base.delete(base.joint(f"joint_{name}"))
     base.joint("joint_mobile_yaw").frictionloss = 20
     mast = mj.MjSpec.from_string(_MAST)
     base.body("base").add_frame().attach_body(mast.body("mast"), "", "")
-    arm = _part(assets / "robots" / "ur5e" / "robot.xml")
-    hand = _linked(_part(assets / "grippers" / "robotiq_gripper_85.xml"))
+    arm = part_of_robosuite(assets / "robots" / "ur5e" / "robot.xml")
+    hand = _linked(part_of_robosuite(assets / "grippers" / "robotiq_gripper_85.xml"))
     arm.body("right_hand").add_frame().attach_body(
         hand.body("robotiq_85_adapter_link"), "hand_", ""
     )
     base.body("support").add_frame().attach_body(arm.body("base"), "arm_", "")
-    room = mj.MjSpec.from_string(_room(spots))
     room.worldbody.add_frame().attach_body(base.body("base"), "", "")
     return room.compile()

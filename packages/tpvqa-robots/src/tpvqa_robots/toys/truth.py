@@ -67,7 +67,7 @@ def true_state(model: Any, data: Any, pixels: Mapping[str, int], atoms: Iterable
         pixels: How many pixels of the robot's camera show each thing.
         atoms: Those that are asked about.
     """
-    held = {name for name in MOVABLE if _touched_by_both(model, data, name)}
+    held = {name for name in MOVABLE if touched_by_both(model, data, name)}
     places = {name: None if name in held else _place(data, name) for name in MOVABLE}
 
     def holds(atom: Atom) -> bool:
@@ -85,7 +85,8 @@ def true_state(model: Any, data: Any, pixels: Mapping[str, int], atoms: Iterable
     return frozenset(atom for atom in atoms if holds(atom))
 
 
-def _touched_by_both(model: Any, data: Any, name: str) -> bool:
+def touched_by_both(model: Any, data: Any, name: str) -> bool:
+    """Whether parts of both fingers touch a body."""
     body, touching = model.body(name).id, set()
     for contact in data.contact[: data.ncon]:
         bodies = [int(model.geom_bodyid[geom]) for geom in contact.geom]

@@ -1,16 +1,17 @@
-"""How many trials on the toys' table are completed: monitors and answers side by side, by physics.
+"""How many trials are completed where physics decides: monitors and answers side by side.
 
-.venv-robot/bin/python -m benchmarks.toys FILE [TRIALS]     runs, writes rows, goes on where it was
-.venv/bin/python -m benchmarks.toys FILE --table            prints what stands in the file
+.venv-robot/bin/python -m benchmarks.physics toys|bins FILE [TRIALS]    runs, writes rows, goes on
+.venv/bin/python -m benchmarks.physics toys|bins FILE --table  prints what is in the file
 
 Every cell meets the same tables, slips and bad grasps by its seeds; a seed is run in all cells
-before the next. No limit but 45 actions, five times the plan.
+before the next. No limit but five times the actions of the plan.
 """
 
 import json
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,23 +22,56 @@ from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Event
 from tpvqa.events.events import Acted, Acting, Asked, Ended
 
-WORLD = "toys:slip=0.25:bad=0.25"
 ANSWERS = ("oracle:0.95:0:0.74", "oracle:0.8:0:0.74")
-CELLS = (
-    *((monitor, "oracle") for monitor in ("none", "blind:2", "blind:3", "tpvqa")),
-    *((monitor, vlm) for vlm in ANSWERS for monitor in ("tpvqa", "tpvqa:5", "belief")),
-)
-LIMITS = {"actions": 45, "repeats": 45, "replans": 45}
 
 
-def trial(monitor: str, vlm: str, seed: int) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Bench:
+    """What is run.
+
+    Attributes:
+        task: The task.
+        world: The world, with how often something is made to go wrong.
+        cells: Monitors and VLMs.
+        actions: Actions in a trial, at most.
+    """
+
+    task: str
+    world: str
+    cells: Sequence[tuple[str, str]]
+    actions: int
+
+
+BENCHES = {
+    "toys": Bench(
+        "collect_toys",
+        "toys:slip=0.25:bad=0.25",
+        (
+            *((monitor, "oracle") for monitor in ("none", "blind:2", "blind:3", "tpvqa")),
+            *((monitor, vlm) for vlm in ANSWERS for monitor in ("tpvqa", "tpvqa:5", "belief")),
+        ),
+        45,
+    ),
+    "bins": Bench(
+        "sort_groceries",
+        "bins:slip=0.1:bad=0.1",
+        (
+            *((monitor, "oracle") for monitor in ("none", "blind:2", "tpvqa")),
+            *((monitor, ANSWERS[0]) for monitor in ("tpvqa", "belief")),
+        ),
+        40,
+    ),
+}
+
+
+def trial(bench: Bench, monitor: str, vlm: str, seed: int) -> dict[str, Any]:
     """One trial, as a row."""
-    parts = {"world": WORLD, "monitor": monitor, "vlm": vlm}
+    parts = {"world": bench.world, "monitor": monitor, "vlm": vlm}
     config = TrialConfig.model_validate(
         {
-            "task": "collect_toys",
+            "task": bench.task,
             "seed": seed,
-            "limits": LIMITS,
+            "limits": dict.fromkeys(("actions", "repeats", "replans"), bench.actions),
             **{name: {"spec": spec} for name, spec in parts.items()},
         }
     )
@@ -85,9 +119,9 @@ def _believed(monitor: object) -> Iterator[tuple[str, float, float]]:
         yield str(action), tried.times, tried.failed
 
 
-def table(rows: list[dict[str, Any]]) -> None:
+def table(bench: Bench, rows: list[dict[str, Any]]) -> None:
     """Print completion by cell, and failure rates by skill and object."""
-    for monitor, vlm in CELLS:
+    for monitor, vlm in bench.cells:
         of = [row for row in rows if (row["monitor"], row["vlm"]) == (monitor, vlm)]
         if not of:
             continue
@@ -130,15 +164,15 @@ def table(rows: list[dict[str, Any]]) -> None:
         print(f"| `{action}` | {failed:.1f} of {times:.1f} | {fails} of {tries} |")
 
 
-def main(file: Path, trials: int) -> None:
+def main(bench: Bench, file: Path, trials: int) -> None:
     """Run what is missing in a file."""
     rows = read(file)
     done = {(row["monitor"], row["vlm"], row["seed"]) for row in rows}
     with file.open("a") as out:
         for seed in range(1, trials + 1):
-            for monitor, vlm in CELLS:
+            for monitor, vlm in bench.cells:
                 if (monitor, vlm, seed) not in done:
-                    row = trial(monitor, vlm, seed)
+                    row = trial(bench, monitor, vlm, seed)
                     out.write(json.dumps(row) + "\n")
                     out.flush()
                     print(
@@ -159,7 +193,8 @@ def read(file: Path) -> list[dict[str, Any]]:
 
 
 if __name__ == "__main__":
+    chosen, rows_file = BENCHES[sys.argv[1]], Path(sys.argv[2])
     if "--table" in sys.argv:
-        table(read(Path(sys.argv[1])))
+        table(chosen, read(rows_file))
     else:
-        main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 100)
+        main(chosen, rows_file, int(sys.argv[3]) if len(sys.argv) > 3 else 100)
