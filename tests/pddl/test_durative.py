@@ -142,6 +142,7 @@ def test_what_is_not_known_is_told_where_it_stands(
     [
         ("(raw vase)", "(raw vase) (at 5 (shut))", "timed initial literal"),
         ("(= (time vase) 3)", "(= (time vase) soon)", "gives no number"),
+        ("(= (time vase) 3)", "(= (time vase) 3) (= (time vase) 4)", "another value"),
         (" (:goal", " (:metric shrink (+ (total-time) 1))\n (:goal", "is not known; expected"),
     ],
 )
@@ -158,6 +159,18 @@ def test_a_duration_has_to_be_one(given: str) -> None:
     result = make_planner("up:aries").plan(task)
     assert isinstance(result, Crashed)
     assert "fire(vase)" in result.reason
+
+
+@pytest.mark.parametrize(("said", "lasts"), [("5e-1", 1), (".5", 1), ("+3.", 6), ("-2", None)])
+def test_numbers_are_read_as_they_are_written(said: str, lasts: float | None) -> None:
+    task = task_from_text(DOMAIN, PROBLEM.replace("(= (time vase) 3)", f"(= (time vase) {said})"))
+    assert task.lasting is not None
+    action = task.action("start-fire", ["vase"])
+    if lasts is None:
+        with pytest.raises(PDDLError, match="lasts -4 to -4"):
+            task.lasting.duration(action)
+    else:
+        assert task.lasting.duration(action) == (lasts, lasts)
 
 
 @pytest.mark.parametrize("planner", ["fast-downward", "clingo"])

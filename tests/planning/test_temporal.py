@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from tpvqa.pddl import Action, State, Task, load_task, task_from_text
 from tpvqa.pddl.lasting import Phase, Running
-from tpvqa.planning import Plan
+from tpvqa.planning import Crashed, Plan
+from tpvqa.planning.engines.temporal_solving import scale_of
 from tpvqa.planning.temporal import flaw
 from tpvqa.planning.unified_engine import UnifiedEngine
 from tpvqa.planning.watching import Watching
@@ -157,3 +158,49 @@ def test_a_shipped_domain_is_planned_with_what_overlaps(engine: UnifiedEngine) -
     assert [*looking.times] == sorted(looking.times)
     names = [action.name for action in looking.actions]
     assert names.count("while-sterilise") == names.count("while-load") == 3
+
+
+def test_what_is_left_may_be_any_number(engine: UnifiedEngine) -> None:
+    """By a robot's clock; engines want whole numbers, and take long over great ones."""
+    yard = LABORATORY.parent / "yard"
+    task = load_task(yard / "domain.pddl", yard / "problem.pddl")
+    begun = [
+        task.action("start-carry", words)
+        for words in (("c1", "a", "s1", "t1"), ("c2", "b", "s2", "t2"))
+    ]
+    state: State = task.init
+    for action in begun:
+        state = task.apply(state, action)
+    left = (1.23456, 3.14159)
+    plan = engine.plan_meanwhile(task, state, [*map(Running, begun, left)], timeout=20)
+    assert isinstance(plan, Plan), plan
+    ends = [
+        at for at, each in zip(plan.times, plan.actions, strict=True) if each.name == "end-carry"
+    ]
+    assert ends == pytest.approx(left, abs=1e-3)
+
+
+@pytest.mark.parametrize("lasts", [0.0001, 0.1234567, 1 / 3, 7.0, 1e6])
+def test_no_duration_is_rounded_away(lasts: float) -> None:
+    scale = scale_of({"lasting": [[0, 1, 2, lasts, lasts], [0, 1, 2, 1 / 997, 1]], "running": []})
+    assert abs(round(lasts * scale) / scale - lasts) <= max(1e-3 * lasts, 5e-4 * (lasts > 0.01))
+    assert round(scale / 997) > 0
+
+
+ROOMS = """(define (domain rooms) (:requirements :typing :durative-actions :fluents)
+ (:types room) (:predicates (in ?r - room)) (:functions (way ?a ?b - room))
+ (:durative-action go :parameters (?a ?b - room) :duration (= ?duration (way ?a ?b))
+  :condition (at start (in ?a)) :effect (and (at start (not (in ?a))) (at end (in ?b)))))"""
+WAYS = """(define (problem p) (:domain rooms) (:objects a b c - room)
+ (:init (in a) (= (way a b) 2) (= (way b b) 0) (= (way b c) 3)) (:goal (in {goal})))"""
+
+
+def test_a_way_from_a_place_to_itself_takes_no_time_and_is_not_gone(engine: UnifiedEngine) -> None:
+    """Competitions' problems are full of such: of nothing or without any value."""
+    plan = engine.plan(task_from_text(ROOMS, WAYS.format(goal="c")), timeout=20)
+    assert isinstance(plan, Plan), plan
+    assert plan.times[-1] == pytest.approx(5, abs=1)
+    back = WAYS.format(goal="a").replace("(in a) (=", "(in b) (=", 1)
+    none = engine.plan(task_from_text(ROOMS, back), timeout=20)
+    assert isinstance(none, Crashed)
+    assert "without what has no duration: the duration of go(" in none.reason

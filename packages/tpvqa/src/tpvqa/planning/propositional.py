@@ -83,12 +83,15 @@ class Propositional:
         return {**task, "atoms": len(numbers)}
 
 
-def propositional(task: Task, state: State) -> Propositional:
+def propositional(
+    task: Task, state: State, *, may: Callable[[Action], bool] = lambda _: True
+) -> Propositional:
     """Ground a task from a state.
 
     Args:
         task: The task; what it was grounded to is kept where that serves the state.
         state: The atoms that hold; derived ones do not count.
+        may: Whether an action may be taken at all.
 
     Raises:
         PDDLError: The state speaks of unknown predicates or objects.
@@ -100,7 +103,8 @@ def propositional(task: Task, state: State) -> Propositional:
     if state - fluent != task.static or not fluent <= task.reachable_atoms:
         task = task.with_init(state | values)
     rules = task.derivation(state).rules if task.axioms else ()
-    reach, actions = _within_reach(task.ground_actions(), rules, state, Ranges(values_in(values)))
+    taken = tuple(filter(may, task.ground_actions()))
+    reach, actions = _within_reach(taken, rules, state, Ranges(values_in(values)))
     possible = reach.possible
     added = {e.literal.atom for a in actions for e in a.effects if e.literal.positive}
     deleted = {e.literal.atom for a in actions for e in a.effects if not e.literal.positive}

@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import groupby, permutations
 from typing import Any
 
-from tpvqa.errors import PlannerError
+from tpvqa.errors import PDDLError, PlannerError
 from tpvqa.pddl import Action, Conjunction, Literal, State, Task, holds
 from tpvqa.pddl.lasting import Phase, Running, without
 from tpvqa.planning.propositional import Propositional, propositional
@@ -46,7 +46,8 @@ class Schedule:
             Running(action, left.get(action) or self._lasting.duration(action)[0])
             for action in self._lasting.under_way(task, state)
         )
-        ground = propositional(task, state)
+        self._untimed: str | None = None
+        ground = propositional(task, state, may=self._may)
         ends = [Literal(self._lasting.running(each.action), False) for each in self.running]
         self.ground: Propositional = replace(
             ground,
@@ -83,10 +84,7 @@ class Schedule:
             wanted = (Phase.WHILE, Phase.END)
             return [number.get((f"{phase}-{name}", action.arguments)) for phase in wanted]
 
-        durative, running = [], []
-        for start, action in enumerate(self.ground.actions):
-            if phase_of(action.name) is Phase.START and None not in parts(action):
-                durative.append([start, *parts(action), *self._lasting.duration(action)])
+        running = []
         for each in self.running:
             if None in parts(each.action):
                 raise PlannerError(f"{each.action} is running, and can never end from here")
@@ -94,10 +92,34 @@ class Schedule:
         return {
             **self.ground.numbered(),
             "instant": [n for (name, _), n in number.items() if phase_of(name) is None],
-            "lasting": durative,
+            "lasting": [
+                [start, *parts(action), *self._lasting.duration(action)]
+                for start, action in enumerate(self.ground.actions)
+                if phase_of(action.name) is Phase.START and None not in parts(action)
+            ],
             "running": running,
             "quickest": self._lasting.quickest,
         }
+
+    def _may(self, action: Action) -> bool:
+        """Whether an action that is to be begun has a duration.
+
+        Some arguments have none, as the way from a place to itself: with those it is not begun.
+        """
+        if self._lasting.phase_of(action.name) is Phase.START:
+            try:
+                self._lasting.duration(action)
+            except PDDLError as error:
+                self._untimed = self._untimed or str(error)
+                return False
+        return True
+
+    @property
+    def out_of_reach(self) -> str | None:
+        """What keeps the goal out of reach: actions that have no duration; None where nothing."""
+        if self.ground.in_reach or self._untimed is None:
+            return None
+        return f"the goal is out of reach without what has no duration: {self._untimed}"
 
     def result(
         self, reply: dict[str, Any], limit: float | None, name: str, start: float
@@ -124,6 +146,9 @@ class Schedule:
                 return Plan(actions, sum(a.cost for a in actions), name, seconds, times)
             case "timeout":
                 return TimedOut(limit or 0.0, name, seconds)
+            case "unsolvable" if self._untimed is not None:
+                reason = f"no plan without what has no duration: {self._untimed}"
+                return Crashed(reason, name, seconds)
             case "unsolvable" if self.ground.whole:
                 return Unsolvable(reply["reason"], name, seconds)
         return Crashed(reply.get("reason", reply["kind"]), name, seconds)

@@ -127,6 +127,8 @@ class UnifiedEngine(PlainArguments):
         except (PDDLError, PlannerError) as error:
             return Crashed(str(error), self.name, time.perf_counter() - start)
         ground = schedule.ground
+        if schedule.out_of_reach is not None:
+            return Crashed(schedule.out_of_reach, self.name, time.perf_counter() - start)
         if not ground.in_reach and ground.whole:
             reason = "the goal is out of reach even where nothing is ever undone"
             return Unsolvable(reason, self.name, time.perf_counter() - start)

@@ -1,5 +1,6 @@
 """How long actions last: the durations of a domain, and what its problem says of them."""
 
+import re
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
@@ -9,6 +10,7 @@ from tpvqa.pddl.worker.reading_error import ReadingError
 
 _BOUNDS = {"=": (0, 1), ">=": (0,), "<=": (1,)}
 _ARITHMETIC = ("+", "-", "*", "/")
+_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]{1,2})?")
 
 
 class Duration:
@@ -143,8 +145,20 @@ def values_of(domain: Block, problem: Block, functions: Collection[str]) -> list
             if not called or called[0] not in functions:
                 continue
             if not isinstance(fact[2], str) or not is_number(fact[2]):
-                raise ReadingError(f"{said(fact)} gives no number", "problem", fact.line)
-            values.append([[*map(str, called)], float(fact[2])])
+                raise ReadingError(
+                    f"{said(fact)} gives no number; expected one as 2, -2, 0.5 or 5e-1",
+                    "problem",
+                    fact.line,
+                )
+            words, value = [*map(str, called)], float(fact[2])
+            if any(before == words and other != value for before, other in values):
+                raise ReadingError(
+                    f"{said(fact)} gives another value to what has one already; take one of "
+                    "them out",
+                    "problem",
+                    fact.line,
+                )
+            values.append([words, value])
             section[:] = [each for each in section if each is not fact]
     return values
 
@@ -160,7 +174,7 @@ def quickest(problem: Block) -> bool:
 
 def is_number(word: str) -> bool:
     """Whether a word is a number as PDDL writes them."""
-    return word.replace(".", "", 1).isdigit() and word.isascii()
+    return _NUMBER.fullmatch(word) is not None
 
 
 def sections(definition: Block, name: str) -> Iterator[Block]:

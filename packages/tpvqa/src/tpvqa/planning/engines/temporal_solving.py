@@ -17,12 +17,23 @@ from tpvqa.planning.engines.unified_solving import MET, WHY, without_spaces
 BETTERING = 1.0
 """Seconds in which a quicker plan is sought where the problem asks for the quickest."""
 
+_GRID = 1000
+"""Into so many parts the unit of time is divided where durations have no common divisor."""
+
 
 def scale_of(task: dict[str, Any]) -> int:
-    """What makes whole numbers of all durations, which some engines want."""
+    """What makes whole numbers of all durations, which some engines want.
+
+    It stays small, as engines take long over great numbers: what is left to actions that run is
+    any number by the world's clock, and is rounded, as are durations that would ask for more.
+    """
     times = [time for *_, least, most in task["lasting"] for time in (least, most)]
     times += [left for *_, left in task["running"]]
-    return math.lcm(*(_exact(each).denominator for each in times))
+    near = [_near(each) for each in times]
+    exact = math.lcm(*(each.denominator for each in near))
+    if exact <= _GRID and all(abs(n - t) <= t / _GRID for n, t in zip(near, times, strict=True)):
+        return exact
+    return max(_GRID, int(10.0 ** math.ceil(math.log10(10 / min(times)))))
 
 
 def problem_of(task: dict[str, Any], scale: int = 1) -> Any:
@@ -40,7 +51,7 @@ def problem_of(task: dict[str, Any], scale: int = 1) -> Any:
     between = up.OpenTimeInterval(begin, finish)
     for start, meanwhile, end, least, most in task["lasting"]:
         action = up.DurativeAction(f"a{start}")
-        action.set_closed_duration_interval(_exact(least) * scale, _exact(most) * scale)
+        action.set_closed_duration_interval(_ticks(least, scale), _ticks(most, scale))
         lasts = needs_of(meanwhile)
         for part in needs_of(start):
             action.add_condition(begin, part)
@@ -55,7 +66,7 @@ def problem_of(task: dict[str, Any], scale: int = 1) -> Any:
             action.add_effect(finish, *effect)
         problem.add_action(action)
     for meanwhile, end, left in task["running"]:
-        over = up.GlobalStartTiming(_exact(left) * scale)
+        over = up.GlobalStartTiming(_ticks(left, scale))
         until = up.ClosedTimeInterval(up.GlobalStartTiming(), over)
         for part in needs_of(meanwhile):
             problem.add_timed_goal(until, part)
@@ -66,8 +77,12 @@ def problem_of(task: dict[str, Any], scale: int = 1) -> Any:
     return problem
 
 
-def _exact(number: float) -> Fraction:
-    return Fraction(number).limit_denominator(1000)
+def _near(number: float) -> Fraction:
+    return Fraction(number).limit_denominator(_GRID)
+
+
+def _ticks(number: float, scale: int) -> int:
+    return round(Fraction(number) * scale)
 
 
 def solve(request: dict[str, Any]) -> dict[str, Any]:
@@ -126,7 +141,7 @@ def _happenings(task: dict[str, Any], plan: Any, scale: int) -> list[list[float 
     bear on each other, or the plan would be none."""
     ends = {start: end for start, _, end, _, _ in task["lasting"]}
     found: list[tuple[Fraction, int, int]] = [
-        (_exact(left), 0, end) for _, end, left in task["running"]
+        (Fraction(_ticks(left, scale), scale), 0, end) for _, end, left in task["running"]
     ]
     if hasattr(plan, "timed_actions"):
         for at, instance, lasts in plan.timed_actions:
