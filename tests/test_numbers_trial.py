@@ -266,6 +266,18 @@ def test_a_number_without_words_is_not_asked(task: Task, tmp_path: Path) -> None
             '(weight ?x))"}]\n',
             "nothing says what ?x stands for",
         ),
+        *(
+            (f'undo:\n  - fact: "(aboard ?s)"\n    outcomes: [{{numbers: "{change}"}}]\n', says)
+            for change, says in [
+                ("(decrease (load) much)", "found 'much'"),
+                ("(decrease (load) ?s)", "found '?s'"),
+                ("(decrease (load) 1e99999999)", "found '1e99999999'"),
+                ("(decrease (load) (+ 1 2 3))", "wants two numbers"),
+                ("(decrease (load) (/ 1 0.0))", "divides by 0"),
+                ("(decrease (load) (weight hill))", "has no value in this task"),
+                ("(" * 3000, "changes no number"),
+            ]
+        ),
     ],
 )
 def test_a_world_file_that_does_not_fit(text: str, says: str, task: Task, tmp_path: Path) -> None:
