@@ -4,6 +4,7 @@ import random
 import re
 from collections import deque
 from collections.abc import Iterator
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -14,12 +15,13 @@ from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
-from tpvqa.errors import QuestionsError, TpvqaError, WorldFileError
+from tpvqa.errors import PDDLError, QuestionsError, TpvqaError, WorldFileError
 from tpvqa.events import Event, Started
 from tpvqa.events.events import Acted, Asked, Decided, Ended
-from tpvqa.pddl import State, Task, load_task
+from tpvqa.pddl import Atom, State, Task, load_task
 from tpvqa.pddl.arithmetic import number, values_in
 from tpvqa.pddl.numeric import with_values
+from tpvqa.pddl.state_file import read_state
 from tpvqa.planning import Plan, Planner, PlanningResult, Unsolvable
 from tpvqa.planning.clingo import ClingoPlanner
 from tpvqa.planning.fast_downward import FastDownward
@@ -236,6 +238,43 @@ def test_who_knows_no_numbers_says_who_does(planner: Planner, task: Task) -> Non
 def test_the_belief_monitor_is_refused() -> None:
     with pytest.raises(TpvqaError, match=r"change numbers \(battery, load\)"):
         Trial(CONFIG.but(monitor="belief"))
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "(at base)\n(= (battery) 60.0) (= (load) .5)",
+        '[["at", "base"], ["=", "battery", "60"], "(= (load) 1/2)"]',
+    ],
+)
+def test_a_state_file_gives_values(lines: str, task: Task, tmp_path: Path) -> None:
+    file = tmp_path / "state"
+    file.write_text(lines)
+    state = read_state(file, task)
+    assert values_in(state) == {("battery",): 60, ("load",): Fraction(1, 2)}
+    assert Atom("at", ("base",)) in state
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("(at base)", "gives (battery) no value"),
+        ("(= (battery) 1e99999999)", "'1e99999999' is no number"),
+        ("(>= (battery) 5)", "it compares"),
+        ("(= (battery) 5) (= (battery) 6)", "it has the value 5 already"),
+        ("(= (capacity) 5)", "no action changes capacity"),
+        ("(= (battery) (load))", "is no value of a function"),
+        ("(= (battery 5", "not closed"),
+    ],
+)
+def test_a_state_file_whose_numbers_do_not_fit(
+    line: str, says: str, task: Task, tmp_path: Path
+) -> None:
+    file = tmp_path / "state"
+    file.write_text(f"(= (load) 0)\n{line}")
+    with pytest.raises(PDDLError) as caught:
+        read_state(file, task)
+    assert says in str(caught.value)
 
 
 def test_a_number_without_words_is_not_asked(task: Task, tmp_path: Path) -> None:

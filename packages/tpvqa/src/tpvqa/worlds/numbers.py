@@ -117,8 +117,8 @@ class NumberChange:
         return state if new is None else with_values(state, {function: new})
 
 
-def _has_value(words: Words, numbers: Numeric) -> bool:
-    return words in numbers.values
+def _has_value(words: Sequence[object], numbers: Numeric) -> bool:
+    return tuple(map(str, words)) in numbers.values
 
 
 def _no_expression(part: Expression) -> str:
