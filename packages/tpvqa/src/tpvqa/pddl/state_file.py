@@ -26,7 +26,7 @@ def read_state(path: Path, task: Task) -> State:
     """
     text = read_text(path, PDDLError, what="state file")
     as_json = text.lstrip()[:1] in ("[", "{")
-    state = set()
+    state: set[Atom] = set()
     for line, words in _json_atoms(text, path) if as_json else _lines(text):
         try:
             atom = Atom.parse(words)
