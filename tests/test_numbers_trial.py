@@ -18,6 +18,7 @@ from tpvqa.episodes.log import LOG
 from tpvqa.errors import PDDLError, QuestionsError, TpvqaError, WorldFileError
 from tpvqa.events import Event, Started
 from tpvqa.events.events import Acted, Asked, Decided, Ended
+from tpvqa.monitors.memory import FactMemory
 from tpvqa.pddl import Atom, State, Task, load_task
 from tpvqa.pddl.arithmetic import number, values_in
 from tpvqa.pddl.numeric import with_values
@@ -238,6 +239,14 @@ def test_who_knows_no_numbers_says_who_does(planner: Planner, task: Task) -> Non
 def test_the_belief_monitor_is_refused() -> None:
     with pytest.raises(TpvqaError, match=r"change numbers \(battery, load\)"):
         Trial(CONFIG.but(monitor="belief"))
+
+
+def test_what_was_used_up_comes_back_only_from_the_number_as_it_was_left(task: Task) -> None:
+    memory, at = FactMemory(task), Atom("at", ("hill",))
+    there = task.apply(task.init, task.action("drive", ("base", "hill")))
+    memory.record(task.init, there)
+    assert memory.came_with(at, there) == {("battery",): -20}
+    assert not memory.came_with(at, with_values(there, {("battery",): Fraction(100)}))
 
 
 @pytest.mark.parametrize(
