@@ -1,6 +1,5 @@
 """The questions file: reading it, and seeing that it fits the domain."""
 
-import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
@@ -202,8 +201,7 @@ def _in_turn(place: Place, parameters: Sequence[str], known: Sequence[str]) -> l
     for item in place.items() if place.is_list() else [place]:
         template = _template(item, parameters, known)
         first = next(iter(found.values()), template)
-        spoken = " ".join(re.findall(r"\w+", str(template).casefold()))
-        if spoken in found:
+        if str(template) in found:
             raise item.wrong("this wording is given twice; leave it out once")
         said, names = ({each.parameter for each in t.placeholders()} for t in (template, first))
         if said != names:
@@ -212,7 +210,7 @@ def _in_turn(place: Place, parameters: Sequence[str], known: Sequence[str]) -> l
                 f"every wording of a question names the same things, and only one of this and "
                 f"the first names {which}"
             )
-        found[spoken] = template
+        found[str(template)] = template
     if not found:
         raise place.wrong("expected a question, or a list of its wordings, found an empty list")
     return list(found.values())
