@@ -4,6 +4,7 @@ import random
 import re
 from collections import deque
 from collections.abc import Iterator
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -14,12 +15,14 @@ from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
-from tpvqa.errors import QuestionsError, TpvqaError, WorldFileError
+from tpvqa.errors import PDDLError, QuestionsError, TpvqaError, WorldFileError
 from tpvqa.events import Event, Started
 from tpvqa.events.events import Acted, Asked, Decided, Ended
-from tpvqa.pddl import State, Task, load_task
+from tpvqa.monitors.memory import FactMemory
+from tpvqa.pddl import Atom, State, Task, load_task
 from tpvqa.pddl.arithmetic import number, values_in
 from tpvqa.pddl.numeric import with_values
+from tpvqa.pddl.state_file import read_state
 from tpvqa.planning import Plan, Planner, PlanningResult, Unsolvable
 from tpvqa.planning.clingo import ClingoPlanner
 from tpvqa.planning.fast_downward import FastDownward
@@ -238,6 +241,51 @@ def test_the_belief_monitor_is_refused() -> None:
         Trial(CONFIG.but(monitor="belief"))
 
 
+def test_what_was_used_up_comes_back_only_from_the_number_as_it_was_left(task: Task) -> None:
+    memory, at = FactMemory(task), Atom("at", ("hill",))
+    there = task.apply(task.init, task.action("drive", ("base", "hill")))
+    memory.record(task.init, there)
+    assert memory.came_with(at, there) == {("battery",): -20}
+    assert not memory.came_with(at, with_values(there, {("battery",): Fraction(100)}))
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "(at base)\n(= (battery) 60.0) (= (load) .5)",
+        '[["at", "base"], ["=", "battery", "60"], "(= (load) 1/2)"]',
+    ],
+)
+def test_a_state_file_gives_values(lines: str, task: Task, tmp_path: Path) -> None:
+    file = tmp_path / "state"
+    file.write_text(lines)
+    state = read_state(file, task)
+    assert values_in(state) == {("battery",): 60, ("load",): Fraction(1, 2)}
+    assert Atom("at", ("base",)) in state
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("(at base)", "gives (battery) no value"),
+        ("(= (battery) 1e99999999)", "'1e99999999' is no number"),
+        ("(>= (battery) 5)", "it compares"),
+        ("(= (battery) 5) (= (battery) 6)", "it has the value 5 already"),
+        ("(= (capacity) 5)", "no action changes capacity"),
+        ("(= (battery) (load))", "is no value of a function"),
+        ("(= (battery 5", "not closed"),
+    ],
+)
+def test_a_state_file_whose_numbers_do_not_fit(
+    line: str, says: str, task: Task, tmp_path: Path
+) -> None:
+    file = tmp_path / "state"
+    file.write_text(f"(= (load) 0)\n{line}")
+    with pytest.raises(PDDLError) as caught:
+        read_state(file, task)
+    assert says in str(caught.value)
+
+
 def test_a_number_without_words_is_not_asked(task: Task, tmp_path: Path) -> None:
     file = tmp_path / "questions.yaml"
     file.write_text('numbers:\n  battery: "Is the battery {comparison} {number}?"\n')
@@ -265,6 +313,18 @@ def test_a_number_without_words_is_not_asked(task: Task, tmp_path: Path) -> None
             'undo:\n  - fact: "(aboard ?s)"\n    outcomes: [{numbers: "(decrease (load) '
             '(weight ?x))"}]\n',
             "nothing says what ?x stands for",
+        ),
+        *(
+            (f'undo:\n  - fact: "(aboard ?s)"\n    outcomes: [{{numbers: "{change}"}}]\n', says)
+            for change, says in [
+                ("(decrease (load) much)", "found 'much'"),
+                ("(decrease (load) ?s)", "found '?s'"),
+                ("(decrease (load) 1e99999999)", "found '1e99999999'"),
+                ("(decrease (load) (+ 1 2 3))", "wants two numbers"),
+                ("(decrease (load) (/ 1 0.0))", "divides by 0"),
+                ("(decrease (load) (weight hill))", "has no value in this task"),
+                ("(" * 3000, "changes no number"),
+            ]
         ),
     ],
 )

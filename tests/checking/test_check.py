@@ -214,6 +214,18 @@ def test_an_action_without_objects_or_facts_for_it_is_told(files: Files) -> None
     assert [each for each in found if "no object of the type brush" in each.says]
 
 
+def test_an_action_whose_numbers_never_allow_it_is_told(files: Files) -> None:
+    never = (
+        "(:functions (count)) (:action count :parameters () :precondition (< (count) -1) "
+        ":effect (increase (count) 1))"
+    )
+    files.change("domain.pddl", "(:action pick", f"{never}\n  (:action pick")
+    files.change("problem.pddl", "(:init", "(:init (= (count) 0)")
+    files.found()
+    files.change("domain.pddl", "(< (count) -1)", "(> 0 1)")
+    assert ["action-never-possible" for each in files.found() if "count" in each.says]
+
+
 def test_effects_that_differ_in_what_nobody_sees_alone_are_told(files: Files) -> None:
     extra = """
   (:action stamp

@@ -63,8 +63,7 @@ def test_the_simplest_form_of_a_comparison_says_the_same(
         return
     state = frozenset(value_of(words, value) for words, value in values.items())
     assert compares(*found, state) == holds
-    if found[0] != "=":
-        assert Literal(Atom(*found)).holds(state) == holds
+    assert Literal(Atom(*found)).holds(state) == holds
     assert Atom.parse(Atom(*found).pddl()) == Atom(*found)
 
 
@@ -203,6 +202,8 @@ PROBLEM = (ROVER / "problem.pddl").read_text()
         ("(:predicates", "(:derived (far) (> (way base lake) 3)) (:predicates", "(:derived …)"),
         ("(= (load) 0)", "", "(load) has no value at first, though collect"),
         ("(= (load) 0)", "(= (load) none)", "gives no number"),
+        ("(= (load) 0)", "(= (load) 0) (= (load) 5)", "it has the value 0 already"),
+        ("(:functions", "(:functions (+ ?s - sample)", "a function is called '+'"),
         ("(= (weight flint) 2)", "(= (weight stone) 2)", "there is no object 'stone'"),
         ("(:goal", "(:metric shrink (battery)) (:goal", "(:metric minimize (total-cost))"),
         ("(decrease (battery) (way ?a ?b))", "(decrease (battery))", "is no change of a number"),
@@ -213,6 +214,41 @@ def test_what_cannot_be_read_is_told_with_its_line(old: str, new: str, says: str
     with pytest.raises(PDDLError) as caught:
         task_from_text(DOMAIN.replace(old, new, 1), PROBLEM.replace(old, new, 1))
     assert says in str(caught.value)
+
+
+def test_two_numbers_that_change_may_be_equal() -> None:
+    equal, unequal = "(= (load) (battery))", "(not (= (load) (battery)))"
+    task = task_from_text(DOMAIN, PROBLEM.replace("(>= (battery) 20)", equal))
+    level = task.init | {Atom("stored", ("flint",)), Atom("stored", ("mud",))}
+    level = with_values(level, {("load",): Fraction(3), ("battery",): Fraction(3)})
+    assert task.goal_holds(level)
+    assert not task.goal_holds(with_values(level, {("load",): Fraction(2)}))
+    other = task_from_text(DOMAIN, PROBLEM.replace("(>= (battery) 20)", unequal))
+    assert not other.goal_holds(level)
+
+
+def test_a_sum_may_have_many_parts() -> None:
+    many = f"(+ (load) {'(weight mud) ' * 2000})"
+    task = task_from_text(DOMAIN, PROBLEM.replace("(>= (battery) 20)", f"(<= {many} 3000)"))
+    assert str(task.goal).count("load") == 1
+
+
+@pytest.mark.parametrize(
+    "text", ["1e9", "1e999999999", "1_0", "+1", " 1", "nan", "\u0663", "1/0", ""]
+)
+def test_what_is_no_number(text: str) -> None:
+    with pytest.raises(ValueError, match="is no number"):
+        number(text)
+
+
+def test_an_expression_that_is_nested_without_end_is_refused() -> None:
+    with pytest.raises(ValueError, match="nested more than"):
+        parsed("(" * 5000)
+
+
+def test_a_value_is_read_as_values_are_written() -> None:
+    assert Atom.parse("(= (battery) 60.0)") == Atom("=", ("battery", "60"))
+    assert Atom.parse("(= (battery) .5)") == Atom("=", ("battery", "0.5"))
 
 
 def test_a_predicate_may_be_called_as_what_is_known_of_numbers() -> None:

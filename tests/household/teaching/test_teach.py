@@ -162,7 +162,4 @@ def test_what_cannot_be_taught_is_said(tpvqa: Run, taught: Path, tmp_path: Path)
     code, _, error = tpvqa(*words)
     assert code == 2
     assert "all pictures together" in " ".join(error.split())
-    (tmp_path / "out.part" / "pictures-000000.npz").write_bytes(b"torn")
-    code, _, error = tpvqa(*command(few, "out"))
-    assert code == 2
-    assert "Traceback" not in error
+    assert not (tmp_path / "out.part").exists()  # nothing keeps more pictures from being given

@@ -34,7 +34,7 @@ def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Fin
         why = ""
         if undone & set(_predicates(schema.precondition)) or _unplanned(task, schema):
             continue
-        if schema.name not in reached:
+        if schema.name not in reached or schema.name not in by_name:
             why = _never(task, schema)
         elif all(_excluded(action, proved) for action in by_name[schema.name]):
             why = _excluded(by_name[schema.name][0], proved)

@@ -33,7 +33,7 @@ class FactMemory:
         self._initial = task.init
         self._believed = {g.atoms: sorted(task.init & g.atoms) for g in self._groups}
         self._changed: set[Atom] = set()
-        self._came_with: dict[Atom, dict[Words, Fraction]] = {}
+        self._came_with: dict[Atom, dict[Words, tuple[Fraction, Fraction]]] = {}
 
     @cached_property
     def _possible(self) -> frozenset[Atom]:
@@ -57,13 +57,22 @@ class FactMemory:
         self._changed |= before ^ after
         if self._task.numeric is not None:
             old, new = values_in(before), values_in(after)
-            by = {w: new[w] - old[w] for w in new if w in old and new[w] != old[w]}
+            by = {w: (new[w] - old[w], new[w]) for w in new if w in old and new[w] != old[w]}
             for atom in after - before:
                 self._came_with[atom] = by
 
-    def came_with(self, atom: Atom) -> Mapping[Words, Fraction]:
-        """By how much numbers changed with the action that brought a fact about."""
-        return self._came_with.get(atom, {})
+    def came_with(self, atom: Atom, state: State) -> Mapping[Words, Fraction]:
+        """By how much numbers changed with the action that brought a fact about.
+
+        What was used up counts only where the number is as that action left it: who has charged or
+        driven on since has arrived before.
+        """
+        values = values_in(state)
+        return {
+            words: by
+            for words, (by, then) in self._came_with.get(atom, {}).items()
+            if by > 0 or values.get(words) == then
+        }
 
     def correct(self, before: State, after: State, denied: Iterable[Literal]) -> None:
         """Note a correction by `take_out` of what was denied.

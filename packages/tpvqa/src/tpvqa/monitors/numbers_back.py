@@ -34,7 +34,9 @@ def numbers_back(
     likewise = numbers_likewise(step.task, step.state, state)
     values = {} if likewise is None else values_in(likewise)
     for literal in denied:
-        for words, by in memory.came_with(literal.atom).items() if literal.positive else ():
+        for words, by in (
+            memory.came_with(literal.atom, step.state).items() if literal.positive else ()
+        ):
             value = values_in(state)[words]
             comparison = ">=" if by < 0 else "<="
             back = Literal(Atom(comparison, (*words, written(value - by))))

@@ -6,6 +6,7 @@ whether it holds: `Atom(">=", ("battery", "robot", "20"))`.
 """
 
 import operator
+import re
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import lru_cache
@@ -34,6 +35,10 @@ ARITHMETIC: Mapping[str, Callable[[Fraction, Fraction], Fraction]] = {
     "/": operator.truediv,
 }
 
+_NUMBER = re.compile(r"-?([0-9]{1,4000}(\.[0-9]{0,4000}|/[0-9]{1,4000})?|\.[0-9]{1,4000})")
+_DEEPEST = 300
+"""How deep expressions are nested at most."""
+
 Words = tuple[str, ...]
 """A function and its arguments: `("battery", "robot")`."""
 Expression = str | tuple["str | Expression", ...]
@@ -42,15 +47,17 @@ Values = Mapping[Words, Fraction]
 
 
 def number(text: str) -> Fraction:
-    """Read a number.
+    """Read a number: 12, -2.5, .5 or 1/3; no exponents, of which few letters make endless numbers.
 
     Raises:
         ValueError: It is none.
     """
+    if _NUMBER.fullmatch(text) is None:
+        raise ValueError(f"{text[:40]!r} is no number")
     try:
         return Fraction(text)
     except ZeroDivisionError:
-        raise ValueError(f"{text!r} is no number") from None
+        raise ValueError(f"{text[:40]!r} is no number") from None
 
 
 def written(value: Fraction) -> str:
@@ -150,7 +157,9 @@ def parsed(text: str) -> Expression:
     return found
 
 
-def _parsed(words: list[str], at: int) -> tuple[Expression, int]:
+def _parsed(words: list[str], at: int, depth: int = 0) -> tuple[Expression, int]:
+    if depth > _DEEPEST:
+        raise ValueError(f"an expression is nested more than {_DEEPEST} deep")
     if at >= len(words) or words[at] == ")":
         raise ValueError("an expression is missing")
     if words[at] != "(":
@@ -158,7 +167,7 @@ def _parsed(words: list[str], at: int) -> tuple[Expression, int]:
     parts: list[Expression] = []
     at += 1
     while at < len(words) and words[at] != ")":
-        part, at = _parsed(words, at)
+        part, at = _parsed(words, at, depth + 1)
         parts.append(part)
     if at == len(words) or not parts:
         raise ValueError("a parenthesis is not closed")

@@ -1,5 +1,6 @@
 """Ground facts: tuples, as millions of them are hashed and compared in a long trial."""
 
+from contextlib import suppress
 from typing import NamedTuple
 
 from tpvqa.pddl.arithmetic import (
@@ -7,9 +8,11 @@ from tpvqa.pddl.arithmetic import (
     COMPARISONS,
     VALUE,
     compares,
+    number,
     of_several,
     parsed,
     text_of,
+    written,
 )
 
 
@@ -69,7 +72,7 @@ class Literal(NamedTuple):
 
 def holds_in(atom: Atom, state: "State") -> bool:
     """Whether an atom is one of a state's, or a comparison that its values bear out."""
-    if atom.predicate in COMPARISONS and atom.predicate != VALUE:
+    if atom.predicate in COMPARISONS and (atom.predicate != VALUE or of_several(atom.arguments)):
         return compares(atom.predicate, atom.arguments, state)
     return atom in state
 
@@ -85,6 +88,8 @@ def _comparison(text: str) -> Atom:
         raise ValueError(f"{text!r} compares no number; write it as (>= (battery r) 20)")
     left, right = two
     if isinstance(left, tuple) and isinstance(right, str) and left[0] not in ARITHMETIC:
+        with suppress(ValueError):  # what is no number is told by who knows the task
+            right = written(number(right))  # as values are written: 60.0 is 60
         return Atom(comparison, (*map(str, left), right))
     return Atom(comparison, (text_of(left), text_of(right)))
 

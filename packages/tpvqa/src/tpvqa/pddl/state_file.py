@@ -1,11 +1,14 @@
 """A state, read from a file that a person or another program wrote."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 from tpvqa.errors import PDDLError, shown
+from tpvqa.pddl.arithmetic import COMPARISONS, VALUE, Values, number, values_in, written
 from tpvqa.pddl.atoms import Atom, State
 from tpvqa.pddl.lines import lines_of
+from tpvqa.pddl.numeric import Numeric
 from tpvqa.pddl.task import Task
 from tpvqa.text_files import read_text
 
@@ -15,6 +18,7 @@ def read_state(path: Path, task: Task) -> State:
 
     The file holds one atom a line, `(on plate table)` or `on(plate, table)`, with comments after
     `;` or `#`; or a JSON list of such strings or of lists such as `["on", "plate", "table"]`.
+    The value of a number is `(= (battery) 60)` or `["=", "battery", "60"]`.
     Facts that no action changes may be left out: they are taken from the problem.
 
     Raises:
@@ -22,7 +26,7 @@ def read_state(path: Path, task: Task) -> State:
     """
     text = read_text(path, PDDLError, what="state file")
     as_json = text.lstrip()[:1] in ("[", "{")
-    state = set()
+    state: set[Atom] = set()
     for line, words in _json_atoms(text, path) if as_json else _lines(text):
         try:
             atom = Atom.parse(words)
@@ -36,20 +40,50 @@ def read_state(path: Path, task: Task) -> State:
             raise PDDLError(str(error), file=path, line=line) from None
         except PDDLError as error:
             raise PDDLError(str(error), file=path, line=line) from None
+        if task.numeric is not None and atom.predicate in COMPARISONS:
+            _see_value(atom, values_in(frozenset(state)), task.numeric, path, line)
         state.add(atom)
+    if task.numeric is not None:
+        given = values_in(frozenset(state))
+        missing = [words for words in values_in(task.numeric.init) if words not in given]
+        if missing:
+            said = f"({' '.join(min(missing))})"
+            raise PDDLError(f"it gives {said} no value; add (= {said} …)", file=path)
     return frozenset(state) | task.static
+
+
+def _see_value(atom: Atom, given: Values, numbers: Numeric, path: Path, line: int | None) -> None:
+    """See that an atom gives a number that changes its one value."""
+    words, why = atom.arguments[:-1], ""
+    if atom.predicate != VALUE:
+        why = "it compares; a state says what a number is, e.g. (= (battery) 60)"
+    elif words[0] not in numbers.changed:
+        why = f"no action changes {words[0]}; its value is the problem's, leave it out"
+    elif given.get(words, number(atom.arguments[-1])) != number(atom.arguments[-1]):
+        why = f"it has the value {written(given[words])} already"
+    if why:
+        raise PDDLError(f"{atom.pddl()}: {why}", file=path, line=line)
 
 
 def _lines(text: str) -> list[tuple[int | None, str]]:
     atoms: list[tuple[int | None, str]] = []
-    for number, line in enumerate(lines_of(text), start=1):
+    for row, line in enumerate(lines_of(text), start=1):
         words = line.split(";", 1)[0].split("#", 1)[0].strip()
         # Several atoms in PDDL's notation may share a line.
-        atoms += [(number, part + ")") for part in words.split(")")[:-1]] if words else []
-        rest = words.rsplit(")", 1)[-1].strip()
-        if rest:
-            atoms.append((number, rest))
+        atoms += [(row, part) for part in _parts(words)]
     return atoms
+
+
+def _parts(words: str) -> Iterator[str]:
+    """The atoms of a line; parentheses within them are those of numbers, `(= (battery) 60)`."""
+    depth = began = 0
+    for at, letter in enumerate(words):
+        depth += (letter == "(") - (letter == ")")
+        if letter == ")" and depth <= 0:
+            yield words[began : at + 1]
+            depth, began = 0, at + 1
+    if words[began:].strip():
+        yield words[began:].strip()
 
 
 def _json_atoms(text: str, path: Path) -> list[tuple[int | None, str]]:
@@ -64,12 +98,12 @@ def _json_atoms(text: str, path: Path) -> list[tuple[int | None, str]]:
     if not isinstance(entries, list):
         raise PDDLError('expected a JSON list of atoms, such as ["(on plate table)"]', file=path)
     atoms: list[tuple[int | None, str]] = []
-    for number, entry in enumerate(entries, start=1):
+    for nth, entry in enumerate(entries, start=1):
         if isinstance(entry, list) and entry and all(isinstance(word, str) for word in entry):
-            entry = " ".join(entry)
+            entry = Atom(entry[0], tuple(entry[1:])).pddl()
         if not isinstance(entry, str):
             raise PDDLError(
-                f"entry {number} of the list is no atom: {shown(json.dumps(entry))}; expected "
+                f"entry {nth} of the list is no atom: {shown(json.dumps(entry))}; expected "
                 '"(on plate table)" or ["on", "plate", "table"]',
                 file=path,
             )

@@ -5,7 +5,7 @@ from typing import Any
 
 from tpvqa.errors import PDDLError
 from tpvqa.pddl import Action, Atom, Condition, State, Task
-from tpvqa.pddl.arithmetic import ARITHMETIC, Expression, Words, sides, values_in, written
+from tpvqa.pddl.arithmetic import ARITHMETIC, Expression, Words, number, sides, values_in, written
 from tpvqa.pddl.outside.engines import taken
 from tpvqa.planning.protocol import Crashed
 
@@ -67,7 +67,7 @@ class Numbering:
 
     def _said(self, expression: Expression) -> Any:
         if isinstance(expression, str):
-            return expression
+            return written(number(expression))
         if expression[0] in ARITHMETIC:
             return [expression[0], *map(self._said, expression[1:])]
         return ["value", self._number(tuple(map(str, expression)))]

@@ -125,11 +125,17 @@ def train(
         )
     part = out.with_name(f"{out.name}.part")
     identity = _identity(spec, settings, held_back, known, context)
-    if _begin(part, identity):
+    going = _begin(part, identity)
+    if going:
         going_on(part)
     before = _before(spec, held, part, settings.seed, context, progress)
     progress.count("training steps")
-    trainer.fit(learnt, part, settings=settings, progress=progress)
+    try:
+        trainer.fit(learnt, part, settings=settings, progress=progress)
+    except TrainingError:
+        if not going and {each.name for each in part.iterdir()} <= {_IDENTITY, _BEFORE}:
+            shutil.rmtree(part, ignore_errors=True)  # so that more pictures may be given
+        raise
     folder = part / _LEARNT
     shutil.rmtree(folder, ignore_errors=True)
     trained = trainer.save(folder)
@@ -172,7 +178,7 @@ def _begin(part: Path, identity: str) -> bool:
     path = part / _IDENTITY
     try:
         if part.is_dir() and path.is_file():
-            if path.read_text(encoding="utf-8") != identity:
+            if path.read_bytes() != identity.encode():
                 raise TrainingError(
                     f"{part} holds a training that was begun with other pictures or settings. Go "
                     "on with these, or remove that folder"

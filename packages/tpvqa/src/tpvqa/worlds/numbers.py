@@ -10,6 +10,7 @@ from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.arithmetic import (
+    ARITHMETIC,
     Expression,
     Words,
     bound,
@@ -21,7 +22,7 @@ from tpvqa.pddl.arithmetic import (
     values_in,
     written,
 )
-from tpvqa.pddl.numeric import CHANGES, changed, numbers_of, with_values
+from tpvqa.pddl.numeric import CHANGES, Numeric, changed, numbers_of, with_values
 from tpvqa.yaml_places import Place
 
 _NUMBER = re.compile(r"-?[0-9]{1,12}(\.[0-9]{1,9})?")
@@ -97,6 +98,11 @@ class NumberChange:
             for word in words[1:]:
                 if word not in variables and word not in task.objects:
                     raise place.wrong(f"{text!r}: nothing says what {word} stands for")
+            if not set(words[1:]) & {*variables} and not _has_value(words, numbers):
+                raise place.wrong(f"{text!r}: {text_of(words)} has no value in this task")
+        why = _no_expression(by)
+        if why:
+            raise place.wrong(f"{text!r}: {why}")
         if function[0] not in numbers.changed:
             raise place.wrong(f"{text!r}: no action changes {function[0]}, so nothing else does")
         return NumberChange(str(kind), tuple(map(str, function)), by)
@@ -109,6 +115,24 @@ class NumberChange:
         by = evaluated(bound(self.by, binding), {**task.numeric.static, **values})
         new = None if by is None else changed(self.kind, values.get(function), by)
         return state if new is None else with_values(state, {function: new})
+
+
+def _has_value(words: Sequence[object], numbers: Numeric) -> bool:
+    return tuple(map(str, words)) in numbers.values
+
+
+def _no_expression(part: Expression) -> str:
+    """Why something stands for no number; nothing where it does."""
+    if isinstance(part, str):
+        proper = _NUMBER.fullmatch(part)
+        return "" if proper else f"expected a number such as 2 or (weight ?s), found {shown(part)}"
+    if part[0] not in ARITHMETIC:
+        return ""  # a function
+    if len(part) != 3:
+        return f"{text_of(part)} wants two numbers"
+    if part[0] == "/" and isinstance(part[2], str) and not number(part[2]):
+        return f"{text_of(part)} divides by 0"
+    return _no_expression(part[1]) or _no_expression(part[2])
 
 
 @dataclass(frozen=True, slots=True)

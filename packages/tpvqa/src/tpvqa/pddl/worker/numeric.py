@@ -71,6 +71,14 @@ class Numbers:
 
     def __init__(self, domain: Block, problem: Block, functions: Mapping[str, list[list[str]]]):
         self._functions = functions
+        odd = next((name for name in functions if name in (*_ARITHMETIC, *COMPARISONS)), None)
+        if odd is not None:
+            raise ReadingError(
+                f"a function is called {odd!r}, which means something else in expressions; take "
+                "another name",
+                "domain",
+                next(sections(domain, ":functions")).line,
+            )
         self._conditions: dict[str, tuple[str, Any, Any]] = {}
         self._effects: dict[str, tuple[str, list[str], Any]] = {}
         self._part = "domain"
@@ -159,7 +167,8 @@ class Numbers:
             if len(parts) < 2 or (head in "-/" and len(parts) > 2):
                 raise self._wrong(f"{said(item)} wants two numbers", item.line)
             while len(parts) > 2:
-                parts[:2] = [[str(head), parts[0], parts[1]]]
+                pairs = [parts[n : n + 2] for n in range(0, len(parts), 2)]  # deep by log2 alone
+                parts = [[str(head), *two] if len(two) == 2 else two[0] for two in pairs]
             return [str(head), *parts]
         wanted = self._functions.get(str(head))
         if wanted is None:
@@ -206,6 +215,7 @@ class Numbers:
             if isinstance(word, str)
         }
         found: list[list[Any]] = []
+        given: dict[tuple[str, ...], str] = {}
         for section in sections(problem, ":init"):
             for fact in list(section[1:]):
                 if not isinstance(fact, Block) or fact[:1] != ["="] or len(fact) != 3:
@@ -223,7 +233,14 @@ class Numbers:
                         fact.line,
                     )
                 words = words if isinstance(words, Block) else _block(fact.line, *words)
-                found.append([self._words(words, self._things), str(fact[2])])
+                written = self._words(words, self._things)
+                if given.setdefault(tuple(written), str(fact[2])) != fact[2]:
+                    raise self._wrong(
+                        f"{said(fact)}: it has the value {given[tuple(written)]} already; expected "
+                        "one value of each number",
+                        fact.line,
+                    )
+                found.append([written, str(fact[2])])
                 if name not in costs:
                     section[:] = [each for each in section if each is not fact]
         return found
