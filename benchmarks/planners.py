@@ -22,7 +22,7 @@ from tpvqa.planning.making import make_planner
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from tests.planning.families import OPENSTACKS, VISIT, openstacks, visit
+from tests.planning.families import OPENSTACKS, PRINTER, VISIT, openstacks, printer, visit
 
 PLANNERS = (
     "fast-downward",
@@ -76,6 +76,10 @@ def searches(timeout: float) -> list[dict[str, Any]]:
     ways: list[tuple[str, str | None]] = [("FF alone", None), ("lama", "lama"), ("default", None)]
     problems = [
         *((f"openstacks, {n} orders", OPENSTACKS, openstacks(n)) for n in (10, 20, 40)),
+        *(
+            (f"printer, {n} sheets, seed {seed}", PRINTER, printer(n, seed=seed))
+            for n, seed in ((6, 0), (8, 1), (12, 1), (12, 0))
+        ),
         *((f"square of {n}", VISIT, visit(n)) for n in (12, 16, 20, 30)),
     ]
     rows: list[dict[str, Any]] = []

@@ -31,6 +31,58 @@ VISIT = """(define (domain visit) (:requirements :typing) (:types cell)
   :effect (and (not (at ?a)) (at ?b) (visited ?b))))
 """
 
+PRINTER = """(define (domain printer) (:requirements :adl :typing :action-costs)
+(:types sheet part ink side)
+(:predicates (blank ?s - sheet) (at ?s - sheet ?p - part) (free ?p - part) (link ?a ?b - part)
+  (feeds ?p - part) (stacks ?p - part) (turns ?p - part) (prints ?p - part ?k - ink)
+  (up ?s - sheet ?u - side) (other ?u ?v - side) (wants ?s - sheet ?u - side ?k - ink)
+  (has ?s - sheet ?u - side ?k - ink) (after ?s ?t - sheet) (stacked ?s - sheet))
+(:functions (total-cost) - number (price ?k - ink) - number)
+(:action feed :parameters (?s - sheet ?p - part)
+  :precondition (and (blank ?s) (feeds ?p) (free ?p))
+  :effect (and (not (blank ?s)) (at ?s ?p) (not (free ?p)) (increase (total-cost) 1)))
+(:action pass :parameters (?s - sheet ?p ?q - part)
+  :precondition (and (at ?s ?p) (link ?p ?q) (free ?q))
+  :effect (and (not (at ?s ?p)) (free ?p) (at ?s ?q) (not (free ?q)) (increase (total-cost) 1)))
+(:action print :parameters (?s - sheet ?p - part ?k - ink ?u - side)
+  :precondition (and (at ?s ?p) (prints ?p ?k) (up ?s ?u) (wants ?s ?u ?k))
+  :effect (and (has ?s ?u ?k) (increase (total-cost) (price ?k))))
+(:action turn :parameters (?s - sheet ?p - part ?u ?v - side)
+  :precondition (and (at ?s ?p) (turns ?p) (up ?s ?u) (other ?u ?v))
+  :effect (and (not (up ?s ?u)) (up ?s ?v) (increase (total-cost) 1)))
+(:action stack :parameters (?s - sheet ?t - sheet ?p - part)
+  :precondition (and (at ?s ?p) (stacks ?p) (after ?s ?t) (stacked ?t)
+    (forall (?u - side ?k - ink) (imply (wants ?s ?u ?k) (has ?s ?u ?k))))
+  :effect (and (not (at ?s ?p)) (free ?p) (stacked ?s) (increase (total-cost) 1))))
+"""
+"""In the manner of IPC 2008's parcprinter: sheets go one way through parts that hold one each, past
+engines for each ink, and are stacked in their order; written anew."""
+
+
+def printer(sheets: int, *, lines: int = 2, seed: int = 0) -> str:
+    """Sheets with an image on one side or both, through parallel lines of an engine for each ink."""
+    random, names = Random(seed), [f"s{n}" for n in range(sheets + 1)]
+    facts, parts = ["(other front back)", "(other back front)", "(stacked s0)"], ["feeder", "tray"]
+    facts += ["(feeds feeder)", "(stacks tray)"]
+    for line in range(lines):
+        own = [f"{kind}{line}" for kind in ("in", "black", "colour", "turner", "again", "out")]
+        facts += [f"(link {a} {b})" for a, b in pairwise(["feeder", *own, "tray"])]
+        facts += [f"(prints black{line} black)", f"(prints colour{line} colour)"]
+        facts += [f"(turns turner{line})", f"(link again{line} in{(line + 1) % lines})"]
+        facts += [f"(link in{line} colour{line})"]
+        parts += own
+    for before, name in pairwise(names):
+        facts += [f"(blank {name})", f"(up {name} front)", f"(after {name} {before})"]
+        for side in ("front", "back")[: random.choice((1, 2, 2))]:
+            facts.append(f"(wants {name} {side} {random.choice(('black', 'colour'))})")
+    facts += [f"(free {part})" for part in parts]
+    return f"""(define (problem prints) (:domain printer)
+(:objects {" ".join(names)} - sheet {" ".join(parts)} - part black colour - ink front back - side)
+(:init (= (total-cost) 0) (= (price black) 5) (= (price colour) 20) {" ".join(facts)})
+(:goal (and {" ".join(f"(stacked {name})" for name in names[1:])}))
+(:metric minimize (total-cost)))
+"""
+
 
 def openstacks(orders: int, *, seed: int = 0) -> str:
     """As many orders as products; how many stacks are open counts."""

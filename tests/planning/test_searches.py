@@ -7,7 +7,7 @@ from types import ModuleType
 
 import pytest
 
-from tests.planning.families import OPENSTACKS, VISIT, openstacks, visit
+from tests.planning.families import OPENSTACKS, PRINTER, VISIT, openstacks, printer, visit
 from tests.planning.judges import val_accepts
 from tests.planning.random_states import walk
 from tpvqa.errors import PluginError
@@ -20,7 +20,9 @@ FF_ALONE = {"simple": fast_downward._FF, "other": fast_downward._FF}
 
 
 @pytest.mark.parametrize(
-    ("domain", "problem"), [(OPENSTACKS, openstacks(25)), (VISIT, visit(20))], ids=["costs", "unit"]
+    ("domain", "problem"),
+    [(OPENSTACKS, openstacks(25)), (PRINTER, printer(8, seed=1)), (VISIT, visit(20))],
+    ids=["stacks", "printer", "unit"],
 )
 def test_lama_finds_what_ff_alone_does_not(
     domain: str, problem: str, monkeypatch: pytest.MonkeyPatch
