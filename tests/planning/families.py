@@ -55,8 +55,8 @@ PRINTER = """(define (domain printer) (:requirements :adl :typing :action-costs)
     (forall (?u - side ?k - ink) (imply (wants ?s ?u ?k) (has ?s ?u ?k))))
   :effect (and (not (at ?s ?p)) (free ?p) (stacked ?s) (increase (total-cost) 1))))
 """
-"""In the manner of IPC 2008's parcprinter: sheets go one way through parts that hold one each, past
-engines for each ink, and are stacked in their order; written anew."""
+"""In the manner of IPC 2008's parcprinter: sheets go one way through parts that hold one each,
+past engines for each ink, and are stacked in their order; written anew."""
 
 
 def printer(sheets: int, *, lines: int = 2, seed: int = 0) -> str:
