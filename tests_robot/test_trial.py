@@ -26,6 +26,8 @@ def test_the_appendix_is_filmed(tmp_path: Path) -> None:
     text = (tmp_path / "made" / "episode.jsonl").read_text()
     events = [json.loads(line) for line in text.splitlines()]
     kinds = [(e["kind"], e.get("decision"), e.get("action")) for e in events]
+    started = events[0]  # labels of what was asked are worked out from here
+    assert "(found blue_container)" in set(started["true_start"]) - set(started["initial"])
     assert ("decided", "replan", "(place blue_container goal_area)") in kinds
     assert ("decided", "repeat", "(pick_up toy_eggplant)") in kinds
     ended = events[-1]

@@ -60,7 +60,7 @@ past engines for each ink, and are stacked in their order; written anew."""
 
 
 def printer(sheets: int, *, lines: int = 2, seed: int = 0) -> str:
-    """Sheets with an image on one side or both, through parallel lines of an engine for each ink."""
+    """Sheets with images on one side or both, through parallel lines of an engine for each ink."""
     random, names = Random(seed), [f"s{n}" for n in range(sheets + 1)]
     facts, parts = ["(other front back)", "(other back front)", "(stacked s0)"], ["feeder", "tray"]
     facts += ["(feeds feeder)", "(stacks tray)"]

@@ -45,7 +45,7 @@ from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, parameters_of
 from tpvqa.vlm.making import in_full
 from tpvqa.worlds import Restorable, World
-from tpvqa.worlds.capabilities import has_pictures, truth_of
+from tpvqa.worlds.capabilities import has_pictures, true_start, truth_of
 from tpvqa.worlds.making import make_world
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
@@ -247,7 +247,7 @@ class Trial:
     @property
     def _true_start(self) -> tuple[str, ...] | None:
         """The facts that truly hold at first; None where they are those of the problem."""
-        start = self.task.init if self.simulation is None else self.simulation.start
+        start = true_start(self.world, self.task)
         return None if start == self.task.init else atoms(start)
 
     def check(self) -> None:

@@ -10,11 +10,13 @@ from threading import Event
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from tpvqa.errors import WorldError
+from tpvqa.pddl.arithmetic import VALUE
 from tpvqa.plugins import class_of
 from tpvqa.vlm import TruthSource
 from tpvqa.worlds.outcome import Outcome
 
 if TYPE_CHECKING:
+    from tpvqa.pddl import State, Task
     from tpvqa.worlds.simulation import Simulation
 
 
@@ -128,3 +130,22 @@ def has_pictures(world: object) -> bool:
 def truth_of(world: object) -> TruthSource | None:
     """What is true in a world; None in one that does not know."""
     return world.truth if isinstance(world, Judged) else None
+
+
+def true_start(world: object, task: "Task") -> "State":
+    """The facts that truly hold at first; of a world that does not know, the problem's.
+
+    Args:
+        world: The world, before anything was done in it.
+        task: What the trial is about.
+    """
+    if is_simulated(world):
+        return simulation_of(world).start
+    truth = truth_of(world)
+    if truth is None:
+        return task.init
+    possible = task.reachable_atoms | task.init
+    try:
+        return frozenset(atom for atom in possible if atom.predicate == VALUE or truth.holds(atom))
+    except WorldError:  # what is true has not come from afar yet
+        return task.init
