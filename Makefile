@@ -19,7 +19,12 @@ demo: install
 	@echo "report:  $$PWD/$(DEMO)/report.html  (open it in a browser)"
 	@echo "next:    . $(BIN)/activate; tpvqa --help"
 
-test: install-dev gl lint types tests
+# Two installations at once, and the types beside the robot's tests, which mostly wait.
+test:
+	@$(MAKE) --no-print-directory -j2 install-dev robot-env gl
+	@$(MAKE) --no-print-directory lint
+	@$(MAKE) --no-print-directory -j2 types test-robot
+	@$(MAKE) --no-print-directory tests
 
 lint:
 	$(BIN)/ruff check .
@@ -74,7 +79,7 @@ robot: robot-env
 robot-env: $(ROBOT_VENV)/.installed
 
 test-robot: robot-env gl
-	MUJOCO_GL=osmesa $(ROBOT_BIN)/python -m pytest tests_robot
+	MUJOCO_GL=osmesa $(ROBOT_BIN)/python -m pytest -n 3 tests_robot
 
 $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
@@ -83,7 +88,7 @@ $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/py
 	@echo "installing tpvqa and its robots into $(ROBOT_VENV) …"
 	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check \
 	  -e packages/tpvqa -e 'packages/tpvqa-robots[ros2]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
-	  'pytest>=8.2' 'hypothesis>=6.100'
+	  'pytest>=8.2' 'pytest-xdist>=3.6' 'hypothesis>=6.100'
 	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps robosuite==1.5.2
 	@touch $@
 
