@@ -10,6 +10,7 @@ from threading import Event as Flag
 import pytest
 
 from tests.doubles import configured
+from tests.moments import moments
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.drivers.asynchronous import AsynchronousTrial
@@ -19,6 +20,7 @@ from tpvqa.errors import TpvqaError
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.events import Acted, Acting, Observed
 from tpvqa.pddl import Action
+from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
@@ -66,17 +68,20 @@ def test_killed_after_any_event_it_is_gone_on_with_to_the_same_end(
     writer = EpisodeWriter(tmp_path / "whole", durable=False)
     with Trial(config, planner=planner) as trial:
         whole = run(trial, writer, folder=tmp_path / "whole")
+        shared: dict[str, object] = {"task": trial.task}
+        if isinstance(trial.monitor, BeliefMonitor):
+            shared["model"] = trial.monitor.belief.model
     writer.close()
     lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
     assert len(lines) == len(whole) > 20
-    for cut in range(1, len(lines), max(1, len(lines) // 40)):
+    for cut in moments([event.kind for event in whole], spread=2):
         folder = tmp_path / f"cut{cut}"
         folder.mkdir()
         (folder / LOG).write_bytes(b"".join(lines[:cut]))
         events = read_episode(folder)
         started = events[0]
         assert isinstance(started, Started)
-        with trial_of(started, planner=planner) as trial:
+        with trial_of(started, planner=planner, **shared) as trial:
             writer = EpisodeWriter(folder, resume=cut, durable=False)
             run(trial, writer, started=started, recorded=events, folder=folder)
             writer.close()
@@ -203,7 +208,7 @@ def test_a_look_that_is_given_up_is_still_one_look(planner: Planner) -> None:
 
 
 def test_trials_run_beside_each_other_as_they_do_alone(planner: Planner) -> None:
-    configs = [CONFIG.but(monitor={"spec": "belief"}, episode=n) for n in range(6)]
+    configs = [CONFIG.but(monitor={"spec": "belief"}, episode=n) for n in range(3)]
 
     async def one(config: TrialConfig) -> list[dict[str, object]]:
         with Trial(config, planner=planner) as trial:

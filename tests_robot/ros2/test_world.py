@@ -5,7 +5,9 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from tpvqa import Atom, Task
 from tpvqa.errors import ConfigError
 from tpvqa.worlds import Report
 from tpvqa.worlds.capabilities import truth_of
+from tpvqa_robots.ros2.link import Link, said, seen
 from tpvqa_robots.ros2.setup import load_setup
 
 
@@ -51,6 +54,27 @@ def test_pictures_depth_joints_and_facts_arrive(start: Start, open_world: Open, 
     later = world.observe()
     assert later.time > seen.time
     assert {fact.atom for fact in later.facts} == {Atom("hand_empty")}
+
+
+@pytest.mark.parametrize("quality", [said, seen])
+def test_a_camera_is_heard_however_it_sends(quality: Callable[[], Any]) -> None:
+    """A large picture, in many pieces, by best effort as by reliable sending."""
+    from sensor_msgs.msg import Image
+
+    loop, camera = Link("loop"), Link("camera")
+    try:
+        heard: list[bytes] = []
+        loop.watch(Image, "/picture", lambda message: heard.append(bytes(message.data)))
+        large = Image(data=bytes(range(256)) * 400)
+        speaker = camera.speaker(Image, "/picture", quality())
+        camera.every(0.1, lambda: speaker.publish(large))
+        loop.start()
+        camera.start()
+        wait_for(lambda: bool(heard))
+        assert heard[-1] == bytes(large.data)
+    finally:
+        loop.close()
+        camera.close()
 
 
 def test_a_trial_goes_on_after_its_server_was_killed(
