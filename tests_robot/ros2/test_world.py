@@ -158,7 +158,10 @@ def test_the_simulated_arm_acts_over_dds(open_world: Open, act: Act) -> None:
         assert server.stdout is not None
         assert b"offered" in server.stdout.readline()
         world = open_world(
-            ("age: 1.0", "age: 3"), ("wait: 8", "wait: 20"), ("gone: 1.5", "gone: 5")
+            ("deadline: 10", "deadline: 120"),
+            ("age: 1.0", "age: 10"),
+            ("wait: 8", "wait: 60"),
+            ("gone: 1.5", "gone: 20"),
         )
         found = world.execute(act("find blue_container table"))
         assert found.report is Report.DONE, found.message
