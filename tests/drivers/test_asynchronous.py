@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Event as Flag
+from typing import Any
 
 import pytest
 
@@ -68,7 +69,7 @@ def test_killed_after_any_event_it_is_gone_on_with_to_the_same_end(
     writer = EpisodeWriter(tmp_path / "whole", durable=False)
     with Trial(config, planner=planner) as trial:
         whole = run(trial, writer, folder=tmp_path / "whole")
-        shared: dict[str, object] = {"task": trial.task}
+        shared: dict[str, Any] = {"task": trial.task}
         if isinstance(trial.monitor, BeliefMonitor):
             shared["model"] = trial.monitor.belief.model
     writer.close()
