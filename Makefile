@@ -9,6 +9,8 @@ SEED ?= 20
 ROBOT_VENV := .venv-robot
 ROBOT_BIN := $(ROBOT_VENV)/bin
 ROBOT_DEMO := episodes/robot
+# Of the big libraries only what is imported is compiled, and then.
+QUICKLY := --quiet --disable-pip-version-check --no-compile
 
 .PHONY: demo test lint types tests gl install install-dev clean robot robot-env test-robot
 
@@ -19,7 +21,12 @@ demo: install
 	@echo "report:  $$PWD/$(DEMO)/report.html  (open it in a browser)"
 	@echo "next:    . $(BIN)/activate; tpvqa --help"
 
-test: install-dev gl lint types tests
+# Two installations at once, and the types beside the robot's tests, which mostly wait.
+test:
+	@$(MAKE) --no-print-directory -j2 install-dev robot-env gl
+	@$(MAKE) --no-print-directory lint
+	@$(MAKE) --no-print-directory -j2 types test-robot
+	@$(MAKE) --no-print-directory tests
 
 lint:
 	$(BIN)/ruff check .
@@ -28,8 +35,9 @@ lint:
 types:
 	$(BIN)/mypy
 
+# A process a core, of one thread each: threads that wait for each other take three times as long.
 tests:
-	MUJOCO_GL=osmesa $(BIN)/pytest -n auto
+	MUJOCO_GL=osmesa OMP_NUM_THREADS=1 $(BIN)/pytest -n auto --dist worksteal
 
 install: $(VENV)/.installed
 install-dev: $(VENV)/.installed-dev
@@ -48,7 +56,7 @@ $(VENV)/.installed: $(VENV)/bin/python $(PROJECTS)
 
 $(VENV)/.installed-dev: $(VENV)/bin/python $(PROJECTS) requirements-dev.txt
 	@echo "installing tpvqa, its household, the experiments and development tools into $(VENV) …"
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements-dev.txt
+	@$(BIN)/python -m pip install $(QUICKLY) -r requirements-dev.txt
 	@touch $(VENV)/.installed $@
 
 # Software rendering needs Mesa's off-screen library, which is a system package.
@@ -74,17 +82,17 @@ robot: robot-env
 robot-env: $(ROBOT_VENV)/.installed
 
 test-robot: robot-env gl
-	MUJOCO_GL=osmesa $(ROBOT_BIN)/python -m pytest tests_robot
+	MUJOCO_GL=osmesa OMP_NUM_THREADS=1 $(ROBOT_BIN)/python -m pytest -n 3 --dist worksteal tests_robot
 
 $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 	  echo "tpvqa needs Python 3.11 or newer as '$(PYTHON)'. Name one: make PYTHON=python3.12 …"; exit 1; }
 	@$(PYTHON) -m venv $(ROBOT_VENV)
 	@echo "installing tpvqa and its robots into $(ROBOT_VENV) …"
-	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check \
+	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) \
 	  -e packages/tpvqa -e 'packages/tpvqa-robots[ros2]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
-	  'pytest>=8.2' 'hypothesis>=6.100'
-	@$(ROBOT_BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps robosuite==1.5.2
+	  'pytest>=8.2' 'pytest-xdist>=3.6' 'hypothesis>=6.100'
+	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) --no-deps robosuite==1.5.2
 	@touch $@
 
 clean:

@@ -6,11 +6,16 @@ import re
 import subprocess
 import sys
 import tomllib
+import venv
 import zipfile
+from importlib.metadata import Distribution, PathDistribution, distribution
 from pathlib import Path
+from shutil import copy2
 from typing import Any
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 import tpvqa
 from tests.lamps import make_set
@@ -98,16 +103,47 @@ def test_a_wheel_holds_all_its_files_its_licence_and_its_notice(
 
 
 class Installed:
-    """An environment of its own, with commands run in an empty folder."""
+    """An environment of its own, with commands run in an empty folder.
+
+    What a wheel says that it needs is copied from the environment of the tests, and nothing else;
+    `pip check` in the end says whether that is all.
+    """
 
     def __init__(self, folder: Path):
         self._bin, self._here = folder / "venv" / "bin", folder / "here"
-        subprocess.run([sys.executable, "-m", "venv", str(folder / "venv")], check=True)
+        venv.create(folder / "venv", with_pip=False, symlinks=True)
         self._here.mkdir()
         self.python = self._bin / "python"
+        site = self.says("import sysconfig; print(sysconfig.get_path('purelib'))")
+        self._site = Path(site.strip())
 
     def install(self, wheel: Path) -> None:
-        pip(self.python, "install", "--quiet", "--no-compile", str(wheel))
+        words = ("install", "--quiet", "--no-compile", "--no-deps", "--no-index")
+        pip(sys.executable, "--python", str(self.python), *words, str(wheel))
+        (metadata,) = self._site.glob(f"{wheel.name.partition('-')[0]}-*.dist-info")
+        self._bring(PathDistribution(metadata))
+
+    def _bring(self, needing: Distribution) -> None:
+        """Copy what a distribution needs, and what that needs."""
+        for said in map(Requirement, needing.requires or ()):
+            if said.marker is not None and not said.marker.evaluate({"extra": ""}):
+                continue
+            needed = distribution(said.name)
+            known = {canonicalize_name(each.name) for each in self.distributions()}
+            if canonicalize_name(said.name) not in known:
+                for file in needed.files or ():
+                    if file.parts[0] != "..":  # a script beside the packages
+                        self._copy(Path(str(needed.locate_file(file))), self._site / file)
+                self._bring(needed)
+
+    def _copy(self, there: Path, here: Path) -> None:
+        if there.suffix != ".pyc":
+            here.parent.mkdir(parents=True, exist_ok=True)
+            copy2(there, here)
+
+    def distributions(self) -> list[Distribution]:
+        """What is installed in it."""
+        return list(map(PathDistribution, self._site.glob("*.dist-info")))
 
     def tpvqa(self, *words: object) -> tuple[int, str, str]:
         return self._run(self._bin / "tpvqa", *words)
@@ -132,7 +168,7 @@ def test_the_core_alone_and_then_the_household(wheels: dict[str, Path], tmp_path
     _the_core_alone(installed, files)
     _what_the_core_says_of_the_household(installed, files, make_set(tmp_path / "lamps"))
     installed.install(wheels["tpvqa-household"])
-    pip(installed.python, "check")
+    pip(sys.executable, "--python", str(installed.python), "check")
     code, out, err = installed.tpvqa("run", "eat_apple", "--seed", 1, "--json")
     assert (code, json.loads(out)["vlm"]) == (0, "embedded"), err
     assert "compose" in installed.tpvqa("dataset", "--help")[1]

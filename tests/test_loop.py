@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.doubles import ScriptedVLM, configured, replies
+from tests.moments import moments
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.drivers import Interrupted
@@ -187,10 +188,10 @@ def test_a_trial_killed_after_any_event_resumes_to_the_same_end(
     whole = unbroken(tmp_path / "whole", planner, monitor)
     lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
     assert len(lines) > 40
-    for cut in range(1, len(lines), max(1, len(lines) // 80)):
+    for number, cut in enumerate(moments([event.kind for event in whole], spread=12)):
         folder = tmp_path / f"cut{cut}"
         folder.mkdir()
-        torn = lines[cut][: len(lines[cut]) // 2] if cut % 2 else b""
+        torn = lines[cut][: len(lines[cut]) // 2] if number % 2 else b""
         (folder / LOG).write_bytes(b"".join(lines[:cut]) + torn)
         events = read_episode(folder)
         assert len(events) == cut

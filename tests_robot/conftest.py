@@ -1,5 +1,7 @@
 """A table that is made once: building it takes a second."""
 
+import signal
+import threading
 from collections.abc import Callable, Iterator
 from threading import Event
 
@@ -11,6 +13,10 @@ from tpvqa_robots.mishaps import Mishaps
 from tpvqa_robots.world import ToysWorld
 
 Act = Callable[[str], Action]
+
+# A suite that is started in the background ignores Ctrl-C, and so would the commands it starts.
+if threading.current_thread() is threading.main_thread():
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")

@@ -6,10 +6,12 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Event as Flag
+from typing import Any
 
 import pytest
 
 from tests.doubles import configured
+from tests.moments import moments
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.drivers.asynchronous import AsynchronousTrial
@@ -18,6 +20,7 @@ from tpvqa.episodes.log import LOG
 from tpvqa.errors import TpvqaError
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.events import Acted, Acting, Observed
+from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.pddl import Action
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
@@ -62,21 +65,24 @@ def test_it_is_the_trial_that_the_live_driver_runs(planner: Planner) -> None:
 def test_killed_after_any_event_it_is_gone_on_with_to_the_same_end(
     tmp_path: Path, planner: Planner, monitor: str
 ) -> None:
-    config = CONFIG.but(monitor={"spec": monitor})
+    config = CONFIG.but(monitor={"spec": monitor}, seed=1)
     writer = EpisodeWriter(tmp_path / "whole", durable=False)
     with Trial(config, planner=planner) as trial:
         whole = run(trial, writer, folder=tmp_path / "whole")
+        shared: dict[str, Any] = {"task": trial.task}
+        if isinstance(trial.monitor, BeliefMonitor):
+            shared["model"] = trial.monitor.belief.model
     writer.close()
     lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
     assert len(lines) == len(whole) > 20
-    for cut in range(1, len(lines), max(1, len(lines) // 40)):
+    for cut in moments([event.kind for event in whole], spread=2):
         folder = tmp_path / f"cut{cut}"
         folder.mkdir()
         (folder / LOG).write_bytes(b"".join(lines[:cut]))
         events = read_episode(folder)
         started = events[0]
         assert isinstance(started, Started)
-        with trial_of(started, planner=planner) as trial:
+        with trial_of(started, planner=planner, **shared) as trial:
             writer = EpisodeWriter(folder, resume=cut, durable=False)
             run(trial, writer, started=started, recorded=events, folder=folder)
             writer.close()
@@ -203,7 +209,7 @@ def test_a_look_that_is_given_up_is_still_one_look(planner: Planner) -> None:
 
 
 def test_trials_run_beside_each_other_as_they_do_alone(planner: Planner) -> None:
-    configs = [CONFIG.but(monitor={"spec": "belief"}, episode=n) for n in range(6)]
+    configs = [CONFIG.but(monitor={"spec": "belief"}, episode=n) for n in range(3)]
 
     async def one(config: TrialConfig) -> list[dict[str, object]]:
         with Trial(config, planner=planner) as trial:

@@ -2,9 +2,10 @@
 
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import pytest
@@ -78,12 +79,26 @@ def run(
         return trial.run(writer), writer.events, trial
 
 
+Plain = Callable[[float, int], tuple[Ended, list[Event]]]
+
+
+@pytest.fixture(scope="module")
+def plain(planner: Planner) -> Plain:
+    """Trials with nothing but their accuracy and number set, each run once."""
+
+    @cache
+    def trial(accuracy: float, episode: int) -> tuple[Ended, list[Event]]:
+        return run(planner, accuracy=accuracy, episode=episode)[:2]
+
+    return trial
+
+
 def story(events: list[Event]) -> list[dict[str, object]]:
     return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
 
 
-def test_it_completes_what_votes_do_not_and_asks_less(planner: Planner) -> None:
-    ours = [run(planner, episode=n)[0] for n in range(30)]
+def test_it_completes_what_votes_do_not_and_asks_less(planner: Planner, plain: Plain) -> None:
+    ours = [plain(0.8, n)[0] for n in range(30)]
     votes = [run(planner, "tpvqa:5", episode=n)[0] for n in range(30)]
     assert sum(bool(each.completed) for each in ours) >= 29
     assert sum(bool(each.completed) for each in votes) <= 28
@@ -106,11 +121,11 @@ def test_trials_that_share_an_action_model_decide_as_those_that_do_not(planner: 
     assert [story(events) for _, events, _ in alone] == [story(events) for _, events, _ in shared]
 
 
-def test_trials_in_several_threads_decide_as_trials_alone(planner: Planner) -> None:
+def test_trials_in_several_threads_decide_as_trials_alone(planner: Planner, plain: Plain) -> None:
     def decided(episode: int) -> list[dict[str, object]]:
         return story(run(planner, accuracy=0.7, episode=episode)[1])
 
-    alone = [decided(episode) for episode in range(8)]
+    alone = [story(plain(0.7, episode)[1]) for episode in range(8)]
     before = sys.getswitchinterval()
     sys.setswitchinterval(1e-5)  # so that threads take turns often
     try:
@@ -152,11 +167,11 @@ def test_a_budget_between_two_actions_is_kept(planner: Planner, what: str) -> No
     assert most == 2
 
 
-def test_every_decision_explains_itself_from_the_numbers(planner: Planner) -> None:
+def test_every_decision_explains_itself_from_the_numbers(plain: Plain) -> None:
     """The figures in a reason are those that are believed when it is decided."""
     told = 0
     for n in range(6):
-        for event in run(planner, episode=n)[1]:
+        for event in plain(0.8, n)[1]:
             if not isinstance(event, Decided) or event.when == "before":
                 continue
             assert event.reason
@@ -172,11 +187,11 @@ def likely(event: Decided, literal: Literal) -> float:
     return p if literal.positive else 1 - p
 
 
-def test_what_is_done_again_probably_failed_and_what_ends_probably_holds(planner: Planner) -> None:
+def test_what_is_done_again_probably_failed_and_what_ends_probably_holds(plain: Plain) -> None:
     kinds: set[str] = set()
     actions = {action.pddl(): action for action in TASK.ground_actions()}
     for n in range(12):
-        for event in run(planner, episode=n, accuracy=0.7)[1]:
+        for event in plain(0.7, n)[1]:
             if not isinstance(event, Decided) or event.when == "before":
                 continue
             kinds.add(event.decision)
@@ -358,11 +373,11 @@ def test_what_is_not_understood_is_said(planner: Planner, spec: str, says: str) 
 
 
 @pytest.mark.parametrize("part", ["consistency", "relevance", "calibration", "model", "learning"])
-def test_each_part_can_be_left_out(planner: Planner, part: str) -> None:
+def test_each_part_can_be_left_out(planner: Planner, plain: Plain, part: str) -> None:
     spec = f"belief:without={part}"
     ended, events, _ = run(planner, spec)
     assert ended.actions > 0
-    assert story(events) != story(run(planner)[1])
+    assert story(events) != story(plain(0.8, 0)[1])
 
 
 @pytest.mark.parametrize("spec", ["belief", "belief:without=relevance"])

@@ -1,8 +1,11 @@
 """Skill servers in processes of their own, in a DDS domain that no other test uses."""
 
+import fcntl
 import os
+import random
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -37,10 +40,31 @@ Start = Callable[..., "subprocess.Popen[bytes]"]
 Open = Callable[..., Ros2World]
 
 
+def wait_for(held: Callable[[], bool], seconds: float = 60.0) -> None:
+    """Wait no longer than needed; a busy machine is waited for, what never comes fails."""
+    until = time.monotonic() + seconds
+    while not held():
+        assert time.monotonic() < until, "it did not come"
+        time.sleep(0.01)
+
+
 @pytest.fixture(autouse=True)
-def domain(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(time.monotonic_ns() // 1000 % 100 + 1))
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+def domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
+    """A DDS domain that nobody else on this machine has until the test and its processes ended.
+
+    The lock goes with its process. Numbers above 101 have ports that other programs may be given.
+    """
+    for number in random.sample(range(1, 102), 101):
+        with (Path(tempfile.gettempdir()) / f"tpvqa-domain-{number}.lock").open("w") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                continue
+            monkeypatch.setenv("ROS_DOMAIN_ID", str(number))
+            monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+            yield number
+            return
+    pytest.fail("all DDS domains are taken")
 
 
 @pytest.fixture

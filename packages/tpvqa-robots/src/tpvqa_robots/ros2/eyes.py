@@ -8,7 +8,7 @@ from typing import Any
 
 from tpvqa.errors import PictureError
 from tpvqa.observation import Frame
-from tpvqa_robots.ros2.link import Link, seen
+from tpvqa_robots.ros2.link import Link
 from tpvqa_robots.ros2.pictures import depth_of, encoded, intrinsics_of, stamp_of
 from tpvqa_robots.ros2.setup import Camera, Setup
 
@@ -34,11 +34,11 @@ class Eye:
         self._used: bytes | None = None
         self._before: bytes | None = None
         kind = Image if camera.raw else CompressedImage
-        link.listen(kind, camera.image, partial(self._take, "image"), seen())
+        link.watch(kind, camera.image, partial(self._take, "image"))
         if camera.depth is not None:
-            link.listen(Image, camera.depth, partial(self._take, "depth"), seen())
+            link.watch(Image, camera.depth, partial(self._take, "depth"))
         if camera.info is not None:
-            link.listen(CameraInfo, camera.info, partial(self._take, "info"), seen())
+            link.watch(CameraInfo, camera.info, partial(self._take, "info"))
 
     def _take(self, what: str, message: Any) -> None:
         self._latest[what] = message
@@ -48,6 +48,10 @@ class Eye:
         """An action was done: the picture last used is that of before it."""
         self._before = self._used or self._before
         self._used = None
+
+    def whole(self, frame: Frame) -> bool:
+        """Whether a picture has all that its camera sends: its depth may come a little later."""
+        return self._camera.depth is None or frame.depth is not None
 
     def frame(self, now: float, after: float, age: float) -> tuple[Frame | None, str]:
         """The latest picture where it counts, else why it does not.

@@ -77,6 +77,25 @@ class Link:
         """Have messages of a topic given to a function."""
         self.node.create_subscription(kind, topic, heard, qos)
 
+    def watch(self, kind: Any, topic: str, heard: Callable[[Any], None]) -> None:
+        """Have the latest message of a topic given to a function, however it is sent.
+
+        It is read reliably: large pictures come in many pieces, of which best effort loses some.
+        Whoever sends by best effort is not heard that way, so it is then read so as well.
+        """
+        from rclpy.event_handler import SubscriptionEventCallbacks
+
+        unheard = True
+
+        def incompatible(_: Any) -> None:
+            nonlocal unheard
+            if unheard:
+                unheard = False
+                self.node.create_subscription(kind, topic, heard, seen())
+
+        events = SubscriptionEventCallbacks(incompatible_qos=incompatible)
+        self.node.create_subscription(kind, topic, heard, said(1), event_callbacks=events)
+
     def speaker(self, kind: Any, topic: str, qos: Any) -> Any:
         """A publisher."""
         return self.node.create_publisher(kind, topic, qos)
@@ -110,9 +129,9 @@ def said(depth: int = 50) -> Any:
 
 
 def seen() -> Any:
-    """Quality of service of pictures and joints as they are read: best effort, the latest alone.
+    """Quality of service of joints as they are read: best effort, the latest alone.
 
-    It fits cameras that send reliably, and those that do not.
+    It fits whoever sends reliably, and who does not.
     """
     from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 

@@ -23,6 +23,8 @@ TICK = 0.02
 """Seconds between two looks at what has changed."""
 ENDS = 1.0
 """Seconds in which a cancelled skill has to say that it ended."""
+DEPTH = 1.0
+"""Seconds that a picture waits for its depth; then it counts without."""
 
 
 class Ros2World:
@@ -229,14 +231,18 @@ class Ros2World:
     def _picture(self, view: str) -> tuple[Frame | None, str]:
         eye, age = self._eyes[view], self._setup.age
         found: tuple[Frame | None, str] = (None, "")
+        flat: float | None = None
 
         def over() -> bool:
-            nonlocal found
+            nonlocal found, flat
             found = eye.frame(self._link.now(), self._ended, age)
-            true = self._published
-            return bool(self._stop) or (
-                found[0] is not None and (true is None or true.stamp > self._ended)
-            )
+            frame, true = found[0], self._published
+            if self._stop:
+                return True
+            if frame is None or (true is not None and true.stamp <= self._ended):
+                return False
+            flat = monotonic() if flat is None else flat
+            return eye.whole(frame) or monotonic() - flat > DEPTH
 
         self._wait(over)
         return found

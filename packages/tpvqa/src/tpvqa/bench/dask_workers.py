@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 WAIT = 60
 """Seconds that a scheduler may be without workers."""
+REACH = 20.0
+"""Seconds that a scheduler has to answer."""
 
 
 @contextmanager
@@ -39,7 +41,7 @@ def dask_client(workers: int, scheduler: str | None = None) -> "Iterator[Client]
         raise MissingExtraError("distributed", "bench", "Running on several workers") from error
     cluster = None if scheduler is not None else _local_cluster(workers)
     try:
-        client = Client(cluster or scheduler, timeout="20s")
+        client = Client(cluster or scheduler, timeout=f"{REACH:g}s")
     except (OSError, ValueError) as error:
         if cluster is not None:
             cluster.close()
