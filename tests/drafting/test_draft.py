@@ -70,6 +70,7 @@ SAID = {
     "(can-reach ?r - robot ?b - block)": "Can the robot reach the red block?",
     "(has-water ?c - cup)": "Does the mug have any water?",
     "(clear ?t - table)": "Is the top of the desk clear?",
+    "(at-table ?t - table)": "Is the robot at the desk?",
     "(raining)": "Is it raining?",
     "(lying ?p - person)": "Is Anna lying?",
     "(clean ?p - plate)": "Is the plate clean?",

@@ -287,6 +287,10 @@ class Facts:
             yield from self._elsewhere_said(subject, place, preposition)
         elif rest and named[-1] in self._things.nouns(rest[0].objects):
             yield Clause("is", first, f"{preposition} {rest[0].said}")
+        elif not rest and named[-1] in self._things.nouns(first.objects):  # at_bench(bench)
+            place = f"{preposition} {first.said}"
+            yield Clause("is", ROBOT, place)
+            yield from self._elsewhere_said(ROBOT, place, preposition)
         elif not rest:
             yield Clause("is", first, f"{preposition} the {what}")
             if preposition in SAME:
