@@ -116,7 +116,7 @@ def _believed(monitor: object) -> Iterator[tuple[str, float, float]]:
     skills = chances.likeliest.skills
     for action in skills.all():
         tried = skills.tried(action)
-        yield str(action), tried.times, tried.failed
+        yield action.pddl(), tried.times, tried.failed
 
 
 def table(bench: Bench, rows: list[dict[str, Any]]) -> None:
