@@ -165,8 +165,11 @@ def test_a_second_controller_is_refused_until_the_first_lets_go(
     first = open_world(SHORT)
     assert first.execute(act(FIND)).report is Report.DONE
     second = open_world()
-    refused = second.execute(act(FIND))
-    assert refused.report is Report.UNAVAILABLE
+    for _ in range(5):  # on a busy machine a newcomer may take some seconds to hear the server
+        refused = second.execute(act(FIND))
+        assert refused.report is Report.UNAVAILABLE
+        if "was not heard" not in refused.message:
+            break
     assert "another controller" in refused.message
     first.close()
     assert second.execute(act(PICK)).report is Report.DONE
