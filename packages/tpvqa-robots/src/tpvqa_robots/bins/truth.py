@@ -10,28 +10,13 @@
 from collections.abc import Iterable
 from typing import Any
 
-from tpvqa.errors import WorldError
-from tpvqa.pddl import Atom, State, Task
+from tpvqa.pddl import Atom, State
 from tpvqa_robots.bins.scene import AT, HALF, RIM, SOURCE, TARGETS, THINGS
 from tpvqa_robots.toys.scene import TABLE
 from tpvqa_robots.toys.truth import touched_by_both
 
 KNOWN = ("in", "in_hand", "hand_empty")
 """The predicates of which this world knows when they hold."""
-
-
-def see_known(task: Task) -> None:
-    """See whether a task is about these bins.
-
-    Raises:
-        WorldError: It has a predicate of which this world cannot tell whether it holds.
-    """
-    strange = sorted(set(task.predicates) - set(KNOWN) - {"="})
-    if strange:
-        raise WorldError(
-            f"The world 'bins' cannot tell when {strange[0]!r} holds; it knows "
-            f"{', '.join(KNOWN)}. Run sort_groceries in it, or another task with these predicates."
-        )
 
 
 def middle_of(name: str) -> tuple[float, float]:

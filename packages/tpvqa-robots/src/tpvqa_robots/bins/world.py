@@ -1,21 +1,22 @@
 """Robosuite's bins as a world."""
 
 from collections.abc import Mapping
-from itertools import combinations, product
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from tpvqa.chance import chance
-from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.pddl import Action, State, Task
 from tpvqa_robots.bins.robot import BinsRobot
 from tpvqa_robots.bins.scene import AT, HALF, SOURCE, THINGS, build
-from tpvqa_robots.bins.truth import KNOWN, see_known, true_state
+from tpvqa_robots.bins.truth import KNOWN, true_state
 from tpvqa_robots.mishaps import Mishaps
 from tpvqa_robots.physical import PhysicalWorld
 from tpvqa_robots.toys.cameras import Cameras
 from tpvqa_robots.toys.machine import Machine
 from tpvqa_robots.toys.things import Spot
+from tpvqa_robots.toys.truth import atoms_of, see_known
 
 APART = 0.12
 """Between the middles of two things at first, at least, metres."""
@@ -42,9 +43,9 @@ class BinsWorld(PhysicalWorld):
     def __init__(
         self, task: Task, *, mishaps: Mishaps | None = None, seed: int = 0, episode: int = 0
     ):
-        see_known(task)
+        see_known(task, KNOWN, world=self.name, example="sort_groceries")
         super().__init__(
-            task, _atoms(task), mishaps=mishaps or Mishaps(), seed=seed, episode=episode
+            task, atoms_of(task, KNOWN), mishaps=mishaps or Mishaps(), seed=seed, episode=episode
         )
 
     @classmethod
@@ -86,12 +87,3 @@ def spots(seed: int, episode: int) -> Mapping[str, Spot]:
         if all(np.hypot(a - c, b - d) >= APART for (a, b), (c, d) in combinations(at, 2)):
             turned = [drawn.uniform(-np.pi, np.pi) for _ in THINGS]
             return {n: Spot(*xy, yaw) for n, xy, yaw in zip(THINGS, at, turned, strict=True)}
-
-
-def _atoms(task: Task) -> frozenset[Atom]:
-    return frozenset(
-        Atom(predicate, names)
-        for predicate, kinds in task.predicates.items()
-        if predicate in KNOWN
-        for names in product(*([n for n in task.objects if task.is_a(n, kind)] for kind in kinds))
-    )

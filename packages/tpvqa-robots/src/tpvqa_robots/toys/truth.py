@@ -11,7 +11,7 @@
 | `found(x)` | at least `SHOWN` pixels of the overhead camera show it |
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from itertools import product
 from typing import Any
 
@@ -34,26 +34,38 @@ KNOWN = ("in_hand", "hand_empty", "found", "on")
 CONTAINERS = tuple(name for name in MOVABLE if name.endswith("container"))
 
 
-def see_known(task: Task) -> None:
-    """See whether a task is about what is on this table.
+def see_known(
+    task: Task,
+    known: Collection[str] = KNOWN,
+    *,
+    world: str = "toys",
+    example: str = "collect_toys",
+) -> None:
+    """See whether a task is about what a world knows.
+
+    Args:
+        task: The task.
+        known: The predicates of which the world knows when they hold.
+        world: The world; named in errors.
+        example: A task that it knows.
 
     Raises:
-        WorldError: It has a predicate of which this world cannot tell whether it holds.
+        WorldError: It has a predicate of which the world cannot tell whether it holds.
     """
-    strange = sorted(set(task.predicates) - set(KNOWN) - {"="})
+    strange = sorted(set(task.predicates) - set(known) - {"="})
     if strange:
         raise WorldError(
-            f"The world 'toys' cannot tell when {strange[0]!r} holds; it knows "
-            f"{', '.join(KNOWN)}. Run collect_toys in it, or another task with these predicates."
+            f"The world {world!r} cannot tell when {strange[0]!r} holds; it knows "
+            f"{', '.join(known)}. Run {example} in it, or another task with these predicates."
         )
 
 
-def atoms_of(task: Task) -> frozenset[Atom]:
-    """All facts that its predicates and objects make up."""
+def atoms_of(task: Task, known: Collection[str] = KNOWN) -> frozenset[Atom]:
+    """All facts that known predicates and a task's objects make up."""
     return frozenset(
         Atom(predicate, names)
         for predicate, kinds in task.predicates.items()
-        if predicate in KNOWN
+        if predicate in known
         for names in product(*([n for n in task.objects if task.is_a(n, kind)] for kind in kinds))
     )
 
