@@ -61,10 +61,10 @@ def main() -> None:
     )
 
 
-class _Served:
+class Served:
     """A server in a process of its own."""
 
-    def __enter__(self) -> "_Served":
+    def __enter__(self) -> "Served":
         words = ["-m", "tpvqa", "serve-vlm", "--port", "0", "--json"]
         self._process = subprocess.Popen(
             [sys.executable, *words], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
@@ -85,13 +85,14 @@ class _Served:
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def _pictures(given: argparse.Namespace, run: int) -> list[bytes]:
+def new_pictures(count: int, width: int, run: int) -> list[bytes]:
+    """Shipped pictures, each changed a little, so that no two are the same."""
     files = sorted(PICTURES.rglob("*.jpg"))
     random = np.random.default_rng(run)
     found = []
-    for number in range(given.pictures):
+    for number in range(count):
         picture = Image.open(files[number % len(files)]).convert("RGB")
-        picture = picture.resize((given.width, given.width), Image.Resampling.BICUBIC)
+        picture = picture.resize((width, width), Image.Resampling.BICUBIC)
         buffer = BytesIO()
         changed = ImageEnhance.Brightness(picture).enhance(random.uniform(0.9, 1.1))
         changed.save(buffer, "JPEG", quality=90)
@@ -130,8 +131,11 @@ def _requests(url: str, picture: bytes) -> list[bytes]:
 
 
 def _run(given: argparse.Namespace, number: int) -> dict[str, float]:
-    with _Served() as served:
-        asked = [_requests(served.url, each) for each in _pictures(given, number)]
+    with Served() as served:
+        asked = [
+            _requests(served.url, each)
+            for each in new_pictures(given.pictures, given.width, number)
+        ]
         server, own, began = served.processor, _own_processor(), time.perf_counter()
         taken = asyncio.run(_all_robots(served.url, asked, given))
         seconds = time.perf_counter() - began
@@ -201,9 +205,9 @@ def _client(given: argparse.Namespace, number: int) -> list[float]:
     """Seconds for each picture, asked by tpvqa's own client."""
     questions = [FactQuestion(text, Way.EFFECT, Atom("asked")) for text in QUESTIONS]
     taken = []
-    with _Served() as served:
+    with Served() as served:
         vlm = OpenAICompatibleVLM("embedded", base_url=served.url)
-        for look, picture in enumerate(_pictures(given, number)):
+        for look, picture in enumerate(new_pictures(given.pictures, given.width, number)):
             seen = Observation(look, 0.0, {"front": Frame(f"{look}", "front", picture)})
             began = time.perf_counter()
             answers = vlm.ask(seen, questions)

@@ -134,22 +134,27 @@ def decisions(events: Sequence[Event]) -> list[tuple[str, int, str, str, str]]:
 
 
 CALIBRATION = Path(tpvqa_household.calibrations.__file__).with_name("embedded.json")
-TRIALS: list[tuple[str, int, tuple[object, ...]]] = [
-    ("eat_apple", 7, ("--monitor", "tpvqa")),
-    ("serve_breakfast", 20, ("--monitor", "tpvqa")),
-    ("clean_dishes", 3, ("--monitor", "vote:3")),
-    ("serve_breakfast", 7, ("--calibration", CALIBRATION)),
+TRIALS: list[tuple[str, int, tuple[object, ...], tuple[str, ...]]] = [
+    ("eat_apple", 7, ("--monitor", "tpvqa"), ()),
+    ("serve_breakfast", 20, ("--monitor", "tpvqa"), ("--together",)),
+    ("clean_dishes", 3, ("--monitor", "vote:3"), ()),
+    ("serve_breakfast", 7, ("--calibration", CALIBRATION), ("--together",)),
 ]
 
 
-@pytest.mark.parametrize(("task", "seed", "more"), TRIALS)
+@pytest.mark.parametrize(("task", "seed", "more", "way"), TRIALS)
 def test_a_trial_decides_as_with_the_network_itself(
-    tpvqa: Run, served: Served, task: str, seed: int, more: tuple[object, ...]
+    tpvqa: Run,
+    served: Served,
+    task: str,
+    seed: int,
+    more: tuple[object, ...],
+    way: tuple[str, ...],
 ) -> None:
     words = ("run", task, "--seed", seed, *more, "--out")
     home = tpvqa(*words, "home", "--vlm", "embedded")
     there = ("--vlm", "openai:embedded", "--base-url", served.url)
-    away = tpvqa(*words, "away", *there)
+    away = tpvqa(*words, "away", *there, *way)
     assert away[0] == home[0]
     expected = decisions(read_episode(Path("home")))
     assert len(expected) > 5

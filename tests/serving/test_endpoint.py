@@ -126,7 +126,7 @@ REFUSED: dict[str, tuple[Any, str]] = {
     "too many choices": ({**FRIDGE, "n": 17}, "16"),
     "no tokens": ({**FRIDGE, "max_tokens": 0}, "max_tokens"),
     "too hot": ({**FRIDGE, "temperature": 3}, "temperature"),
-    "a schema": ({**FRIDGE, "response_format": {"type": "json_object"}}, "response_format"),
+    "JSON of no form": ({**FRIDGE, "response_format": {"type": "json_object"}}, "response_format"),
 }
 
 

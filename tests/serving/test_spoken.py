@@ -24,7 +24,7 @@ SHARES = st.floats(0, 1)
 
 def over_the_wire(answer: Answer, **more: object) -> Reading:
     asking = read_request(json.dumps(body(QUESTION.text, b"", **more)).encode())
-    reply = WireReply(asking, QUESTION.text, spoken(answer), Random(1))
+    reply = WireReply(asking, len(QUESTION.text.split()), spoken(answer), Random(1))
     return read_completion(json.dumps(reply.body), QUESTION.text)
 
 

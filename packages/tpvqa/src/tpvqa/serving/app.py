@@ -19,6 +19,7 @@ from tpvqa.serving.desk import Desk
 from tpvqa.serving.door import Door
 from tpvqa.serving.refusal import Refusal
 from tpvqa.serving.sent import Pictures
+from tpvqa.serving.several import questions_in, spoken_together
 from tpvqa.serving.spoken import spoken
 from tpvqa.serving.wire import Asking, Reply, read_request
 
@@ -137,7 +138,8 @@ class Endpoint:
         large = len(body) > _LARGE
         asking = await asyncio.to_thread(read_request, body) if large else read_request(body)
         self._see_model(asking.model)
-        question = question_in(asking.text)
+        form = asking.form
+        questions = questions_in(asking.text, form) if form else [question_in(asking.text)]
         key, frames = (
             await asyncio.to_thread(self._pictures.read, asking.urls)
             if large
@@ -145,12 +147,14 @@ class Endpoint:
         )
         gone = asyncio.create_task(_gone(request))
         try:
-            answer = await self._desk.ask(key, frames, question, gone)
+            answers = await self._desk.ask(key, frames, questions, gone)
         finally:
             gone.cancel()
         seeded = asking.seed is not None
-        random = chance(asking.seed or 0, 0, "spoken", question, *key) if seeded else Random()
-        return Reply(asking, question, spoken(answer), random), asking
+        random = chance(asking.seed or 0, 0, "spoken", *questions, *key) if seeded else Random()
+        each = [spoken(answer) for answer in answers]
+        said = spoken_together(each, form) if form else each[0]
+        return Reply(asking, sum(len(text.split()) for text in questions), said, random), asking
 
     async def _body(self, request: Request) -> bytes:
         parts, size = [], 0

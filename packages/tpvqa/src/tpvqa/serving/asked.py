@@ -5,6 +5,7 @@ that it does not know this one, instead of answering another.
 """
 
 import re
+from collections.abc import Collection
 
 from tpvqa.serving.refusal import Refusal
 
@@ -21,6 +22,9 @@ _HOW_TO_ANSWER = frozenset(
         "please only just answer reply respond say with by in using one a single the word words "
         "either exactly of yes or no unknown and nothing else",
     )
+)
+_HOW_TO_ANSWER_MANY = frozenset(
+    re.findall(r"\w+", "every each all these questions question its their key keys json object")
 )
 
 
@@ -39,18 +43,30 @@ def question_in(prompt: str) -> str:
             f"The text has {len(prompt)} characters; {LONGEST} are taken. Ask one question.",
             param="messages",
         )
-    kept = [part for part in map(_bare, _SENTENCES.split(prompt.strip())) if part]
+    kept = says_more(prompt)
     if not kept:
         raise Refusal(
             400, "The last message of the user asks nothing. Ask one question.", param="messages"
         )
-    return " ".join(kept)
+    return kept
 
 
-def _bare(sentence: str) -> str:
+def says_more(text: str, allowed: Collection[str] = ()) -> str:
+    """What a text says besides how to answer.
+
+    Args:
+        text: Any.
+        allowed: The keys of several questions; where there are some, words that ask for them in
+            JSON only say how to answer, too.
+    """
+    how = _HOW_TO_ANSWER | _HOW_TO_ANSWER_MANY | set(allowed) if allowed else _HOW_TO_ANSWER
+    return " ".join(filter(None, (_bare(part, how) for part in _SENTENCES.split(text.strip()))))
+
+
+def _bare(sentence: str, how: Collection[str]) -> str:
     """A sentence without labels; empty where it only says how to answer."""
     sentence = _LABEL.sub("", sentence.strip(), count=1) if _LABEL.match(sentence) else sentence
     if _SEVERAL_VIEWS.fullmatch(sentence) or _END.fullmatch(sentence):
         return ""
     words = set(re.findall(r"\w+", sentence.lower()))
-    return "" if {"yes", "no"} <= words <= _HOW_TO_ANSWER else sentence.strip()
+    return "" if {"yes", "no"} <= words <= set(how) else sentence.strip()

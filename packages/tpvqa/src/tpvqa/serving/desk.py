@@ -110,43 +110,53 @@ class Desk:
         return self._closed
 
     async def ask(
-        self, key: Key, frames: tuple[Frame, ...], text: str, gone: "asyncio.Task[None]"
-    ) -> Answer:
-        """Wait for an answer.
+        self,
+        key: Key,
+        frames: tuple[Frame, ...],
+        texts: Sequence[str],
+        gone: "asyncio.Task[None]",
+    ) -> list[Answer]:
+        """Wait for the answers to questions about the same pictures.
 
         Args:
             key: Tells the pictures from others.
             frames: The pictures, views of one moment.
-            text: The question.
-            gone: Done when nobody waits for the answer any more.
+            texts: The questions.
+            gone: Done when nobody waits for the answers any more.
+
+        Returns:
+            The answers in the order of the questions.
 
         Raises:
             Refusal: Too many wait, the end has come, the VLM cannot be asked, or it takes too long.
         """
         if self._closed:
             raise self._refused(self._ending())
-        if len(self._here) >= self.most:
+        if self._here and len(self._here) + len(texts) > self.most:
             seconds = math.ceil(len(self._here) * self._pace.seconds / max(1, self._threads))
             raise self._refused(
                 Refusal(
                     429,
-                    f"{self.most} questions wait already. Ask again later, or fewer at once.",
+                    f"{len(self._here)} questions wait already, of at most {self.most}. Ask again "
+                    "later, or fewer at once.",
                     code="too_many_waiting",
                     retry_after=max(1, seconds),
                 )
             )
-        entry = _Waiting(frames, text, asyncio.get_running_loop().create_future())
-        self._here.add(entry)
+        loop = asyncio.get_running_loop()
+        entries = [_Waiting(frames, text, loop.create_future()) for text in texts]
+        self._here.update(entries)
         with self._changed:
-            self._groups.setdefault(key, []).append(entry)
+            self._groups.setdefault(key, []).extend(entries)
             self._changed.notify()
         try:
+            answers = asyncio.gather(*(entry.answer for entry in entries))
             await asyncio.wait(
-                (entry.answer, gone), timeout=self.patience, return_when=asyncio.FIRST_COMPLETED
+                (answers, gone), timeout=self.patience, return_when=asyncio.FIRST_COMPLETED
             )
-            if entry.answer.done():
-                return entry.answer.result()
-            self.counts.given_up += 1
+            if answers.done():
+                return answers.result()
+            self.counts.given_up += len(entries)
             raise Refusal(
                 503,
                 f"There was no answer within {self.patience:g} s. Ask again later.",
@@ -154,10 +164,11 @@ class Desk:
                 retry_after=max(1, math.ceil(self._pace.seconds)),
             )
         finally:
-            entry.given_up = True
-            self._here.discard(entry)
-            if not entry.answer.done():
-                entry.answer.cancel()
+            self._here.difference_update(entries)
+            for entry in entries:
+                entry.given_up = True
+                if not entry.answer.done():
+                    entry.answer.cancel()
 
     def close(self) -> None:
         """Take no more questions. Those that wait are still answered."""

@@ -5,8 +5,8 @@ little or no probability on yes and no, so that who reads probabilities abstains
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 from random import Random
 from typing import Any
 
@@ -41,6 +41,21 @@ class Spoken:
         logarithms = [math.log(self.odds[word]) / temperature for word in words]
         weights = [math.exp(each - max(logarithms)) for each in logarithms]
         return random.choices(words, weights)[0]
+
+    def within(self, words: Collection[str]) -> "Spoken":
+        """The same where only some words may be said: any other is *unknown*."""
+        unknown = Reply.UNKNOWN.value
+        if self.odds is None or set(self.odds) <= set(words):
+            return self if self.word in words else replace(self, word=unknown)
+        odds: dict[str, float] = {}
+        for word, p in self.odds.items():
+            said = word if word in words else unknown
+            odds[said] = odds.get(said, 0.0) + p
+        return replace(self, word=self.word if self.word in words else unknown, odds=odds)
+
+    def tokens(self, word: str) -> int:
+        """How many tokens a word has."""
+        return 1
 
     def logprobs(self, word: str, top: int) -> dict[str, Any] | None:
         """The probabilities as chat completions give them, for a word that was said.
@@ -85,6 +100,12 @@ def spoken(answer: Answer) -> Spoken:
 def _shared(p_yes: float, left: float, other: str) -> dict[str, float]:
     odds = {YES: p_yes * (1.0 - left), NO: (1.0 - p_yes) * (1.0 - left)}
     return odds | {other: left} if left > 0 else odds
+
+
+def certain(text: str, top: int) -> dict[str, Any]:
+    """A token that nothing else could have been, as chat completions give it."""
+    token = _token(text, 1.0)
+    return {**token, "top_logprobs": [token][:top]}
 
 
 def _token(word: str, p: float) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
 from tpvqa.serving.refusal import Refusal
+from tpvqa.serving.several import Form, ResponseFormat, SpokenTogether, form_of
 from tpvqa.serving.spoken import NO, YES, Spoken
 
 MOST_CHOICES = 16
@@ -43,10 +44,6 @@ class _StreamOptions(BaseModel):
     include_usage: bool | None = None
 
 
-class _Format(BaseModel):
-    type: str
-
-
 class _Request(BaseModel):
     """What of a request is read; what else a client says is let pass."""
 
@@ -61,7 +58,7 @@ class _Request(BaseModel):
     seed: int | None = None
     stream: bool | None = None
     stream_options: _StreamOptions | None = None
-    response_format: _Format | None = None
+    response_format: ResponseFormat | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +75,7 @@ class Asking:
         seed: Makes draws the same again.
         stream: Whether the reply is wanted as a stream of events.
         usage: Whether that stream is to end with what was used.
+        form: The form of a reply to several questions; None for one question, one word.
     """
 
     model: str
@@ -89,6 +87,7 @@ class Asking:
     seed: int | None
     stream: bool
     usage: bool
+    form: Form | None = None
 
 
 def read_request(body: bytes) -> Asking:
@@ -103,13 +102,7 @@ def read_request(body: bytes) -> Asking:
         raise _refusal(error, "") from None
     if request.top_logprobs is not None and not request.logprobs:
         raise Refusal(400, "top_logprobs needs logprobs: true.", param="top_logprobs")
-    if request.response_format is not None and request.response_format.type != "text":
-        raise Refusal(
-            400,
-            "A reply is one word; response_format can be 'text' alone. Leave it out.",
-            param="response_format",
-            code="unsupported_value",
-        )
+    form = form_of(request.response_format)
     last = request.messages[-1]
     place = f"messages.{len(request.messages) - 1}"
     if last.role != "user":
@@ -136,6 +129,7 @@ def read_request(body: bytes) -> Asking:
         seed=request.seed,
         stream=bool(request.stream),
         usage=bool(options and options.include_usage),
+        form=form,
     )
 
 
@@ -153,15 +147,17 @@ class Reply:
 
     Args:
         asking: What was asked.
-        question: The question in it.
+        prompt_words: How many words the questions in it have.
         said: What the VLM says.
         random: Draws, where a temperature is given.
     """
 
-    def __init__(self, asking: Asking, question: str, said: Spoken, random: Random):
+    def __init__(
+        self, asking: Asking, prompt_words: int, said: Spoken | SpokenTogether, random: Random
+    ):
         self._asking, self._said = asking, said
         self._words = [said.sampled(asking.temperature, random) for _ in range(asking.choices)]
-        self._prompt_words = len(question.split())
+        self._prompt_words = prompt_words
         self._id = f"chatcmpl-{uuid.uuid4().hex}"
         self._created = int(time.time())
 
@@ -210,7 +206,7 @@ class Reply:
     @property
     def _usage(self) -> dict[str, int]:
         """In words, which are the tokens here; pictures are not counted."""
-        asked, said = self._prompt_words, len(self._words)
+        asked, said = self._prompt_words, sum(map(self._said.tokens, self._words))
         return {
             "prompt_tokens": asked,
             "completion_tokens": said,
