@@ -24,6 +24,7 @@ from torch import Tensor
 
 LAMPS, SIDE, PATCH = 8, 48, 8
 PICTURE = (SIDE // PATCH) ** 2
+RATE = 1e-3
 FORM = '{ " q1 q2 q3 q4 q5 q6 q7 q8 " : " yes no unknown , }'
 WORDS = (
     "<pad> <unk> <s> </s> <image> is lamp 1 2 3 4 5 6 7 8 lit ? answer with one word yes no . , or "
@@ -113,15 +114,15 @@ def logits(model: Any, shown: Tensor, texts: Sequence[list[int]]) -> Tensor:
 
 
 def teach(model: Any, speech: Speech, steps: int) -> None:
-    """Half of the steps one question, half of them all, in an order that is drawn."""
-    optimizer = torch.optim.AdamW(model.parameters(), 2e-3, weight_decay=0.01)
-    rate = torch.optim.lr_scheduler.OneCycleLR(optimizer, 2e-3, total_steps=steps)
+    """A third of the steps one question a time, else all together, in an order that is drawn."""
+    optimizer = torch.optim.AdamW(model.parameters(), RATE, weight_decay=0.01)
+    rate = torch.optim.lr_scheduler.OneCycleLR(optimizer, RATE, total_steps=steps, pct_start=0.1)
     draw, began = random.Random(0), time.monotonic()
     for step in range(steps):
-        shown, lit = pictures(24, 1_000_000 + step)
+        shown, lit = pictures(24 if step % 3 else 8, 1_000_000 + step)
         right = torch.tensor(np.where(lit, speech.yes, speech.no))
         order = draw.sample(range(LAMPS), LAMPS)
-        if step % 2:
+        if step % 3:
             texts, places = [], []
             for row in range(len(lit)):
                 said = image() + speech(together(order))
@@ -135,16 +136,15 @@ def teach(model: Any, speech: Speech, steps: int) -> None:
                 found.reshape(-1, speech.size), right[:, order].reshape(-1)
             )
         else:
-            lamps = [draw.randrange(LAMPS) for _ in lit]
-            said_each = [image() + speech(alone(lamp)) for lamp in lamps]
-            found = logits(model, shown, said_each)[:, -1]
-            loss = torch.nn.functional.cross_entropy(found, right[range(len(lit)), lamps])
+            each = [image() + speech(alone(lamp)) for _ in lit for lamp in range(LAMPS)]
+            found = logits(model, shown.repeat_interleave(LAMPS, 0), each)[:, -1]
+            loss = torch.nn.functional.cross_entropy(found, right.reshape(-1))
         optimizer.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
         optimizer.step()
         rate.step()
-        if step % 200 in (0, 1):
+        if step % 300 in (0, 1):
             print(f"step {step}: {loss.item():.3f}, {time.monotonic() - began:.0f} s", flush=True)
 
 
@@ -209,7 +209,7 @@ def main() -> None:
     speech = Speech()
     model = make(speech)
     print(f"{sum(each.numel() for each in model.parameters()):,} weights")
-    teach(model, speech, int(sys.argv[1]) if len(sys.argv) > 1 else 4000)
+    teach(model, speech, int(sys.argv[1]) if len(sys.argv) > 1 else 12000)
     model.eval()
     shown, lit = pictures(1500, 7)
     both: dict[str, list[np.ndarray]] = {"alone": [], "together": []}

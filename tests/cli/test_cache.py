@@ -101,7 +101,7 @@ def asked(tpvqa: Run, shipped_picture: Path) -> Path:
 
 @pytest.fixture
 def shipped_picture() -> Path:
-    from tpvqa.cli.calibrate import shipped_set
+    from tpvqa.cli.picture_sets import shipped_set
 
     return sorted(shipped_set().glob("**/*.jpg"))[0]
 

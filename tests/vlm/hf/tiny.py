@@ -1,5 +1,9 @@
-"""Tiny models of every family, with random weights, made on the spot and saved as real ones are."""
+"""Tiny models of every family, with random weights, made on the spot and saved as real ones are.
 
+python -m tests.vlm.hf.tiny FAMILY FOLDER    makes one that nearly always says yes or no
+"""
+
+import argparse
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -342,3 +346,22 @@ def save(family: str, folder: Path, *, seed: int = 0, outspoken: bool = False) -
         else:
             processor.save_pretrained(folder)
     return folder
+
+
+def main() -> None:
+    """Make one for whoever has no hub."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("family", choices=sorted(ALL))
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--seed", type=int, default=0, help="of its weights")
+    given = parser.parse_args()
+    if given.folder.exists():
+        parser.error(f"{given.folder} is there already. Name another folder.")
+    save(given.family, given.folder, seed=given.seed, outspoken=given.family != "blip")
+    print(f"made {given.folder}: --vlm hf:{given.folder}")
+
+
+if __name__ == "__main__":
+    main()

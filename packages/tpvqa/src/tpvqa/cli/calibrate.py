@@ -12,6 +12,7 @@ import typer
 from tpvqa.cli.calibration_table import draw, plain, print_calibration
 from tpvqa.cli.notices import about_own_files
 from tpvqa.cli.options import ANSWERING, trial_options
+from tpvqa.cli.picture_sets import opened_set
 from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer, combined
 
@@ -232,10 +233,9 @@ def _from_pictures(
     from tpvqa.assembly.answering import vlm_with_answers
     from tpvqa.bench.labelled_pictures import ask_pictures
     from tpvqa.plugins import Closing
-    from tpvqa.worlds.pictures import load_set
 
-    opened = load_set(shipped_set() if where == "shipped" else Path(where))
     books = own_book(*own)
+    opened = opened_set(where, books)
     asked = vlm_with_answers(vlm, config)
     try:
         with _counting("pictures", len(opened.manifest.pictures)) as done:
@@ -243,28 +243,6 @@ def _from_pictures(
     finally:
         if isinstance(asked, Closing):
             asked.close()
-
-
-def shipped_set() -> Path:
-    """The pictures that come with the shipped tasks.
-
-    Raises:
-        CalibrationError: There are none, or several sets.
-    """
-    from tpvqa.distributions import HOUSEHOLD, how_to_install
-    from tpvqa.errors import CalibrationError
-    from tpvqa.tasks import shipped_tasks
-
-    found = sorted({files.pictures for files in shipped_tasks() if files.pictures is not None})
-    if not found:
-        raise CalibrationError(
-            "No pictures are shipped with what is installed. Those of the household come with "
-            f"{HOUSEHOLD}: {how_to_install(HOUSEHOLD)}."
-        )
-    if len(found) > 1:
-        folders = ", ".join(map(str, found))
-        raise CalibrationError(f"Several sets of pictures are installed: name one of {folders}.")
-    return found[0]
 
 
 def own_book(

@@ -143,12 +143,12 @@ def train(
 def _from_pictures(
     where: str, own: tuple[Path | None, Path | None, Path | None]
 ) -> "list[Example]":
-    from tpvqa.cli.calibrate import own_book, shipped_set
+    from tpvqa.cli.calibrate import own_book
+    from tpvqa.cli.picture_sets import opened_set
     from tpvqa.training.from_pictures import examples_of
-    from tpvqa.worlds.pictures import load_set
 
-    opened = load_set(shipped_set() if where == "shipped" else Path(where))
-    return list(examples_of(opened, own_book(*own)))
+    books = own_book(*own)
+    return list(examples_of(opened_set(where, books), books))
 
 
 def _from_episodes(folders: list[Path], bar: "CountBar") -> "list[Example]":

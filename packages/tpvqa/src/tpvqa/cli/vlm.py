@@ -159,30 +159,30 @@ def _of_pictures(
     """The looks at the pictures of a set, and a task of its domain."""
     from tpvqa.bench.labelled_pictures import shipped_books
     from tpvqa.bench.vlms.looks import looks_at_pictures
-    from tpvqa.cli.calibrate import shipped_set
+    from tpvqa.cli.picture_sets import SHIPPED, opened_set
     from tpvqa.errors import TpvqaError
     from tpvqa.pddl import load_task
     from tpvqa.questions import QuestionBook
     from tpvqa.tasks import QUESTIONS, beside
-    from tpvqa.worlds.pictures import load_set
 
     if (domain is None) != (problem is None):
         raise TpvqaError("Give --domain and --problem together.")
-    opened = load_set(shipped_set() if where == "shipped" else Path(where))
     named: dict[str, Path | None] = dict(_wordings(questions))
     books: dict[str, list[QuestionBook]] = {}
     if domain is not None and problem is not None:
         task = load_task(domain, problem)
         for name, file in (named or {"usual": beside(QUESTIONS, problem, domain)}).items():
             books[name] = [QuestionBook.load(file, task)]
+        opened = opened_set(where, next(iter(books.values())))
     else:
+        opened = opened_set(where, None)
         for name, file in (named or {"usual": None}).items():
             books[name] = shipped_books(opened.manifest.domain, file)
     looks = looks_at_pictures(opened, books, hidden=hidden)
     if not looks:
         raise TpvqaError(f"{where}: no picture of this set shows what there are questions about")
     first = next(iter(books.values()))
-    of = "the shipped pictures" if where == "shipped" else f"pictures of {where}"
+    of = "the shipped pictures" if where == SHIPPED else f"pictures of {where}"
     return of, looks, first[0].task if first else None
 
 

@@ -1,0 +1,57 @@
+"""Sets of labelled pictures that a command names."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tpvqa.cli.saying import tell
+
+if TYPE_CHECKING:
+    from tpvqa.questions import QuestionBook
+    from tpvqa.worlds.pictures import PictureSet
+    from tpvqa.worlds.pictures.manifest import Picture
+
+SHIPPED = "shipped"
+
+
+def opened_set(where: str, books: "Sequence[QuestionBook] | None") -> "PictureSet[Picture]":
+    """The set of a folder, or the shipped one; what is odd about its facts is told.
+
+    Args:
+        where: The folder, or `SHIPPED`.
+        books: The user's own questions, where they named some.
+
+    Raises:
+        TpvqaError: There is no such set, or its facts are none of the questions' domain.
+    """
+    from tpvqa.bench.picture_facts import see_facts
+    from tpvqa.worlds.pictures import load_set
+
+    if where == SHIPPED:
+        return load_set(shipped_set())
+    opened = load_set(Path(where))
+    for notice in see_facts(opened, books[0].task) if books else ():
+        tell(f"note: {notice}", error=True)
+    return opened
+
+
+def shipped_set() -> Path:
+    """The pictures that come with the shipped tasks.
+
+    Raises:
+        CalibrationError: There are none, or several sets.
+    """
+    from tpvqa.distributions import HOUSEHOLD, how_to_install
+    from tpvqa.errors import CalibrationError
+    from tpvqa.tasks import shipped_tasks
+
+    found = sorted({files.pictures for files in shipped_tasks() if files.pictures is not None})
+    if not found:
+        raise CalibrationError(
+            "No pictures are shipped with what is installed. Those of the household come with "
+            f"{HOUSEHOLD}: {how_to_install(HOUSEHOLD)}."
+        )
+    if len(found) > 1:
+        folders = ", ".join(map(str, found))
+        raise CalibrationError(f"Several sets of pictures are installed: name one of {folders}.")
+    return found[0]
