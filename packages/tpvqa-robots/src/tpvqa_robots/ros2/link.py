@@ -1,6 +1,8 @@
 """A node of ROS 2 with a thread of its own, that ends cleanly whatever happens around it."""
 
+import sys
 import threading
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -68,6 +70,8 @@ class Link:
                 self._executor.spin_once(timeout_sec=0.1)
             except self._ended:
                 return
+            except Exception as error:  # noqa: BLE001 — one bad message must not make it deaf
+                traceback.print_exception(error, file=sys.stderr)
 
     def now(self) -> float:
         """Seconds by the clock that stamps are of."""

@@ -2,12 +2,20 @@
 
 import threading
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Task
 from tpvqa.worlds import Execution, World
 from tpvqa_robots.skills.protocol import Robot
+
+
+@runtime_checkable
+class _HasRobot(Protocol):
+    """A world that tells which robot is in it."""
+
+    @property
+    def robot(self) -> object: ...
 
 
 class WorldRobot:
@@ -47,5 +55,5 @@ class WorldRobot:
 
     def state(self) -> Mapping[str, float]:
         """The joints of the world's robot; none where it has none."""
-        robot = getattr(self._world, "robot", None)
+        robot = self._world.robot if isinstance(self._world, _HasRobot) else None
         return robot.state() if isinstance(robot, Robot) else {}
