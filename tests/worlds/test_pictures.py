@@ -108,7 +108,10 @@ def test_a_state_that_no_picture_shows_is_refused(task: Task, lamps: Path) -> No
     world = world_of(task, lamps)
     refused = world.execute(switch(task, "right"))
     assert refused.report is Report.UNAVAILABLE
-    assert refused.message == "no picture shows what switch_on(right) could lead to: lit(right)"
+    assert refused.message == (
+        "no picture shows what switch_on(right) could lead to: lit(right). "
+        "Add a picture of it to the set and its manifest.json"
+    )
     assert set(drawn(world)) == {"dark.png"}
     world.simulation.execute(switch(task, "right"))
     with pytest.raises(PictureSetError, match=r"No picture shows: lit\(right\)\. Add a picture"):

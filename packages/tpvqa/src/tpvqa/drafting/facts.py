@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases
-from tpvqa.drafting.facts_tables import ROADS, SAME
+from tpvqa.drafting.facts_tables import HELD, ROADS, SAME, UNNAMED
 from tpvqa.drafting.forms import Form, participle, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, word_set
 from tpvqa.drafting.predicates import of_noun, of_verb
-from tpvqa.drafting.things import Things
+from tpvqa.drafting.things import Things, some
 from tpvqa.questions.template import indefinite_article
 
 _NEGATIONS = ("not", "no", "non")
@@ -137,8 +137,10 @@ class Facts:
 
     def _of_nothing(self, words: list[str]) -> Iterator[Clause]:
         if words[0] in ("have", "has"):
-            rest = " ".join(words[1:])
-            yield Clause("does", ROBOT, f"have any {rest}")
+            yield Clause("does", ROBOT, f"have {some(words[1:])}")
+            return
+        if words[0] in HELD and not {*words[1:]} & UNNAMED and len(words) > 1:
+            yield Clause("is", ROBOT, f"{words[0]} {some(words[1:])}")
             return
         form = verb_form(words[0])
         if len(words) == 1 or (form and form[1] is Form.ING):
@@ -199,9 +201,7 @@ class Facts:
             yield Clause("does", ROBOT, f"have {first.said}")
             yield Clause("is", ROBOT, f"in possession of {first.said}")
         else:
-            noun = " ".join(words)
-            some = "any" if words[-1] in lexicon.MASS else indefinite_article(noun)
-            yield Clause("does", first, f"have {some} {noun}")
+            yield Clause("does", first, f"have {some(words)}")
 
     def _where(self, words: list[str], nouns: list[Noun], predicate: str) -> Iterator[Clause]:
         """on(a, b); robot_at(r, l); next_to(a, b); set_in(w, l); at(l)."""

@@ -54,3 +54,7 @@ PICTURES = word_set(
     "picture image photo film map scan sample record recording measurement data copy trace video"
 )
 """What is of something and made with something."""
+HELD = word_set("holding carrying grasping gripping lifting grabbing bearing wearing using")
+"""What is done with a thing in the hand."""
+UNNAMED = word_set("nothing something anything everything object objects on up off down still out")
+"""What is no name of a thing, behind one of these."""

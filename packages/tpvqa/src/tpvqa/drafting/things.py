@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +12,7 @@ from tpvqa.drafting.lexicon import (
     GENERIC,
     HANDS,
     INSIDE,
+    MASS,
     PERSONS,
     PLACES,
     PLURAL_EXCEPTIONS,
@@ -20,6 +21,7 @@ from tpvqa.drafting.lexicon import (
 )
 from tpvqa.drafting.names import is_number, spelled, words_of
 from tpvqa.pddl import Task
+from tpvqa.questions.template import indefinite_article
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,3 +231,10 @@ def _plural(word: str, kind: str) -> bool:
     if len(word) < 4 or word in PLURAL_EXCEPTIONS or word == kind:
         return False
     return word.endswith("s") and not word.endswith(("ss", "us", "is"))
+
+
+def some(words: Sequence[str]) -> str:
+    """A thing that is named without saying which: a cup, any water, any keys."""
+    noun = " ".join(words)
+    many = words[-1] in MASS or _plural(words[-1], "")
+    return f"any {noun}" if many else f"{indefinite_article(noun)} {noun}"

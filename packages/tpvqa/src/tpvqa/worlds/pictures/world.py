@@ -129,7 +129,8 @@ class DrawnWorld(Simulated, Generic[P]):
             return Execution(
                 Report.UNAVAILABLE,
                 0.0,
-                f"no picture shows what {action} could lead to: {self.describe(outcome.after)}",
+                f"no picture shows what {action} could lead to: {self.describe(outcome.after)}. "
+                f"{self.pictures.lacking}",
             )
         self.last_outcome = outcome
         return outcome.execution(0.0)
