@@ -1,4 +1,4 @@
-"""The tokens of a reply whose code fence the server took out of its text, as llama.cpp does."""
+"""The tokens of a reply whose fence or white space the server took away, as llama.cpp does."""
 
 import json
 
@@ -12,11 +12,12 @@ from tpvqa.vlm.together import read_together
     [
         (["```json", '{"q1"', "\n :", '"', "no", '" }', " ```"], "logprobs"),
         (["```json", '{"q1"', "\n :", '"', "no", '"}', " ```"], "word"),
+        (["\n", '{"q1"', "\n :", '"', "no", '" }', "\n", ""], "logprobs"),
         (["But: ```json", '{"q1"', "\n :", '"', "no", '" }', " ```"], "word"),
     ],
-    ids=["fence", "another text", "more than a fence"],
+    ids=["fence", "another text", "white space", "more than a fence"],
 )
-def test_the_fence_alone_may_be_left_out(pieces: list[str], source: str) -> None:
+def test_fence_and_white_space_alone_may_be_left_out(pieces: list[str], source: str) -> None:
     shown = {"no": -0.1, "yes": -2.4}
     tokens = [
         {

@@ -86,9 +86,9 @@ def _one(key: str, times: int, value: object, said: str, tokens: Sequence[Token]
 def _token(key: str, said: str, tokens: Sequence[Token]) -> Token | None:
     """The token that begins a key's answer; None where tokens and text do not fit together."""
     written = "".join(token.text for token in tokens)
-    # llama.cpp's content leaves out the code fence that its tokens have.
+    # llama.cpp's content leaves out the white space and the code fence around what its tokens say.
     fence = re.fullmatch(r"\s*```(?:json)?\s*(.*?)\s*```\s*", written, re.DOTALL)
-    if written != said and (fence is None or fence[1] != said.strip()):
+    if said.strip() not in (written.strip(), fence and fence[1]):
         return None
     found = re.findall(rf'"{key}"\s*:\s*"', written)
     place = re.search(rf'"{key}"\s*:\s*"\s*', written)
