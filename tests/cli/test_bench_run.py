@@ -106,7 +106,7 @@ def test_an_own_domain_gives_what_the_papers_bench_gives(tpvqa: Run) -> None:
 
 def test_two_workers_and_a_folder_of_problems(tpvqa: Run, tmp_path: Path) -> None:
     folder = own_blocks(tmp_path / "blocks")
-    words = ["bench", "run", folder, "--monitors", "tp,tpvqa", "--episodes", 2, "--json"]
+    words = ["bench", "run", folder, "--monitor", "tp,tpvqa", "--episodes", 2, "--json"]
     code, out, err = tpvqa(*words, "--workers", 1, "--out", "one")
     assert code == 0, err
     table = json.loads(out)

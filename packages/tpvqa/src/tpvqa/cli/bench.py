@@ -74,15 +74,20 @@ def run(
     monitors: Annotated[
         str | None,
         typer.Option(
-            help=f"Monitors, with commas; all are compared with the first. Default: {MONITORS}."
+            "--monitors",
+            "--monitor",
+            help=f"Monitors, with commas; all are compared with the first. Default: {MONITORS}.",
         ),
     ] = None,
     vlm: Annotated[
-        str | None, typer.Option(help="VLMs, with commas. Default: as of `tpvqa run`.")
+        str | None,
+        typer.Option("--vlm", "--vlms", help="VLMs, with commas. Default: as of `tpvqa run`."),
     ] = None,
     worlds: Annotated[
         str | None,
-        typer.Option(help="Worlds, with commas. Default: symbolic, or the task's own."),
+        typer.Option(
+            "--worlds", "--world", help="Worlds, with commas. Default: symbolic, or the task's own."
+        ),
     ] = None,
     conditions: Annotated[
         list[str] | None,
