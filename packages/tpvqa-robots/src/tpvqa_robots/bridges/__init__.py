@@ -1,0 +1,1 @@
+"""tpvqa inside programs of others: behaviour trees."""

@@ -1,0 +1,117 @@
+"""Work in threads that a tick looks in on, and whose turn it is at what serves one at a time."""
+
+import atexit
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from threading import Event, Lock, Thread
+from time import monotonic
+from typing import Any, Generic, TypeVar
+from weakref import WeakSet, WeakValueDictionary
+
+T = TypeVar("T")
+AT_EXIT = 2.0
+"""Seconds that are left, when the program ends, to what still runs: a robot comes to a stand."""
+
+
+class Job(Generic[T]):
+    """Something that is being done in a thread; it begins at once.
+
+    Where the program ends meanwhile, `cancel` is set, and the thread is waited for a little.
+
+    Args:
+        work: Is given `cancel`; what it returns or raises is told by `result`.
+        name: Of the thread.
+        cancel: Set once nobody wants it any more; one of its own by default.
+
+    Attributes:
+        cancel: The same.
+    """
+
+    def __init__(self, work: Callable[[Event], T], name: str, cancel: Event | None = None):
+        self.cancel = cancel or Event()
+        self._work, self._began, self._over = work, monotonic(), Event()
+        self._made: list[T] = []
+        self._error: Exception | SystemExit | None = None
+        _BEGUN.add(self)
+        Thread(target=self._run, name=name, daemon=True).start()
+
+    def _run(self) -> None:
+        try:
+            self._made.append(self._work(self.cancel))
+        except (Exception, SystemExit) as error:  # noqa: BLE001 — told by whoever asks for the result
+            self._error = error
+        finally:
+            self._over.set()
+
+    @property
+    def over(self) -> bool:
+        """Whether it has come to its end."""
+        return self._over.is_set()
+
+    @property
+    def seconds(self) -> float:
+        """How long ago it began."""
+        return monotonic() - self._began
+
+    def result(self) -> T:
+        """What the work returned, once it is over.
+
+        Raises:
+            Exception: Whatever it raised.
+        """
+        if self._error is not None:
+            raise self._error
+        return self._made[0]
+
+    def drop(self, wait: float = 0.0) -> bool:
+        """Set `cancel`; whether the work is over within so many seconds."""
+        self.cancel.set()
+        return self._over.wait(wait)
+
+
+_BEGUN: WeakSet[Job[Any]] = WeakSet()
+
+
+@atexit.register
+def _stand_still() -> None:
+    running = [job for job in list(_BEGUN) if not job.over]
+    for job in running:
+        job.cancel.set()
+    until = monotonic() + AT_EXIT
+    for job in running:
+        job.drop(max(until - monotonic(), 0.0))
+
+
+_TURNS: WeakValueDictionary[tuple[str, int], Lock] = WeakValueDictionary()
+_FINDING = Lock()
+
+
+def turn(what: str, part: object) -> Lock:
+    """What is held while a part does what it can do for one alone.
+
+    Everybody gets the same lock for the same part; whoever keeps the lock has to keep the part.
+
+    Args:
+        what: It does.
+        part: A world or a VLM.
+    """
+    with _FINDING:
+        lock = _TURNS.get((what, id(part)))
+        if lock is None:
+            lock = _TURNS[what, id(part)] = Lock()
+        return lock
+
+
+@contextmanager
+def waited_for(lock: Lock, seconds: float, whose: str) -> Iterator[None]:
+    """Hold a lock, once others let go of it.
+
+    Raises:
+        TimeoutError: They did not within so many seconds.
+    """
+    if not lock.acquire(timeout=seconds):
+        raise TimeoutError(f"{whose} was busy with something else for {seconds:g} s")
+    try:
+        yield
+    finally:
+        lock.release()
