@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
 from pathlib import Path
 from threading import Event
 
@@ -13,7 +14,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.behaviours import CheckBlackboardVariableValue
 from py_trees.blackboard import Blackboard
 from py_trees.common import ComparisonExpression, Status
-from py_trees.composites import Selector, Sequence as InOrder
+from py_trees.composites import Selector
+from py_trees.composites import Sequence as InOrder
 from py_trees.trees import BehaviourTree
 
 from tpvqa import (
@@ -31,8 +33,13 @@ from tpvqa import (
     load_task,
 )
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
+from tpvqa.events import Resumed
+from tpvqa.events.events import Acted, Answered
+from tpvqa.resuming import resume
 from tpvqa.tasks import find_task
 from tpvqa.worlds import Execution, Report, World
+from tpvqa.worlds.symbolic import SymbolicWorld
+from tpvqa_robots.bridges.steps import PausableTrial
 from tpvqa_robots.bridges.trees import Act, Check, Ground
 
 ROOT = Path(__file__).parents[2]
@@ -264,9 +271,12 @@ def test_a_skill_that_is_late_or_never_comes_back_fails(trial: Trial) -> None:
 
 def test_a_robot_stands_still_when_the_program_ends(tmp_path: Path) -> None:
     """Also where nobody shuts the tree down."""
-    program = f"""
+    program = """
 import time
 from tpvqa.pddl import Action
+from tpvqa.events import Resumed
+from tpvqa.events.events import Acted, Answered
+from tpvqa.resuming import resume
 from tpvqa.tasks import find_task
 from tpvqa.worlds import Execution, Report
 from tpvqa_robots.bridges.jobs import Job
@@ -276,7 +286,9 @@ def skill(cancel):
 Job(skill, "skill")
 time.sleep(0.05)
 """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=9)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=9
+    )
     assert (done.stdout, done.stderr) == ("stands still\n", "")
 
 
@@ -298,3 +310,121 @@ def test_the_tree_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     ended = read_episode(tmp_path / "tower")[-1]
     assert ended.kind == "ended"
     assert ended.completed
+
+
+class Slow(SymbolicWorld):
+    """A simulated world whose skills take time before they change anything."""
+
+    seconds = 0.02
+    moving = False
+
+    def execute(
+        self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
+    ) -> Execution:
+        self.moving = True
+        stopped = cancel is not None and cancel.wait(self.seconds)
+        self.moving = False
+        if stopped:
+            return Execution(Report.CANCELLED, self.seconds)
+        return super().execute(action, deadline=deadline, cancel=cancel)
+
+
+@pytest.mark.parametrize("monitor", ["belief", "tpvqa"])
+def test_a_paused_trial_looks_before_it_goes_on(task: Task, tmp_path: Path, monitor: str) -> None:
+    """Meanwhile another branch has put a block elsewhere."""
+    writer = EpisodeWriter(tmp_path)
+    with Trial(CONFIG.but(simulation={"failure": 0}, monitor=monitor), task=task) as trial:
+        world = trial.parts.world = Slow(trial.simulation)
+        tower = Ground("tower", trial, writer)
+        world.seconds = 30.0
+        ticked(tower, lambda: world.moving)
+        began = time.monotonic()
+        tower.stop(Status.INVALID)
+        assert time.monotonic() - began < 0.2
+        assert not world.moving
+        assert tower.feedback_message == "paused"
+        world.seconds = 0.0
+        aside = Act("aside", world, move(trial, "red", "green", "blue", "c1 c2"))
+        assert ticked(aside) is Status.SUCCESS
+        paused = len(read_episode(tmp_path))
+        assert ticked(tower) is Status.SUCCESS, tower.feedback_message
+    writer.close()
+    events = read_episode(tmp_path)
+    assert events[-1].kind == "ended"
+    assert events[-1].completed
+    kinds = [event.kind for event in events[paused:]]
+    assert "observed" in kinds[: kinds.index("acting")]
+    reports = [event.report for event in events if event.kind == "acted"]
+    assert reports.count(Report.CANCELLED) == 1
+
+
+def test_nothing_is_done_about_what_was_seen_before_a_pause(trial: Trial) -> None:
+    """It is paused between any two requests, again and again."""
+    writer = MemoryWriter()
+    running = PausableTrial(trial, writer, patience=1)
+    running.begin()
+    paused = 0
+    while running.ended is None:
+        if len(writer.events) % 3 == 0 and paused < 12:
+            running.pause.set()
+            running.step()
+            running.resume()
+            paused += 1
+            writer.events.append(Resumed())
+        running.step()
+    assert paused > 5
+    assert running.ended.completed
+    seen = True
+    for event in writer.events:
+        seen = event.kind == "observed" or (seen and event.kind != "resumed")
+        if isinstance(event, Acted) and event.report is Report.DONE:
+            assert seen
+        elif isinstance(event, Answered) and not seen:
+            assert {each.reply for each in event.answers} == {Reply.UNKNOWN}
+
+
+def test_a_trial_that_ended_is_not_taken_for_another_one(trial: Trial) -> None:
+    tower = Ground("tower", trial, MemoryWriter())
+    assert ticked(tower) is Status.SUCCESS
+    assert ticked(tower) is Status.FAILURE
+    assert tower.feedback_message == (
+        "the trial has ended (goal); make another Ground to run it again"
+    )
+
+
+def test_a_goal_that_is_out_of_reach_and_a_vlm_that_breaks_are_failures(task: Task) -> None:
+    config = CONFIG.but(limits={"actions": 1})
+    with Trial(config, task=task) as trial:
+        tower = Ground("tower", trial, MemoryWriter())
+        assert ticked(tower) is Status.FAILURE
+        assert tower.feedback_message == "limit of actions"
+    with Trial(CONFIG, task=task, vlm=Unsure(BROKEN)) as trial:
+        tower = Ground("tower", trial, MemoryWriter())
+        assert ticked(tower) is Status.FAILURE
+        assert "Unsure.ask broke: RuntimeError: no connection" in tower.feedback_message
+        assert ticked(tower) is Status.FAILURE
+
+
+def test_a_tree_that_is_shut_down_leaves_a_trial_to_be_gone_on_with(
+    trial: Trial, tmp_path: Path
+) -> None:
+    world = trial.parts.world = Slow(trial.simulation)
+    world.seconds = 30.0
+    writer = EpisodeWriter(tmp_path / "tower")
+    tree = BehaviourTree(Ground("tower", trial, writer))
+    ticked(tree.root, lambda: world.moving)
+    tree.shutdown()
+    writer.close()
+    assert not world.moving
+    last = read_episode(tmp_path / "tower")[-1]
+    assert last.kind == "ended"
+    assert last.because == "cancelled"
+    assert resume(tmp_path / "tower").completed
+
+
+def test_what_is_to_be_installed_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.startswith("tpvqa_robots.bridges.trees")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "py_trees.behaviour", None)
+    with pytest.raises(TpvqaError, match=r"'py_trees'.*tpvqa-robots\[trees\]"):
+        import_module("tpvqa_robots.bridges.trees")

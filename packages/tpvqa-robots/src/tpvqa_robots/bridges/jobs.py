@@ -3,6 +3,7 @@
 import atexit
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import count
 from threading import Event, Lock, Thread
 from time import monotonic
 from typing import Any, Generic, TypeVar
@@ -82,36 +83,47 @@ def _stand_still() -> None:
         job.drop(max(until - monotonic(), 0.0))
 
 
-_TURNS: WeakValueDictionary[tuple[str, int], Lock] = WeakValueDictionary()
+class Turn:
+    """What a part does for one at a time.
+
+    Attributes:
+        lock: Held by whoever has it.
+        numbers: Numbers of what is done so, from 1.
+    """
+
+    def __init__(self) -> None:
+        self.lock, self.numbers = Lock(), count(1)
+
+    @contextmanager
+    def waited_for(self, seconds: float, whose: str) -> Iterator[None]:
+        """Have it, once others have had it.
+
+        Raises:
+            TimeoutError: They did not let go of it within so many seconds.
+        """
+        if not self.lock.acquire(timeout=seconds):
+            raise TimeoutError(f"{whose} was busy with something else for {seconds:g} s")
+        try:
+            yield
+        finally:
+            self.lock.release()
+
+
+_TURNS: WeakValueDictionary[tuple[str, int], Turn] = WeakValueDictionary()
 _FINDING = Lock()
 
 
-def turn(what: str, part: object) -> Lock:
-    """What is held while a part does what it can do for one alone.
+def turn(what: str, part: object) -> Turn:
+    """The same one for everybody who wants the same of the same part.
 
-    Everybody gets the same lock for the same part; whoever keeps the lock has to keep the part.
+    Whoever keeps it has to keep the part, too.
 
     Args:
-        what: It does.
+        what: The part does.
         part: A world or a VLM.
     """
     with _FINDING:
-        lock = _TURNS.get((what, id(part)))
-        if lock is None:
-            lock = _TURNS[what, id(part)] = Lock()
-        return lock
-
-
-@contextmanager
-def waited_for(lock: Lock, seconds: float, whose: str) -> Iterator[None]:
-    """Hold a lock, once others let go of it.
-
-    Raises:
-        TimeoutError: They did not within so many seconds.
-    """
-    if not lock.acquire(timeout=seconds):
-        raise TimeoutError(f"{whose} was busy with something else for {seconds:g} s")
-    try:
-        yield
-    finally:
-        lock.release()
+        found = _TURNS.get((what, id(part)))
+        if found is None:
+            found = _TURNS[what, id(part)] = Turn()
+        return found

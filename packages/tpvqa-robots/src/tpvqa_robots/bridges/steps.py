@@ -13,7 +13,7 @@ from tpvqa.monitors import Ask, Look
 from tpvqa.trial import Act, Conclusion, Pending, Wait
 from tpvqa.vlm import Answer, Reply
 from tpvqa.worlds import Execution, Report
-from tpvqa_robots.bridges.jobs import turn, waited_for
+from tpvqa_robots.bridges.jobs import turn
 
 if TYPE_CHECKING:
     from tpvqa import Trial
@@ -97,18 +97,18 @@ class PausableTrial:
     def _perform(self, pending: Pending) -> Performed:
         match pending.request:
             case Act() | Wait():
-                with waited_for(self._acting, self._patience, "the robot"):
+                with self._acting.waited_for(self._patience, "the robot"):
                     self.moving.set()
                     try:
                         return self._performer.perform(pending)
                     finally:
                         self.moving.clear()
             case Look():
-                with waited_for(self._seeing, self._patience, "the camera"):
+                with self._seeing.waited_for(self._patience, "the camera"):
                     self._stale = False
                     return self._performer.perform(pending)
             case Ask():
-                with waited_for(self._answering, self._patience, "the VLM"):
+                with self._answering.waited_for(self._patience, "the VLM"):
                     return self._performer.perform(pending)
         return self._performer.perform(pending)
 

@@ -84,12 +84,12 @@ class Act(Behaviour):
 
     def _begun(self) -> bool:
         """Begin the skill; whether the robot was free."""
-        if not self._acting.acquire(blocking=False):
+        if not self._acting.lock.acquire(blocking=False):
             return False
         try:
             self._job = Job(self._execute, self.name)
         except BaseException:
-            self._acting.release()
+            self._acting.lock.release()
             raise
         return True
 
@@ -98,7 +98,7 @@ class Act(Behaviour):
             limits = {"deadline": self._deadline, "cancel": cancel}
             return called(self._world, "execute", Execution, self._action, **limits)
         finally:
-            self._acting.release()
+            self._acting.lock.release()
 
     def _running(self, job: Job[Execution]) -> Status:
         self.feedback_message = f"{self._action}, for {job.seconds:.1f} s"

@@ -1,6 +1,7 @@
 """Looks whether facts hold."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from threading import Event
 from typing import Literal as OneOf
 
@@ -14,7 +15,7 @@ from tpvqa.vlm.capabilities import may_be_asked_side_by_side
 from tpvqa.vlm.checking import checked_answers
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.worlds import World
-from tpvqa_robots.bridges.jobs import Job, turn, waited_for
+from tpvqa_robots.bridges.jobs import Job, turn
 from tpvqa_robots.bridges.trees.library import PATIENCE, Behaviour, Status, reason
 
 LOOKS = 3
@@ -147,13 +148,15 @@ class Check(Behaviour):
         return None
 
     def _look(self, dropped: Event) -> list[Answer]:
-        with waited_for(self._seeing, self._patience, "the camera"):
+        with self._seeing.waited_for(self._patience, "the camera"):
             if dropped.is_set():
                 return []
             seen = called(self._world, "observe", Observation, self._view)
+        # a trial numbers its looks from 0 on; what is asked must not be taken for one of those
+        seen = replace(seen, look=-next(self._answering.numbers))
         if self._side_by_side:
             return self._ask(seen)
-        with waited_for(self._answering, self._patience, "the VLM"):
+        with self._answering.waited_for(self._patience, "the VLM"):
             return [] if dropped.is_set() else self._ask(seen)
 
     def _ask(self, seen: Observation) -> list[Answer]:
