@@ -36,12 +36,13 @@ class PausableTrial:
 
     Attributes:
         pause: Set to stop the skill that is running.
-        moving: Set while a skill runs.
+        still: Set but for while a skill runs.
         ended: The last event, once there is one.
     """
 
     def __init__(self, trial: "Trial", writer: "Writer", *, patience: float):
-        self.pause, self.moving = Event(), Event()
+        self.pause, self.still = Event(), Event()
+        self.still.set()
         self.ended: Ended | None = None
         self._patience = patience
         self._stepping: SteppingTrial = trial.stepping(writer)
@@ -98,11 +99,11 @@ class PausableTrial:
         match pending.request:
             case Act() | Wait():
                 with self._acting.waited_for(self._patience, "the robot"):
-                    self.moving.set()
+                    self.still.clear()
                     try:
                         return self._performer.perform(pending)
                     finally:
-                        self.moving.clear()
+                        self.still.set()
             case Look():
                 with self._seeing.waited_for(self._patience, "the camera"):
                     self._stale = False

@@ -96,7 +96,7 @@ class Ground(Behaviour):
         if new_status is not Status.INVALID or trial is None or job is None:
             return
         trial.pause.set()
-        if trial.moving.is_set() and not job.drop(self._grace):
+        if not trial.still.wait(self._grace):
             self.feedback_message = f"told to stop, and still moves after {self._grace:g} s"
         else:
             self.feedback_message = "paused"
