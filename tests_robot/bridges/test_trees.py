@@ -393,6 +393,9 @@ def test_a_trial_that_ended_is_not_taken_for_another_one(trial: Trial) -> None:
     assert tower.feedback_message == (
         "the trial has ended (goal); make another Ground to run it again"
     )
+    again = Ground("again", trial, MemoryWriter())
+    assert ticked(again) is Status.FAILURE
+    assert "has run already" in again.feedback_message
 
 
 def test_a_goal_that_is_out_of_reach_and_a_vlm_that_breaks_are_failures(task: Task) -> None:

@@ -45,7 +45,8 @@ class PausableTrial:
         self.still.set()
         self.ended: Ended | None = None
         self._patience = patience
-        self._stepping: SteppingTrial = trial.stepping(writer)
+        self._trial, self._writer = trial, writer
+        self._stepping: SteppingTrial | None = None
         self._performer: Performer = trial.performer(writer, cancel=self.pause)
         self._acting = turn("act", trial.world)
         self._seeing, self._answering = turn("see", trial.world), turn("ask", trial.vlm)
@@ -54,12 +55,18 @@ class PausableTrial:
     @property
     def state(self) -> TrialState:
         """Where the trial stands."""
-        return self._stepping.state
+        return TrialState() if self._stepping is None else self._stepping.state
 
     def begin(self) -> None:
-        """Go to the first request."""
-        self._stepping.begin()
-        self._end_if_over()
+        """Go to the first request, which may take seconds.
+
+        Raises:
+            TpvqaError: The trial has run already, or a plug-in broke.
+        """
+        stepping: SteppingTrial = self._trial.stepping(self._writer)
+        stepping.begin()
+        self._stepping = stepping
+        self._end_if_over(stepping)
 
     def step(self) -> None:
         """Do what is pending, unless paused, and go to the next request, or to the end.
@@ -69,7 +76,7 @@ class PausableTrial:
             TimeoutError: World or VLM was busy with something else.
         """
         stepping = self._stepping
-        if stepping.pending is None or self.pause.is_set():
+        if stepping is None or stepping.pending is None or self.pause.is_set():
             return
         stepping.begun()
         try:
@@ -77,7 +84,7 @@ class PausableTrial:
         except BudgetError as spent:
             self.end(Conclusion("budget spent", str(spent)))
         else:
-            self._end_if_over()
+            self._end_if_over(stepping)
 
     def resume(self) -> None:
         """Go on after a pause; what was pending is over."""
@@ -85,15 +92,18 @@ class PausableTrial:
         self.pause.clear()
 
     def end(self, conclusion: Conclusion | None = None) -> None:
-        """Write the last event; by default that it was cancelled. A second call does nothing."""
-        if self.ended is None:
+        """Write the last event, if there is a first; by default that it was cancelled.
+
+        A second call does nothing.
+        """
+        if self.ended is None and self._stepping is not None:
             self._stepping.take_over()
             holds = self._performer.goal_holds()
             self.ended = self._stepping.end(conclusion, goal_holds=holds)
 
-    def _end_if_over(self) -> None:
-        if self._stepping.pending is None:
-            self.end(self._stepping.conclusion)
+    def _end_if_over(self, stepping: SteppingTrial) -> None:
+        if stepping.pending is None:
+            self.end(stepping.conclusion)
 
     def _perform(self, pending: Pending) -> Performed:
         match pending.request:
