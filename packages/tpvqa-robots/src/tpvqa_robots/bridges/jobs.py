@@ -32,15 +32,17 @@ class Job(Generic[T]):
         self.cancel = cancel or Event()
         self._work, self._began, self._over = work, monotonic(), Event()
         self._made: list[T] = []
-        self._error: Exception | SystemExit | None = None
+        self._error: Exception | None = None
         _BEGUN.add(self)
         Thread(target=self._run, name=name, daemon=True).start()
 
     def _run(self) -> None:
         try:
             self._made.append(self._work(self.cancel))
-        except (Exception, SystemExit) as error:  # noqa: BLE001 — told by whoever asks for the result
+        except Exception as error:  # noqa: BLE001 — told by whoever asks for the result
             self._error = error
+        except SystemExit as error:  # the program is not a plug-in's to end
+            self._error = RuntimeError(f"SystemExit: {error}")
         finally:
             self._over.set()
 

@@ -1,6 +1,7 @@
 """Looks whether facts hold."""
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from threading import Event
 from typing import Literal as OneOf
@@ -148,16 +149,14 @@ class Check(Behaviour):
         return None
 
     def _look(self, dropped: Event) -> list[Answer]:
-        with self._seeing.waited_for(self._patience, "the camera"):
-            if dropped.is_set():
-                return []
-            seen = called(self._world, "observe", Observation, self._view)
-        # a trial numbers its looks from 0 on; what is asked must not be taken for one of those
-        seen = replace(seen, look=-next(self._answering.numbers))
-        if self._side_by_side:
-            return self._ask(seen)
-        with self._answering.waited_for(self._patience, "the VLM"):
-            return [] if dropped.is_set() else self._ask(seen)
+        vlm = self._answering.waited_for(self._patience, "the VLM")
+        with nullcontext() if self._side_by_side else vlm:  # before the look, which is then new
+            with self._seeing.waited_for(self._patience, "the camera"):
+                if dropped.is_set():
+                    return []
+                seen = called(self._world, "observe", Observation, self._view)
+            # a trial numbers its looks from 0 on: what is asked is not about one of those
+            return self._ask(replace(seen, look=-next(self._answering.numbers)))
 
     def _ask(self, seen: Observation) -> list[Answer]:
         vlm, questions = self._vlm, self.questions
