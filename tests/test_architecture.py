@@ -122,10 +122,13 @@ def test_the_household_imports_what_is_public_and_nothing_of_the_experiments() -
         assert not re.search(r"from tpvqa\.[\w.]+ import [^\n]*\b_\w", text), path
 
 
-def test_the_robots_import_what_is_public_and_their_film_the_log() -> None:
+DRIVING = {"film": {"episodes"}, "bridges": {"drivers", "episodes", "events", "monitors", "trial"}}
+
+
+def test_the_robots_import_what_is_public_and_whoever_drives_trials_what_that_takes() -> None:
     for path in OF_THE_ROBOTS:
         text = path.read_text()
-        allowed = public() | ({"episodes"} if room_of(path) == "film" else set())
+        allowed = public() | DRIVING.get(room_of(path), set())
         assert imported_rooms(path, "tpvqa") <= allowed, path
         roots = {name.partition(".")[0] for name in imports(text)}
         assert roots.isdisjoint({"tpvqa_household", "tpvqa_experiments", "robosuite"}), path

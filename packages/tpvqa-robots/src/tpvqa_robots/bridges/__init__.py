@@ -1,1 +1,1 @@
-"""Other people's frameworks on one side, a trial of tpvqa on the other."""
+"""tpvqa inside programs of others: behaviour trees, environments of Gymnasium."""

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.assembly import Trial
+from tpvqa import Trial, TrialConfig
 from tpvqa.belief.costs import Costs
-from tpvqa.config import MonitorConfig, TrialConfig
 from tpvqa.drivers import Performer, SteppingTrial
 from tpvqa.drivers.performing import Performed
 from tpvqa.episodes import EpisodeWriter, MemoryWriter
@@ -71,7 +70,9 @@ class GroundedTask(gymnasium.Env[Observed, np.int64]):
         folder: Path | None = None,
         render_mode: str | None = None,
     ):
-        self.config = config.model_copy(update={"monitor": MonitorConfig(spec="commanded")})
+        self.config = config.model_copy(
+            update={"monitor": TrialConfig(monitor="commanded").monitor}
+        )
         self.render_mode, self._size, self._most = render_mode, size, most
         self._folder, self._seed, self._episode = folder, config.seed, config.episode
         self._costs = Costs()
