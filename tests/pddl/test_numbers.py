@@ -205,6 +205,17 @@ PROBLEM = (ROVER / "problem.pddl").read_text()
         ("(= (load) 0)", "(= (load) 0) (= (load) 5)", "it has the value 0 already"),
         ("(:functions", "(:functions (+ ?s - sample)", "a function is called '+'"),
         ("(= (weight flint) 2)", "(= (weight stone) 2)", "there is no object 'stone'"),
+        (
+            "(= (weight flint) 2)",
+            "(= (weight hill) 2)",
+            "hill is of the type place, but ?s of weight",
+        ),
+        (
+            "(decrease (battery) (way ?a ?b))",
+            "(decrease (battery) (weight ?a))",
+            "?a is of the type",
+        ),
+        ("(= (load) 0)", "(= (load) 1e1)", "gives no number; expected one as 2, -2 or 0.5"),
         ("(:goal", "(:metric shrink (battery)) (:goal", "(:metric minimize (total-cost))"),
         ("(decrease (battery) (way ?a ?b))", "(decrease (battery))", "is no change of a number"),
     ],

@@ -161,11 +161,6 @@ class Numeric:
         return with_values(state, {tuple(map(str, left)): value})
 
 
-def expression(written: Any) -> Expression:
-    """An expression as the worker gives it."""
-    return tuple(map(expression, written)) if isinstance(written, list) else str(written)
-
-
 def value_of(words: Words, value: Fraction) -> Atom:
     """The fact that a function has a value."""
     return Atom(VALUE, (*words, written(value)))
