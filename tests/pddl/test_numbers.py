@@ -285,6 +285,12 @@ def test_a_function_of_costs_alone_is_no_number() -> None:
     assert task.action("a").cost == 3
 
 
+def test_a_type_may_be_written_onto_its_hyphen() -> None:
+    task = task_from_text(DOMAIN.replace(" - ", " -"), PROBLEM.replace(" - ", " -"))
+    assert task.numeric == rover().numeric
+    assert task.ground_actions() == rover().ground_actions()
+
+
 def test_a_metric_of_a_number_is_passed_over() -> None:
     metric = "(:metric minimize (+ (battery) (* 2 (total-time))))"
     task = task_from_text(DOMAIN, PROBLEM.replace("(:goal", f"{metric} (:goal"))
