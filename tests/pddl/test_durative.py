@@ -105,6 +105,21 @@ def test_what_is_cancelled_frees_what_it_took(fallen: str | None, lies: str) -> 
     assert after == free | {Atom("on", ("a", lies))}
 
 
+def test_what_is_needed_at_a_start_alone_makes_groups_too() -> None:
+    """The translator's invariants are not told that what an end deletes held at the start."""
+    text = YARD.replace("(idle ?c - crane)", "(idle ?c - crane) (wet ?s - spot) (dry ?s - spot)")
+    text = (
+        text[: text.rindex(")")]
+        + """ (:durative-action rain :parameters (?s - spot)
+     :duration (= ?duration 1) :condition (at start (dry ?s))
+     :effect (and (at end (wet ?s)) (at end (not (dry ?s))))))"""
+    )
+    task = task_from_text(text, CRATES.replace("(on a s)", "(on a s) (dry s)"))
+    (group,) = task.groups_of(Atom("dry", ("s",)))
+    assert group.atoms == {Atom("dry", ("s",)), Atom("wet", ("s",))}
+    assert group.exactly_one
+
+
 def test_a_domain_in_which_nothing_lasts_has_nothing_of_it() -> None:
     task = load_task("clean_dishes")
     assert task.lasting is None
