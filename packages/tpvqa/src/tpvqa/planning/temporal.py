@@ -116,8 +116,11 @@ class Schedule:
 
     @property
     def out_of_reach(self) -> str | None:
-        """What keeps the goal out of reach: actions that have no duration; None where nothing."""
+        """What keeps the goal out of reach: actions that have no duration; None where nothing, or
+        where it is not reached with them either."""
         if self.ground.in_reach or self._untimed is None:
+            return None
+        if not propositional(self.task, self.state).in_reach:
             return None
         return f"the goal is out of reach without what has no duration: {self._untimed}"
 
