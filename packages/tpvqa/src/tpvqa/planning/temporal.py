@@ -20,7 +20,7 @@ SOON = 0.01
 def no_time(task: Task, planner: str) -> Crashed:
     """Why a planner that knows no time does not plan a task whose actions last."""
     names = "" if task.lasting is None else ", ".join(sorted(task.lasting.variables))
-    reason = f"actions last here ({names}), which it does not know; take up:aries or up:tamer"
+    reason = f"actions last here ({names}), which {planner} does not know; take up:aries or up:tamer"
     return Crashed(reason, planner, 0.0)
 
 
