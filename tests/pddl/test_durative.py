@@ -139,6 +139,13 @@ def test_a_domain_in_which_nothing_lasts_has_nothing_of_it() -> None:
         ("(at end (fired ?p))", "(at end (increase (time ?p) 2))", 10, "is about numbers"),
         ("(when (at end (raw ?q))", "(when (at start (raw ?q))", 10, "at another time"),
         (":action close", ":action end-fire", 6, "rename one of them"),
+        (
+            "(:action close",
+            "(:durative-action fire :duration)\n (:action close",
+            11,
+            "two durative",
+        ),
+        ("(* 2 (time ?p))", "1e999", 7, "'(1e999)' is no number"),
         ("(busy) (warm", "(running-fire ?p - pot) (warm", 6, "rename one of them"),
     ],
 )
@@ -159,6 +166,7 @@ def test_what_is_not_known_is_told_where_it_stands(
         ("(= (time vase) 3)", "(= (time vase) soon)", "gives no number"),
         ("(= (time vase) 3)", "(= (time vase) 3e1)", "gives no number"),
         ("(= (time vase) 3)", "(= (time vase jug) 3)", "time takes 1 arguments, got 2"),
+        ("(= (time vase) 3)", "(= (tiem vase) 3)", "Did you mean 'time'"),
         ("(= (time vase) 3)", "(= (time bench) 3)", "bench is of the type place, but ?p of time"),
         ("(= (time vase) 3)", "(= (time vase) 3) (= (time vase) 4)", "it has the value 3 already"),
         (" (:goal", " (:metric shrink (+ (total-time) 1))\n (:goal", "is not known; expected"),

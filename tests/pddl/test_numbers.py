@@ -197,7 +197,13 @@ PROBLEM = (ROVER / "problem.pddl").read_text()
     [
         ("(>= (battery) (way ?a ?b))", "(>= (batery) (way ?a ?b))", "Did you mean 'battery'"),
         ("(>= (battery) (way ?a ?b))", "(>= (battery) (way ?a))", "way takes 2 arguments, got 1"),
-        ("(>= (battery) (way ?a ?b))", "(>= (battery) (way ?a ?c))", "there is no variable '?c'"),
+        (
+            "(>= (battery) (way ?a ?b))",
+            "(>= (battery) (way ?a ?c))",
+            "there is no variable '?c'. Known: ?a, ?b, base, flint, hill, lake, mud.",
+        ),
+        ("(weight ?s - sample)", "(weight ?s - stone)", "the type 'stone' of '?s' is not declared"),
+        ("(capacity)", "(capacity) (capacity)", "two functions of the name 'capacity'"),
         ("(assign (battery) 100)", "(assign 100 (battery))", "is no function whose value"),
         ("(:predicates", "(:derived (far) (> (way base lake) 3)) (:predicates", "(:derived …)"),
         ("(= (load) 0)", "", "(load) has no value at first, though collect"),
@@ -225,6 +231,14 @@ def test_what_cannot_be_read_is_told_with_its_line(old: str, new: str, says: str
     with pytest.raises(PDDLError) as caught:
         task_from_text(DOMAIN.replace(old, new, 1), PROBLEM.replace(old, new, 1))
     assert says in str(caught.value)
+
+
+def test_a_function_without_arguments_may_stand_bare() -> None:
+    domain, problem = (text.replace("(battery)", "battery") for text in (DOMAIN, PROBLEM))
+    domain = domain.replace("(:functions\n    battery", "(:functions\n    (battery)")
+    task = task_from_text(domain, problem)
+    assert task.ground_actions() == rover().ground_actions()
+    assert (task.init, task.goal) == (rover().init, rover().goal)
 
 
 def test_two_numbers_that_change_may_be_equal() -> None:

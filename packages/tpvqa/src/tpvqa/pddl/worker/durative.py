@@ -58,6 +58,14 @@ def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
         for each in part[1:]
         if isinstance(each, Block) and each
     ]
+    for number, section in enumerate(found):
+        if section[1:] and any(section[1] == other[1] for other in found[:number] if other[1:]):
+            raise ReadingError(
+                f"there are two durative actions of the name {said(section[1])}; expected one of "
+                "each",
+                "domain",
+                section.line,
+            )
     functions = Functions(domain, problem)
     actions = [_Durative(section, taken, declared, functions) for section in found]
     place = next(n for n, section in enumerate(domain) if section is found[0])

@@ -1,6 +1,6 @@
 """The functions of a domain: expressions of them, and the values that a problem gives them."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
 from tpvqa.errors import suggestion_or_list
@@ -25,11 +25,12 @@ class Functions:
         things: The objects of both.
 
     Raises:
-        ReadingError: One is called as what means something else in expressions.
+        ReadingError: Two have one name, or one has a name that means something else.
     """
 
     def __init__(self, domain: Block, problem: Block):
-        self.arguments = dict(_declared(domain))
+        declared = list(_declared(domain))
+        self.arguments = dict(declared)
         odd = next((name for name in self.arguments if name in (*ARITHMETIC, *COMPARISONS)), None)
         if odd is not None:
             raise ReadingError(
@@ -38,13 +39,26 @@ class Functions:
                 "domain",
                 next(sections(domain, ":functions")).line,
             )
+        for name in self.arguments:
+            if sum(other == name for other, _ in declared) > 1:
+                raise ReadingError(
+                    f"there are two functions of the name {name!r}; expected one of each",
+                    "domain",
+                    next(sections(domain, ":functions")).line,
+                )
         self.things = {
-            str(word)
-            for definition, name in ((domain, ":constants"), (problem, ":objects"))
-            for section in sections(definition, name)
-            for word in section[1:]
-            if isinstance(word, str)
+            name
+            for definition, kind in ((domain, ":constants"), (problem, ":objects"))
+            for section in sections(definition, kind)
+            for name, _ in _typed(section[1:])
         }
+
+    def is_number(self, item: object) -> bool:
+        """Whether something stands for a number: a block, or a word that is one or names one."""
+        if not isinstance(item, str):
+            return isinstance(item, Block)
+        named = item in self.arguments and item not in self.things and item != COST
+        return named or is_number(item)
 
     def expression(self, item: object, known: Collection[str], part: str) -> Any:
         """A number as it is written, `[function, argument, …]`, or `[operator, …, …]`.
@@ -66,7 +80,7 @@ class Functions:
                 return str(item)
             item = block_of(line_of(item), item)
         head = item[0] if isinstance(item, Block) and item else None
-        if not isinstance(item, Block) or not isinstance(head, str) or head.startswith("?"):
+        if not isinstance(item, Block) or not isinstance(head, str) or head[0] in "?.0123456789":
             raise wrong(
                 f"{said(item)} is no number; expected one as 2, -2 or 0.5, a function, or one of "
                 f"{' '.join(ARITHMETIC)} with two of such",
@@ -83,11 +97,7 @@ class Functions:
                 parts = [[str(head), *two] if len(two) == 2 else two[0] for two in pairs]
             return [str(head), *parts]
         if head not in self.arguments:
-            raise wrong(
-                f"{said(item)} speaks of the function {str(head)!r}, which (:functions …) does not "
-                "declare" + suggestion_or_list(str(head), self.arguments),
-                line_of(head),
-            )
+            raise self._undeclared(item, part)
         if head == COST:
             raise wrong(
                 f"{said(item)}: total-cost is for (:metric minimize (total-cost)) alone; take a "
@@ -95,6 +105,15 @@ class Functions:
                 item.line,
             )
         return self._called(item, known, part)
+
+    def _undeclared(self, item: Block, part: str) -> ReadingError:
+        name = str(item[0])
+        return ReadingError(
+            f"{said(item)} speaks of the function {name!r}, which (:functions …) does not declare"
+            + suggestion_or_list(name, self.arguments),
+            part,
+            line_of(item),
+        )
 
     def _called(self, item: Block, known: Collection[str], part: str) -> list[str]:
         """A function with its arguments, which have to be there."""
@@ -132,8 +151,10 @@ class Functions:
                     continue
                 called, value = fact[1:]
                 words = called if isinstance(called, Block) else block_of(fact.line, called)
-                if not words or words[0] not in self.arguments or words[0] == COST:
+                if not words or words[0] == COST or not isinstance(words[0], str):
                     continue
+                if words[0] not in self.arguments:
+                    raise self._undeclared(words, "problem")
                 if not isinstance(value, str) or not is_number(value):
                     raise ReadingError(
                         f"{said(fact)} gives no number; expected one as 2, -2 or 0.5",
@@ -160,18 +181,22 @@ def _declared(domain: Block) -> Iterator[tuple[str, list[list[str]]]]:
         for each in section[1:]:
             if not isinstance(each, Block) or not each:
                 continue
-            arguments: list[list[str]] = []
-            words = iter(each[1:])
-            waiting: list[str] = []
-            for word in words:
-                if word == "-":
-                    kind = next(words, "object")
-                    kinds = kind[1:] if isinstance(kind, Block) else [kind]
-                    arguments += [[name, "|".join(map(str, kinds))] for name in waiting]
-                    waiting = []
-                else:
-                    waiting.append(str(word))
-            yield str(each[0]), [*arguments, *([name, "object"] for name in waiting)]
+            yield str(each[0]), [[name, kind] for name, kind in _typed(each[1:])]
+
+
+def _typed(words: Sequence[object]) -> Iterator[tuple[str, str]]:
+    """The names of a typed list with their types."""
+    waiting: list[str] = []
+    left = iter(words)
+    for word in left:
+        if word == "-":
+            kind = next(left, "object")
+            kinds = kind[1:] if isinstance(kind, Block) else [kind]
+            yield from ((name, "|".join(map(str, kinds))) for name in waiting)
+            waiting = []
+        else:
+            waiting.append(str(word))
+    yield from ((name, "object") for name in waiting)
 
 
 def _costs(domain: Block) -> set[str]:

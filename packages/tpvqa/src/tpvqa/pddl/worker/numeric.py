@@ -8,7 +8,7 @@ another one. What they stand for is told beside, and put back into the descripti
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from tpvqa.pddl.arithmetic import ARITHMETIC, OPPOSITE, functions_in, is_number
+from tpvqa.pddl.arithmetic import ARITHMETIC, OPPOSITE, functions_in
 from tpvqa.pddl.numeric import CHANGES
 from tpvqa.pddl.worker.blocks import block_of, blocks, said, sections
 from tpvqa.pddl.worker.functions import COST, Functions
@@ -36,12 +36,13 @@ def taken_out(domain: Block, problem: Block, *, durative: bool) -> "Numbers | No
     """
     for section in sections(domain, ":requirements"):
         section[:] = [word for word in section if word not in _REQUIREMENTS]
-    spoken = [block for block in blocks(domain) if _is_about_numbers(block)]
+    functions = Functions(domain, problem)
+    spoken = [block for block in blocks(domain) if _is_about_numbers(block, functions)]
     goals = [
         block
         for section in sections(problem, ":goal")
         for block in blocks(section)
-        if _compares(block)
+        if _compares(block, functions)
     ]
     if not spoken and not goals:
         return None
@@ -52,21 +53,21 @@ def taken_out(domain: Block, problem: Block, *, durative: bool) -> "Numbers | No
         raise ReadingError(f"{said(found)} {message}; expected one of both", part, found.line)
     for section in sections(domain, ":derived"):
         for block in blocks(section):
-            if _is_about_numbers(block):
+            if _is_about_numbers(block, functions):
                 raise ReadingError(
                     f"{said(block)} stands in (:derived …), where numbers are not known; write the "
                     "comparison into the actions that need it",
                     "domain",
                     block.line,
                 )
-    return Numbers(domain, problem)
+    return Numbers(domain, problem, functions)
 
 
 class Numbers:
     """The numbers of a task, while the translator reads the rest of it."""
 
-    def __init__(self, domain: Block, problem: Block):
-        self._functions = functions = Functions(domain, problem)
+    def __init__(self, domain: Block, problem: Block, functions: Functions):
+        self._functions = functions
         self._conditions: dict[str, tuple[str, Any, Any]] = {}
         self._effects: dict[str, tuple[str, list[str], Any]] = {}
         self._part = "domain"
@@ -95,10 +96,10 @@ class Numbers:
 
     def _rewrite(self, block: Block, known: set[str]) -> None:
         """Replace what is about numbers within a block, itself included."""
-        if _compares(block):
+        if _compares(block, self._functions):
             self._put(block, self._condition(str(block[0]), block, known))
             return
-        if block and block[0] in CHANGES and _is_about_numbers(block):
+        if block and block[0] in CHANGES and _is_about_numbers(block, self._functions):
             self._put(block, self._effect(block, known))
             return
         if block[:1] in (["forall"], ["exists"]) and len(block) > 1:
@@ -232,29 +233,25 @@ def _compared(operator: str, left: Any, right: Any, *, holds: bool) -> list[Any]
     return ["compare", OPPOSITE[operator], left, right]
 
 
-def _is_about_numbers(block: Block) -> bool:
+def _is_about_numbers(block: Block, functions: Functions) -> bool:
     head = block[0] if block else None
     if head in CHANGES and len(block) > 1:
-        return _is_numeric(block[1]) and block[1] != [COST]
-    return _compares(block)
+        return functions.is_number(block[1]) and block[1] != [COST]
+    return _compares(block, functions)
 
 
-def _compares(block: Block) -> bool:
+def _compares(block: Block, functions: Functions) -> bool:
     """Whether it compares numbers; `=` is equality of objects, too, and gives values at first."""
     head = block[0] if block else None
     if head in OPPOSITE:
-        return len(block) > 1 and any(map(_is_numeric, block[1:]))
-    return head == "=" and len(block) == 3 and any(map(_is_numeric, block[1:]))
+        return len(block) > 1 and any(map(functions.is_number, block[1:]))
+    return head == "=" and len(block) == 3 and any(map(functions.is_number, block[1:]))
 
 
 def _variables(parameters: object) -> set[str]:
     """The variables that a list of parameters declares."""
     words = parameters if isinstance(parameters, Block) else ()
     return {str(word) for word in words if isinstance(word, str) and word.startswith("?")}
-
-
-def _is_numeric(item: object) -> bool:
-    return isinstance(item, Block) or (isinstance(item, str) and is_number(item))
 
 
 def _is_action(part: Block) -> bool:
