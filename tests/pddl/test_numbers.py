@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tpvqa.errors import PDDLError
-from tpvqa.pddl import Atom, Literal, Task, load_task, task_from_text
+from tpvqa.pddl import Atom, Literal, Task, load_task, task_from_text, validate
 from tpvqa.pddl.arithmetic import (
     COMPARISONS,
     Expression,
@@ -239,6 +239,18 @@ def test_a_function_without_arguments_may_stand_bare() -> None:
     task = task_from_text(domain, problem)
     assert task.ground_actions() == rover().ground_actions()
     assert (task.init, task.goal) == (rover().init, rover().goal)
+
+
+def test_an_action_whose_numbers_cannot_be_worked_out_cannot_be_done() -> None:
+    """Where it is done all the same, as a skill may be, numbers stay as they are."""
+    each = "(/ (way ?a ?b) (- (battery) 60))"
+    text = DOMAIN.replace("(decrease (battery) (way ?a ?b))", f"(decrease (battery) {each})")
+    task = task_from_text(text, PROBLEM)
+    drive = task.action("drive", ["base", "hill"])
+    assert not task.applicable(task.init, drive)
+    assert values_in(task.apply(task.init, drive)) == values_in(task.init)
+    assert str(validate(task, [drive])).endswith("needs a number that cannot be worked out")
+    assert task.applicable(with_values(task.init, {("battery",): Fraction(61)}), drive)
 
 
 def test_two_numbers_that_change_may_be_equal() -> None:

@@ -27,8 +27,8 @@ from tpvqa.pddl.arithmetic import (
     written,
 )
 from tpvqa.pddl.atoms import Atom, Literal, State
-from tpvqa.pddl.conditions import literals
-from tpvqa.pddl.ground import Action, Change
+from tpvqa.pddl.conditions import holds, literals
+from tpvqa.pddl.ground import Action
 
 CHANGES = ("increase", "decrease", "assign", "scale-up", "scale-down")
 """How actions change numbers."""
@@ -107,26 +107,23 @@ class Numeric:
         except ValueError as error:
             raise PDDLError(f"{atom.pddl()}: {error}") from None
 
-    def comes_to(self, action: Action, state: State, happening: list[Change]) -> State:
-        """The values after an action.
+    def comes_to(self, action: Action, state: State, full: State) -> State | None:
+        """A state with the values after an action; None where one cannot be worked out, as 1 / 0.
 
         Args:
-            action: The action; named where a number cannot be worked out.
-            state: What holds before it.
-            happening: Those of its changes whose conditions hold.
-
-        Raises:
-            PDDLError: A number that it needs has no value.
+            action: The action.
+            state: The state, with the values before it.
+            full: What conditions are seen in.
         """
-        before = values_in(state)
+        happening = [each for each in action.changes if holds(each.condition, full)]
+        before = values_in(state) if happening else {}
         after: dict[Words, Fraction] = {}
         for change in happening:
             by = evaluated(change.by, before)
             old = after.get(change.function, before.get(change.function))
             new = None if by is None else changed(change.kind, old, by)
             if new is None:
-                said = " ".join(change.function)
-                raise PDDLError(f"{action}: what becomes of ({said}) cannot be worked out")
+                return None
             after[change.function] = new
         return with_values(state, after)
 
