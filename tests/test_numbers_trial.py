@@ -239,6 +239,7 @@ def test_a_state_file_gives_values(lines: str, task: Task, tmp_path: Path) -> No
         ("(= (battery) 1e99999999)", "'1e99999999' is no number"),
         ("(>= (battery) 5)", "it compares"),
         ("(= (battery) 5) (= (battery) 6)", "it has the value 5 already"),
+        ("(= (way hill mud) 5)", "mud is a sample, but ?b of way must be a place"),
         ("(= (capacity) 5)", "no action changes capacity"),
         ("(= (battery) (load))", "is no value of a function"),
         ("(= (battery 5", "not closed"),

@@ -1,6 +1,6 @@
 """The numbers of a task: its functions, what actions do to them, and what is believed of them."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -8,7 +8,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, Protocol
 
-from tpvqa.errors import PDDLError, suggestion_or_list
+from tpvqa.errors import PDDLError, a, suggestion_or_list
 from tpvqa.pddl.arithmetic import (
     ARITHMETIC,
     COMPARISONS,
@@ -77,8 +77,15 @@ class Numeric:
         """The values that no action changes."""
         return {w: value for w, value in self.values.items() if w[0] not in self.changed}
 
-    def check(self, atom: Atom, objects: Mapping[str, str]) -> None:
+    def check(
+        self, atom: Atom, objects: Mapping[str, str], is_a: Callable[[str, str], bool]
+    ) -> None:
         """See that a value or a comparison speaks of a function and objects of the task.
+
+        Args:
+            atom: The value, or the comparison.
+            objects: The type of each object.
+            is_a: Whether an object is of a type.
 
         Raises:
             PDDLError: It does not.
@@ -96,11 +103,16 @@ class Numeric:
                 f"{atom.pddl()}: {name} takes {len(self.functions[name])} arguments, got "
                 f"{len(arguments)}"
             )
-        for argument in arguments:
+        for argument, (variable, kind) in zip(arguments, self.functions[name], strict=True):
             if argument not in objects:
                 raise PDDLError(
                     f"{atom.pddl()}: there is no object {argument!r}"
                     + suggestion_or_list(argument, objects)
+                )
+            if not is_a(argument, kind):
+                raise PDDLError(
+                    f"{atom.pddl()}: {argument} is {a(objects[argument])}, but {variable} of "
+                    f"{name} must be {' or '.join(map(a, kind.split('|')))}"
                 )
         try:
             number(atom.arguments[-1])

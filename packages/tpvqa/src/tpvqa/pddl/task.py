@@ -332,7 +332,7 @@ class Task:
             PDDLError: It does not.
         """
         if self.numeric is not None and atom.predicate in COMPARISONS:
-            self.numeric.check(atom, self.objects)
+            self.numeric.check(atom, self.objects, self.is_a)
             return
         wanted = self.predicates.get(atom.predicate)
         if wanted is None:
