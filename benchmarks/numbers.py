@@ -17,12 +17,14 @@ from tpvqa.config import TrialConfig
 from tpvqa.drafting.draft import draft
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events.events import Acted, Asked, Ended
-from tpvqa.pddl import State, Task, load_task
-from tpvqa.planning import PlanningResult
+from tpvqa.pddl import load_task
+from tpvqa.planning import Planner
+from tpvqa.planning.remembering import remembering
 from tpvqa.planning.unified_engine import UnifiedEngine
 
 TASKS = Path(__file__).parents[1] / "examples" / "numbers"
 LIMIT = 5.0
+"""Seconds for a plan."""
 CELLS = {
     "rover": (
         ("none", "oracle:1.0"),
@@ -45,23 +47,6 @@ CELLS = {
 }
 
 
-class Known(UnifiedEngine):
-    """An engine that plans from no state twice and has five seconds for it."""
-
-    def __init__(self, engine: str) -> None:
-        super().__init__(engine)
-        self._known: dict[object, PlanningResult] = {}
-
-    def plan(
-        self, task: Task, state: State | None = None, *, timeout: float | None = None
-    ) -> PlanningResult:
-        """A plan, from memory where it was asked for before."""
-        key = task.key, state
-        if key not in self._known:
-            self._known[key] = super().plan(task, state, timeout=LIMIT)
-        return self._known[key]
-
-
 def configurations(name: str, folder: Path) -> Iterator[tuple[str, dict[str, str]]]:
     """The files of a task, and what each choice of them is called."""
     files = {part: str(TASKS / name / f"{part}.pddl") for part in ("domain", "problem")}
@@ -80,15 +65,15 @@ def configurations(name: str, folder: Path) -> Iterator[tuple[str, dict[str, str
 
 def configuration(files: dict[str, str], monitor: str, vlm: str) -> TrialConfig:
     """What a cell's trials are made from."""
-    parts = {"planner": "up:aries", "monitor": monitor, "vlm": vlm}
+    planner = {"spec": "up:aries", "timeout": LIMIT}
     return TrialConfig.model_validate(
-        {"task": files, **{name: {"spec": spec} for name, spec in parts.items()}}
+        {"task": files, "planner": planner, "monitor": {"spec": monitor}, "vlm": {"spec": vlm}}
     )
 
 
 def main(name: str, seeds: int = 50, engine: str = "aries") -> None:
     """Print a line for each cell."""
-    planner = Known(engine)
+    planner = remembering(UnifiedEngine(engine))
     with TemporaryDirectory() as folder:
         for called, files in configurations(name, Path(folder)):
             for monitor, vlm in CELLS[name]:
@@ -97,7 +82,7 @@ def main(name: str, seeds: int = 50, engine: str = "aries") -> None:
     planner.close()
 
 
-def of_cell(config: TrialConfig, planner: Known, seeds: int) -> str:
+def of_cell(config: TrialConfig, planner: Planner, seeds: int) -> str:
     """What the trials of one cell came to."""
     ends, asked, acted = Counter[str](), 0, 0
     for seed in range(1, seeds + 1):

@@ -6,17 +6,20 @@ from pathlib import Path
 import pytest
 
 from tests.doubles import configured
-from tests.drivers.test_asynchronous import story
+from tests.resumed import resumed, story, unbroken
 from tpvqa.assembly import Trial
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.own_task import OwnTask
+from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
-from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
-from tpvqa.episodes.log import LOG
+from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import TpvqaError
-from tpvqa.events import Event, Started
+from tpvqa.events import Event
 from tpvqa.events.events import Acted, Acting, Asked, Decided, Ended, PlanMade, Waited
-from tpvqa.planning import Planner, PlanningResult
+from tpvqa.planning import Planner
+from tpvqa.planning.remembering import remembering
 from tpvqa.planning.unified_engine import UnifiedEngine
-from tpvqa.resuming import trial_of
+from tpvqa.tasks import TaskFiles
 
 pytest.importorskip("up_aries")
 
@@ -33,23 +36,9 @@ CONFIG = configured(
 )
 
 
-class Known(UnifiedEngine):
-    """Plans from no state twice, so that a trial is the same again."""
-
-    def __init__(self) -> None:
-        super().__init__("aries")
-        self._known: dict[object, PlanningResult] = {}
-
-    def plan_meanwhile(self, task, state, running, *, timeout=None):  # type: ignore[no-untyped-def]
-        key = task.key, state, tuple(running)
-        if key not in self._known:
-            self._known[key] = super().plan_meanwhile(task, state, running, timeout=timeout)
-        return self._known[key]
-
-
 @pytest.fixture(scope="module")
 def planner() -> Iterator[Planner]:
-    planner = Known()
+    planner = remembering(UnifiedEngine("aries"))
     yield planner
     planner.close()
 
@@ -146,24 +135,9 @@ def test_what_fails_while_it_runs_is_mended_by_looking(planner: Planner) -> None
 def test_killed_after_any_event_it_is_gone_on_with_to_the_same_end(
     tmp_path: Path, planner: Planner
 ) -> None:
-    writer = EpisodeWriter(tmp_path / "whole", durable=False)
-    with Trial(interrupted("tpvqa"), planner=planner) as trial:
-        trial.run(writer)
-    writer.close()
-    whole = read_episode(tmp_path / "whole")
-    lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
-    for cut in range(1, len(lines), max(1, len(lines) // 25)):
-        folder = tmp_path / f"cut{cut}"
-        folder.mkdir()
-        (folder / LOG).write_bytes(b"".join(lines[:cut]))
-        events = read_episode(folder)
-        started = events[0]
-        assert isinstance(started, Started)
-        with trial_of(started, planner=planner) as trial:
-            writer = EpisodeWriter(folder, resume=cut, durable=False)
-            trial.run(writer, started=started, recorded=events, folder=folder)
-            writer.close()
-        assert story(read_episode(folder)) == story(whole), cut
+    whole = unbroken(tmp_path / "whole", interrupted("tpvqa"), planner)
+    for cut in range(1, len(whole), max(1, len(whole) // 25)):
+        assert story(resumed(tmp_path / "whole", cut, planner)) == story(whole), cut
 
 
 def test_looks_come_once_in_every_period(planner: Planner) -> None:
@@ -194,6 +168,17 @@ def test_an_end_without_its_effects_is_planned_anew(planner: Planner) -> None:
             assert ended(events).completed
             return
     pytest.fail("no action failed at its end")
+
+
+def test_a_bench_runs_trials_of_what_lasts() -> None:
+    pddl = LABORATORY / "domain.pddl", LABORATORY / "problem.pddl"
+    files = TaskFiles("lab", *pddl, LABORATORY / "questions.yaml", LABORATORY / "world.yaml")
+    here = stage("laboratory", OwnTask.read(files))
+    cell = Cell("laboratory", "tpvqa", "oracle", "symbolic", "planner=up:aries")
+    row, again = (here.run(cell, TrialConfig(seed=2), 0) for _ in range(2))
+    assert not row.error
+    assert row.completed
+    assert (row.actions, row.decisions) == (again.actions, again.decisions)
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ import pytest
 
 from tests.doubles import ScriptedVLM, configured, replies
 from tests.moments import moments
+from tests.resumed import resumed, story, unbroken
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.drivers import Interrupted
@@ -24,7 +25,7 @@ from tpvqa.events import Ended, Event, Limits
 from tpvqa.events.events import Acted, Acting
 from tpvqa.planning import Crashed, Planner, TimedOut
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.resuming import resume, trial_of
+from tpvqa.resuming import resume
 from tpvqa.vlm import Reply
 from tpvqa.worlds.outcome import Failure
 
@@ -46,11 +47,6 @@ def run(config: TrialConfig, planner: Planner) -> tuple[Ended, list[Event]]:
     writer = MemoryWriter()
     with Trial(config, planner=planner) as trial:
         return trial.run(writer), writer.events
-
-
-def story(events: list[Event]) -> list[dict[str, object]]:
-    """The events without what differs between two runs of the same trial: times."""
-    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
 
 
 @pytest.mark.parametrize("task", ["clean_dishes", "eat_apple"])
@@ -172,50 +168,35 @@ def test_no_plan_from_the_corrected_state_is_said(planner: Planner, tmp_path: Pa
 # Resuming
 
 
-def unbroken(folder: Path, planner: Planner, monitor: str = "tpvqa") -> list[Event]:
-    config = symbolic(vlm="oracle:0.85:0.3", seed=11, episode=2, monitor=monitor)
-    with Trial(config, planner=planner) as trial:
-        writer = EpisodeWriter(folder)
-        trial.run(writer, folder=folder)
-        writer.close()
-    return read_episode(folder)
+def long(monitor: str = "tpvqa") -> TrialConfig:
+    return symbolic(vlm="oracle:0.85:0.3", seed=11, episode=2, monitor=monitor)
 
 
 @pytest.mark.parametrize("monitor", ["tpvqa", "belief"])
 def test_a_trial_killed_after_any_event_resumes_to_the_same_end(
     tmp_path: Path, planner: Planner, monitor: str
 ) -> None:
-    whole = unbroken(tmp_path / "whole", planner, monitor)
-    lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
-    assert len(lines) > 40
+    whole = unbroken(tmp_path / "whole", long(monitor), planner)
+    assert len(whole) > 40
     for number, cut in enumerate(moments([event.kind for event in whole], spread=12)):
-        folder = tmp_path / f"cut{cut}"
-        folder.mkdir()
-        torn = lines[cut][: len(lines[cut]) // 2] if number % 2 else b""
-        (folder / LOG).write_bytes(b"".join(lines[:cut]) + torn)
-        events = read_episode(folder)
-        assert len(events) == cut
-        with trial_of(events[0], planner=planner) as trial:  # type: ignore[arg-type]
-            writer = EpisodeWriter(folder, resume=cut, durable=False)
-            trial.run(writer, started=events[0], recorded=events, folder=folder)  # type: ignore[arg-type]
-            writer.close()
-        assert story(read_episode(folder)) == story(whole)
+        events = resumed(tmp_path / "whole", cut, planner, torn=bool(number % 2))
+        assert story(events) == story(whole)
 
 
 def test_an_ended_episode_is_not_resumed(tmp_path: Path, planner: Planner) -> None:
-    unbroken(tmp_path / "whole", planner)
+    unbroken(tmp_path / "whole", long(), planner)
     with pytest.raises(EpisodeError, match="has ended"):
         resume(tmp_path / "whole")
 
 
 def test_a_folder_with_an_episode_is_not_overwritten(tmp_path: Path, planner: Planner) -> None:
-    unbroken(tmp_path / "whole", planner)
+    unbroken(tmp_path / "whole", long(), planner)
     with pytest.raises(EpisodeError, match="holds an episode already"):
         EpisodeWriter(tmp_path / "whole")
 
 
 def test_a_damaged_line_is_named(tmp_path: Path, planner: Planner) -> None:
-    unbroken(tmp_path / "whole", planner)
+    unbroken(tmp_path / "whole", long(), planner)
     log = tmp_path / "whole" / LOG
     lines = log.read_bytes().splitlines(keepends=True)
     log.write_bytes(b"".join([*lines[:4], b'{"kind": "nonsense"}\n', *lines[5:]]))

@@ -10,25 +10,24 @@ from pathlib import Path
 import pytest
 
 from tests.doubles import configured
-from tests.drivers.test_asynchronous import story
+from tests.resumed import resumed, story, unbroken
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
-from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
-from tpvqa.episodes.log import LOG
+from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import PDDLError, QuestionsError, TpvqaError, WorldFileError
-from tpvqa.events import Event, Started
+from tpvqa.events import Event
 from tpvqa.events.events import Acted, Asked, Decided, Ended
 from tpvqa.monitors.memory import FactMemory
 from tpvqa.pddl import Atom, State, Task, load_task
 from tpvqa.pddl.arithmetic import number, values_in
 from tpvqa.pddl.numeric import with_values
 from tpvqa.pddl.state_file import read_state
-from tpvqa.planning import Plan, Planner, PlanningResult, Unsolvable
+from tpvqa.planning import Plan, Planner, Unsolvable
 from tpvqa.planning.clingo import ClingoPlanner
 from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import remembering
 from tpvqa.planning.unified_engine import UnifiedEngine
 from tpvqa.questions import QuestionBook
-from tpvqa.resuming import trial_of
 from tpvqa.worlds.capabilities import simulation_of
 from tpvqa.worlds.world_file import load_world_file
 
@@ -52,25 +51,9 @@ def _config(world: str) -> TrialConfig:
 CONFIG = _config("world.yaml")
 
 
-class Known(UnifiedEngine):
-    """Plans from no state twice, so that a trial is the same again."""
-
-    def __init__(self) -> None:
-        super().__init__("aries")
-        self._known: dict[object, PlanningResult] = {}
-
-    def plan(
-        self, task: Task, state: State | None = None, *, timeout: float | None = None
-    ) -> PlanningResult:
-        key = task.key, state
-        if key not in self._known:
-            self._known[key] = super().plan(task, state, timeout=timeout)
-        return self._known[key]
-
-
 @pytest.fixture(scope="module")
 def planner() -> Iterator[Planner]:
-    planner = Known()
+    planner = remembering(UnifiedEngine("aries"))
     yield planner
     planner.close()
 
@@ -127,24 +110,9 @@ def test_a_measured_number_is_believed(planner: Planner) -> None:
 
 
 def test_killed_it_is_gone_on_with_to_the_same_end(planner: Planner, tmp_path: Path) -> None:
-    writer = EpisodeWriter(tmp_path / "whole", durable=False)
-    with Trial(CONFIG.but(seed=5), planner=planner) as trial:
-        trial.run(writer)
-    writer.close()
-    whole = read_episode(tmp_path / "whole")
-    lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
-    for cut in range(1, len(lines), max(1, len(lines) // 5)):
-        folder = tmp_path / f"cut{cut}"
-        folder.mkdir()
-        (folder / LOG).write_bytes(b"".join(lines[:cut]))
-        events = read_episode(folder)
-        started = events[0]
-        assert isinstance(started, Started)
-        with trial_of(started, planner=planner) as trial:
-            writer = EpisodeWriter(folder, resume=cut, durable=False)
-            trial.run(writer, started=started, recorded=events, folder=folder)
-            writer.close()
-        assert story(read_episode(folder)) == story(whole), cut
+    whole = unbroken(tmp_path / "whole", CONFIG.but(seed=5), planner)
+    for cut in range(1, len(whole), max(1, len(whole) // 5)):
+        assert story(resumed(tmp_path / "whole", cut, planner)) == story(whole), cut
 
 
 def test_plans_are_found_where_there_are_any(planner: Planner, task: Task) -> None:
@@ -271,6 +239,7 @@ def test_a_state_file_gives_values(lines: str, task: Task, tmp_path: Path) -> No
         ("(= (battery) 1e99999999)", "'1e99999999' is no number"),
         ("(>= (battery) 5)", "it compares"),
         ("(= (battery) 5) (= (battery) 6)", "it has the value 5 already"),
+        ("(= (way hill mud) 5)", "mud is a sample, but ?b of way must be a place"),
         ("(= (capacity) 5)", "no action changes capacity"),
         ("(= (battery) (load))", "is no value of a function"),
         ("(= (battery 5", "not closed"),

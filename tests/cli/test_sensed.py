@@ -9,6 +9,7 @@ import pytest
 
 from tests.cli.conftest import Run
 from tests.doubles import configured
+from tests.resumed import resumed, story, unbroken
 from tpvqa.assembly import Trial
 from tpvqa.belief import Calibration
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
@@ -171,26 +172,13 @@ def test_a_resumed_trial_senses_what_the_unbroken_one_does(
         "reports: [{notices: 0.5, false_alarms: 0.1}]"
     )
     config = configured(**FILES, world_file=str(rules), world="symbolic", vlm="oracle:0.9", seed=5)
-    writer = EpisodeWriter(tmp_path / "whole", durable=False)
-    with Trial(config, planner=planner) as trial:
-        trial.run(writer, folder=tmp_path / "whole")
-    writer.close()
-    lines = (tmp_path / "whole" / LOG).read_bytes().splitlines(keepends=True)
-    whole = read_episode(tmp_path / "whole")
+    whole = unbroken(tmp_path / "whole", config, planner)
     assert {p for e in whole if isinstance(e, Acted) for p in [f.probability for f in e.facts]} == {
         0.9,
         0.1,
     }
-    for cut in range(3, len(lines), len(lines) // 3):
-        folder = tmp_path / f"cut{cut}"
-        folder.mkdir()
-        (folder / LOG).write_bytes(b"".join(lines[:cut]))
-        resume(folder)
-        assert story(read_episode(folder)) == story(whole), cut
-
-
-def story(events: list[Event]) -> list[dict[str, object]]:
-    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
+    for cut in range(3, len(whole), len(whole) // 3):
+        assert story(resumed(tmp_path / "whole", cut, planner)) == story(whole), cut
 
 
 def test_a_log_that_senses_what_its_task_does_not_know_is_not_gone_on_with(

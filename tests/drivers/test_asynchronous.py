@@ -12,6 +12,7 @@ import pytest
 
 from tests.doubles import configured
 from tests.moments import moments
+from tests.resumed import story
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
 from tpvqa.drivers.asynchronous import AsynchronousTrial
@@ -39,10 +40,6 @@ def planner() -> Iterator[Planner]:
     planner = Remembering(FastDownward())
     yield planner
     planner.close()
-
-
-def story(events: list[Event]) -> list[dict[str, object]]:
-    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
 
 
 def run(trial: Trial, writer: EpisodeWriter | MemoryWriter, **more: object) -> list[Event]:

@@ -7,6 +7,7 @@ from threading import Event as Flag
 import pytest
 
 from tests.doubles import configured
+from tests.resumed import story
 from tpvqa.assembly import Trial
 from tpvqa.drivers.performing import Performed
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
@@ -33,10 +34,6 @@ def planner() -> Iterator[Planner]:
 
 
 CONFIG = configured(task="build_tower", world="symbolic", vlm="oracle", monitor="tpvqa")
-
-
-def story(events: list[Event]) -> list[dict[str, object]]:
-    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
 
 
 def test_what_is_pending_is_there_to_be_seen_before_it_is_done(planner: Planner) -> None:

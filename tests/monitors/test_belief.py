@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from tests.doubles import configured, known_truth, truthful
+from tests.resumed import story
 from tpvqa.assembly import Trial
 from tpvqa.belief import AnswerRates, Calibration, Group
 from tpvqa.belief.calibration import Curve
@@ -91,10 +92,6 @@ def plain(planner: Planner) -> Plain:
         return run(planner, accuracy=accuracy, episode=episode)[:2]
 
     return trial
-
-
-def story(events: list[Event]) -> list[dict[str, object]]:
-    return [event.model_dump(exclude={"time", "seconds", "number"}) for event in events]
 
 
 def test_it_completes_what_votes_do_not_and_asks_less(planner: Planner, plain: Plain) -> None:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tpvqa.errors import PDDLError
-from tpvqa.pddl import Atom, Literal, Task, load_task, task_from_text
+from tpvqa.pddl import Atom, Literal, Task, load_task, task_from_text, validate
 from tpvqa.pddl.arithmetic import (
     COMPARISONS,
     Expression,
@@ -197,7 +197,13 @@ PROBLEM = (ROVER / "problem.pddl").read_text()
     [
         ("(>= (battery) (way ?a ?b))", "(>= (batery) (way ?a ?b))", "Did you mean 'battery'"),
         ("(>= (battery) (way ?a ?b))", "(>= (battery) (way ?a))", "way takes 2 arguments, got 1"),
-        ("(>= (battery) (way ?a ?b))", "(>= (battery) (way ?a ?c))", "there is no variable '?c'"),
+        (
+            "(>= (battery) (way ?a ?b))",
+            "(>= (battery) (way ?a ?c))",
+            "there is no variable '?c'. Known: ?a, ?b, base, flint, hill, lake, mud.",
+        ),
+        ("(weight ?s - sample)", "(weight ?s - stone)", "the type 'stone' of '?s' is not declared"),
+        ("(capacity)", "(capacity) (capacity)", "two functions of the name 'capacity'"),
         ("(assign (battery) 100)", "(assign 100 (battery))", "is no function whose value"),
         ("(:predicates", "(:derived (far) (> (way base lake) 3)) (:predicates", "(:derived …)"),
         ("(= (load) 0)", "", "(load) has no value at first, though collect"),
@@ -205,6 +211,17 @@ PROBLEM = (ROVER / "problem.pddl").read_text()
         ("(= (load) 0)", "(= (load) 0) (= (load) 5)", "it has the value 0 already"),
         ("(:functions", "(:functions (+ ?s - sample)", "a function is called '+'"),
         ("(= (weight flint) 2)", "(= (weight stone) 2)", "there is no object 'stone'"),
+        (
+            "(= (weight flint) 2)",
+            "(= (weight hill) 2)",
+            "hill is of the type place, but ?s of weight",
+        ),
+        (
+            "(decrease (battery) (way ?a ?b))",
+            "(decrease (battery) (weight ?a))",
+            "?a is of the type",
+        ),
+        ("(= (load) 0)", "(= (load) 1e1)", "gives no number; expected one as 2, -2 or 0.5"),
         ("(:goal", "(:metric shrink (battery)) (:goal", "(:metric minimize (total-cost))"),
         ("(decrease (battery) (way ?a ?b))", "(decrease (battery))", "is no change of a number"),
     ],
@@ -214,6 +231,26 @@ def test_what_cannot_be_read_is_told_with_its_line(old: str, new: str, says: str
     with pytest.raises(PDDLError) as caught:
         task_from_text(DOMAIN.replace(old, new, 1), PROBLEM.replace(old, new, 1))
     assert says in str(caught.value)
+
+
+def test_a_function_without_arguments_may_stand_bare() -> None:
+    domain, problem = (text.replace("(battery)", "battery") for text in (DOMAIN, PROBLEM))
+    domain = domain.replace("(:functions\n    battery", "(:functions\n    (battery)")
+    task = task_from_text(domain, problem)
+    assert task.ground_actions() == rover().ground_actions()
+    assert (task.init, task.goal) == (rover().init, rover().goal)
+
+
+def test_an_action_whose_numbers_cannot_be_worked_out_cannot_be_done() -> None:
+    """Where it is done all the same, as a skill may be, numbers stay as they are."""
+    each = "(/ (way ?a ?b) (- (battery) 60))"
+    text = DOMAIN.replace("(decrease (battery) (way ?a ?b))", f"(decrease (battery) {each})")
+    task = task_from_text(text, PROBLEM)
+    drive = task.action("drive", ["base", "hill"])
+    assert not task.applicable(task.init, drive)
+    assert values_in(task.apply(task.init, drive)) == values_in(task.init)
+    assert str(validate(task, [drive])).endswith("needs a number that cannot be worked out")
+    assert task.applicable(with_values(task.init, {("battery",): Fraction(61)}), drive)
 
 
 def test_two_numbers_that_change_may_be_equal() -> None:
@@ -272,6 +309,12 @@ def test_a_function_of_costs_alone_is_no_number() -> None:
     task = task_from_text(domain, problem)
     assert task.numeric is None
     assert task.action("a").cost == 3
+
+
+def test_a_type_may_be_written_onto_its_hyphen() -> None:
+    task = task_from_text(DOMAIN.replace(" - ", " -"), PROBLEM.replace(" - ", " -"))
+    assert task.numeric == rover().numeric
+    assert task.ground_actions() == rover().ground_actions()
 
 
 def test_a_metric_of_a_number_is_passed_over() -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tpvqa.pddl import Action, State, Task, load_task, task_from_text
 from tpvqa.pddl.lasting import Phase, Running
-from tpvqa.planning import Crashed, Plan
+from tpvqa.planning import Crashed, Plan, Unsolvable
 from tpvqa.planning.engines.temporal_solving import scale_of
 from tpvqa.planning.temporal import flaw
 from tpvqa.planning.unified_engine import UnifiedEngine
@@ -203,4 +203,6 @@ def test_a_way_from_a_place_to_itself_takes_no_time_and_is_not_gone(engine: Unif
     back = WAYS.format(goal="a").replace("(in a) (=", "(in b) (=", 1)
     none = engine.plan(task_from_text(ROOMS, back), timeout=20)
     assert isinstance(none, Crashed)
-    assert "without what has no duration: the duration of go(" in none.reason
+    assert "without what has no duration: the duration of go(b, a) is" in none.reason
+    nowhere = engine.plan(task_from_text(ROOMS, back), frozenset(), timeout=20)
+    assert isinstance(nowhere, Unsolvable), nowhere  # no such way would help

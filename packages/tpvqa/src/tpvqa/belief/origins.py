@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.belief.transitions import Transition, of_action
-from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.pddl import Action, Atom, Condition, Conjunction, Disjunction, State, Task
 
 MOST = 20_000
 """Actions beyond which nothing is looked into: each thousand take tens of microseconds a state."""
@@ -79,5 +79,5 @@ class Origins:
         return np.frombuffer(bits.to_bytes(size, "little"), dtype="<u8").astype(np.uint64)
 
 
-def _conditional(condition: object) -> bool:
-    return getattr(condition, "parts", None) != ()
+def _conditional(condition: Condition) -> bool:
+    return condition not in (Conjunction(), Disjunction())

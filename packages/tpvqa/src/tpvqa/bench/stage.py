@@ -30,7 +30,7 @@ from tpvqa.monitors.capabilities import goal_probability_of
 from tpvqa.pddl import Task, load_task
 from tpvqa.planning import Planner
 from tpvqa.planning.making import make_planner
-from tpvqa.planning.remembering import Remembering
+from tpvqa.planning.remembering import remembering
 from tpvqa.plugins import Kind, load_spec, takes
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import TaskFiles, find_task
@@ -245,7 +245,7 @@ def _files(task: str, own: OwnTask | None) -> Iterator[TaskFiles]:
 
 @lru_cache
 def _planner(spec: str) -> Planner:
-    return Remembering(make_planner(spec))
+    return remembering(make_planner(spec))
 
 
 @lru_cache

@@ -74,9 +74,10 @@ class Recording:
         """
         event = self._events.popleft() if self._events else None
         if not isinstance(event, kind):
+            number = "after the last" if event is None else event.number
+            found = "missing" if event is None else event.kind
             raise EpisodeError(
-                f"event {getattr(event, 'number', 'after the last')} of the log is "
-                f"{getattr(event, 'kind', 'missing')!r} where this version would write "
+                f"event {number} of the log is {found!r} where this version would write "
                 f"{kind.model_fields['kind'].default!r}: it cannot be resumed, only shown"
             )
         if isinstance(event, Observed | Answered | Acted | Waited) and event.snapshot is not None:

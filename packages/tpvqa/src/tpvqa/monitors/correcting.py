@@ -115,9 +115,10 @@ class CorrectingMonitor:
                 seen += affirmed
                 unseen += refused
         corrected = memory.take_out(step.state, denied, seen=seen, unseen=unseen)
-        if step.task.numeric is not None and not propositional(step.task, corrected).in_reach:
+        facts = [literal for literal in denied if not is_of_number(literal.atom)]
+        if facts != denied and not propositional(step.task, corrected).in_reach:
             # What is said of numbers would leave no way to the goal: it is not taken at its word.
-            denied = [literal for literal in denied if not is_of_number(literal.atom)]
+            denied = facts
             corrected = memory.take_out(step.state, denied, seen=seen, unseen=unseen)
         if corrected == step.state or step.task.numeric is None:
             return corrected

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from math import gcd, lcm
+from typing import Any
 
 VALUE = "="
 """The predicate of values."""
@@ -60,6 +61,15 @@ def number(text: str) -> Fraction:
         raise ValueError(f"{text[:40]!r} is no number") from None
 
 
+def is_number(text: str) -> bool:
+    """Whether a text is a number; see `number`."""
+    try:
+        number(text)
+    except ValueError:
+        return False
+    return True
+
+
 def written(value: Fraction) -> str:
     """A number as it is read again: 12, 2.5 or 1/3."""
     if value.denominator == 1:
@@ -69,6 +79,11 @@ def written(value: Fraction) -> str:
         return f"{value.numerator}/{value.denominator}"
     digits = str(abs(int(value * 10**places))).rjust(places + 1, "0")
     return f"{'-' * (value < 0)}{digits[:-places]}.{digits[-places:]}"
+
+
+def expression(written: Any) -> Expression:
+    """An expression as the worker gives it."""
+    return tuple(map(expression, written)) if isinstance(written, list) else str(written)
 
 
 def evaluated(expression: Expression, values: Values) -> Fraction | None:

@@ -4,24 +4,30 @@ The worker takes a durative action apart into actions without duration (see
 `tpvqa.pddl.worker.durative`); this says which of them belong together.
 """
 
-import operator
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, Protocol
 
 from tpvqa.errors import PDDLError
+from tpvqa.pddl.arithmetic import (
+    Expression,
+    Values,
+    bound,
+    evaluated,
+    expression,
+    functions_in,
+    number,
+    written,
+)
 from tpvqa.pddl.atoms import Atom, Literal, State
 from tpvqa.pddl.conditions import Condition, Conjunction, literals
 from tpvqa.pddl.ground import Action, Effect, MutexGroup
 
-_ARITHMETIC: Mapping[str, Callable[[float, float], float]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
-}
+LONGEST = 10**12
+"""No action lasts longer, whatever its unit of time."""
 
 
 class Actions(Protocol):
@@ -59,15 +65,14 @@ class Lasting:
 
     Attributes:
         variables: The parameters of each, by its name.
-        durations: The least and the greatest duration of each: a number, `[function, argument, …]`
-            or `[operator, …]` with two of such.
+        durations: The least and the greatest duration of each.
         values: The values of the functions that durations refer to.
         quickest: Whether the problem asks for the quickest plan.
     """
 
     variables: Mapping[str, tuple[str, ...]]
-    durations: Mapping[str, tuple[Any, Any]]
-    values: Mapping[tuple[str, ...], float]
+    durations: Mapping[str, tuple[Expression, Expression]]
+    values: Values
     quickest: bool = False
 
     @staticmethod
@@ -78,8 +83,8 @@ class Lasting:
         actions = description["actions"]
         return Lasting(
             {each["name"]: tuple(each["variables"]) for each in actions},
-            {each["name"]: tuple(each["duration"]) for each in actions},
-            {tuple(words): value for words, value in description["values"]},
+            {each["name"]: _bounds(*each["duration"]) for each in actions},
+            {tuple(words): number(value) for words, value in description["values"]},
             description["quickest"],
         )
 
@@ -170,31 +175,30 @@ class Lasting:
         name = self._phases[action.name][1]
         binding = dict(zip(self.variables[name], action.arguments, strict=True))
         said = f"{name}({', '.join(action.arguments)})"
-        least, most = (self._number(part, binding, said) for part in self.durations[name])
-        if not 0 < least <= most < float("inf"):
+        least, most = (self._number(bound(part, binding), said) for part in self.durations[name])
+        if not 0 < least <= most <= LONGEST:
             raise PDDLError(
-                f"{said} lasts {least:g} to {most:g}; expected that it lasts more than nothing, "
-                "and at least no more than at most"
+                f"{said} lasts {written(least)[:20]} to {written(most)[:20]}; expected that it "
+                f"lasts more than nothing, at least no more than at most, and no more than "
+                f"{LONGEST:g}"
             )
-        return least, most
+        return float(least), float(most)
 
-    def _number(self, written: Any, binding: Mapping[str, str], said: str) -> float:
-        if isinstance(written, float | int):
-            return float(written)
-        head, *rest = written
-        if head in _ARITHMETIC:
-            left, right = (self._number(part, binding, said) for part in rest)
-            try:
-                return _ARITHMETIC[head](left, right)
-            except ZeroDivisionError:
-                raise PDDLError(f"the duration of {said} divides by zero") from None
-        words = (head, *(binding.get(word, word) for word in rest))
-        if words not in self.values:
-            raise PDDLError(
-                f"the duration of {said} is ({' '.join(words)}), to which the initial state gives "
-                "no value"
-            )
-        return self.values[words]
+    def _number(self, duration: Expression, said: str) -> Fraction:
+        value = evaluated(duration, self.values)
+        if value is not None:
+            return value
+        missing = next((each for each in functions_in(duration) if each not in self.values), None)
+        if missing is None:
+            raise PDDLError(f"the duration of {said} divides by zero")
+        raise PDDLError(
+            f"the duration of {said} is ({' '.join(missing)}), to which the initial state gives "
+            "no value"
+        )
+
+
+def _bounds(least: Any, most: Any) -> tuple[Expression, Expression]:
+    return expression(least), expression(most)
 
 
 def _as_left(effect: Effect, rivals: Collection[Atom]) -> Condition:

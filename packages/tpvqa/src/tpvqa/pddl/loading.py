@@ -4,9 +4,10 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.errors import PDDLError
+from tpvqa.pddl.arithmetic import expression
 from tpvqa.pddl.description import MEMORY, described, grounded_fields, unsure_fields
 from tpvqa.pddl.lasting import Lasting
-from tpvqa.pddl.numeric import Numeric, check_values, expression
+from tpvqa.pddl.numeric import Numeric, check_values
 from tpvqa.pddl.programs.loading import SUFFIX, pddl_of
 from tpvqa.pddl.schema import (
     ActionSchema,

@@ -1,6 +1,6 @@
 """The numbers of a task: its functions, what actions do to them, and what is believed of them."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -8,7 +8,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, Protocol
 
-from tpvqa.errors import PDDLError, suggestion_or_list
+from tpvqa.errors import PDDLError, a, suggestion_or_list
 from tpvqa.pddl.arithmetic import (
     ARITHMETIC,
     COMPARISONS,
@@ -27,8 +27,8 @@ from tpvqa.pddl.arithmetic import (
     written,
 )
 from tpvqa.pddl.atoms import Atom, Literal, State
-from tpvqa.pddl.conditions import literals
-from tpvqa.pddl.ground import Action, Change
+from tpvqa.pddl.conditions import holds, literals
+from tpvqa.pddl.ground import Action
 
 CHANGES = ("increase", "decrease", "assign", "scale-up", "scale-down")
 """How actions change numbers."""
@@ -77,8 +77,15 @@ class Numeric:
         """The values that no action changes."""
         return {w: value for w, value in self.values.items() if w[0] not in self.changed}
 
-    def check(self, atom: Atom, objects: Mapping[str, str]) -> None:
+    def check(
+        self, atom: Atom, objects: Mapping[str, str], is_a: Callable[[str, str], bool]
+    ) -> None:
         """See that a value or a comparison speaks of a function and objects of the task.
+
+        Args:
+            atom: The value, or the comparison.
+            objects: The type of each object.
+            is_a: Whether an object is of a type.
 
         Raises:
             PDDLError: It does not.
@@ -96,37 +103,39 @@ class Numeric:
                 f"{atom.pddl()}: {name} takes {len(self.functions[name])} arguments, got "
                 f"{len(arguments)}"
             )
-        for argument in arguments:
+        for argument, (variable, kind) in zip(arguments, self.functions[name], strict=True):
             if argument not in objects:
                 raise PDDLError(
                     f"{atom.pddl()}: there is no object {argument!r}"
                     + suggestion_or_list(argument, objects)
+                )
+            if not is_a(argument, kind):
+                raise PDDLError(
+                    f"{atom.pddl()}: {argument} is {a(objects[argument])}, but {variable} of "
+                    f"{name} must be {' or '.join(map(a, kind.split('|')))}"
                 )
         try:
             number(atom.arguments[-1])
         except ValueError as error:
             raise PDDLError(f"{atom.pddl()}: {error}") from None
 
-    def comes_to(self, action: Action, state: State, happening: list[Change]) -> State:
-        """The values after an action.
+    def comes_to(self, action: Action, state: State, full: State) -> State | None:
+        """A state with the values after an action; None where one cannot be worked out, as 1 / 0.
 
         Args:
-            action: The action; named where a number cannot be worked out.
-            state: What holds before it.
-            happening: Those of its changes whose conditions hold.
-
-        Raises:
-            PDDLError: A number that it needs has no value.
+            action: The action.
+            state: The state, with the values before it.
+            full: What conditions are seen in.
         """
-        before = values_in(state)
+        happening = [each for each in action.changes if holds(each.condition, full)]
+        before = values_in(state) if happening else {}
         after: dict[Words, Fraction] = {}
         for change in happening:
             by = evaluated(change.by, before)
             old = after.get(change.function, before.get(change.function))
             new = None if by is None else changed(change.kind, old, by)
             if new is None:
-                said = " ".join(change.function)
-                raise PDDLError(f"{action}: what becomes of ({said}) cannot be worked out")
+                return None
             after[change.function] = new
         return with_values(state, after)
 
@@ -159,11 +168,6 @@ class Numeric:
         step = steps.get(str(left[0]), Fraction(1))
         value = nearest(comparison, number(right), holds=literal.positive, step=step)
         return with_values(state, {tuple(map(str, left)): value})
-
-
-def expression(written: Any) -> Expression:
-    """An expression as the worker gives it."""
-    return tuple(map(expression, written)) if isinstance(written, list) else str(written)
 
 
 def value_of(words: Words, value: Fraction) -> Atom:

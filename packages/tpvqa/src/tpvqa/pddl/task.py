@@ -246,13 +246,16 @@ class Task:
         return derivation
 
     def applicable(self, state: State, action: Action) -> bool:
-        """Whether an action's precondition holds in a state."""
-        return holds(action.precondition, self.extend(state))
+        """Whether an action's precondition holds in a state, and its numbers can be worked out."""
+        before, numeric = self.extend(state), self.numeric
+        able = holds(action.precondition, before)
+        return able and (numeric is None or numeric.comes_to(action, state, before) is not None)
 
     def apply(self, state: State, action: Action) -> State:
         """The state after an action; whether it is applicable is not asked.
 
         Conditions of effects are those of the state before; what is both added and deleted holds.
+        Numbers stay where what becomes of one cannot be worked out.
         """
         before = self.extend(state)
         added: set[Atom] = set()
@@ -261,10 +264,7 @@ class Task:
             if holds(effect.condition, before):
                 (added if effect.literal.positive else deleted).add(effect.literal.atom)
         after = (state - deleted) | added
-        if self.numeric is None or not action.changes:
-            return after
-        happening = [each for each in action.changes if holds(each.condition, before)]
-        return self.numeric.comes_to(action, after, happening)
+        return (self.numeric and self.numeric.comes_to(action, after, before)) or after
 
     def goal_holds(self, state: State) -> bool:
         """Whether the goal holds in a state."""
@@ -332,7 +332,7 @@ class Task:
             PDDLError: It does not.
         """
         if self.numeric is not None and atom.predicate in COMPARISONS:
-            self.numeric.check(atom, self.objects)
+            self.numeric.check(atom, self.objects, self.is_a)
             return
         wanted = self.predicates.get(atom.predicate)
         if wanted is None:

@@ -33,7 +33,11 @@ class Validation:
     def __str__(self) -> str:
         if self.valid:
             return f"valid in {len(self.states) - 1} steps"
-        missing = ", ".join(map(str, self.failed)) or "a condition that can never hold"
+        numbers = self.action is not None and self.action.changes
+        never = (
+            "a number that cannot be worked out" if numbers else "a condition that can never hold"
+        )
+        missing = ", ".join(map(str, self.failed)) or never
         if self.action is None:
             return f"the goal does not hold at the end: {missing}"
         assert self.failed_step is not None
@@ -51,7 +55,8 @@ def validate(task: Task, actions: Sequence[Action], state: State | None = None) 
     states = [task.init if state is None else state]
     for step, action in enumerate(actions):
         full = task.extend(states[-1])
-        if not holds(action.precondition, full):
+        able = holds(action.precondition, full)
+        if not able or (action.changes and not task.applicable(states[-1], action)):
             failed = tuple(_failing(action.precondition, full))
             return Validation(tuple(states), step, failed, action)
         states.append(task.apply(states[-1], action))

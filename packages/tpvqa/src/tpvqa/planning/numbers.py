@@ -14,7 +14,7 @@ def no_numbers(task: Task, planner: str) -> Crashed:
     """Why a planner that knows no numbers does not plan a task in which actions change some."""
     names = "" if task.numeric is None else ", ".join(sorted(task.numeric.changed))
     what = f"actions change numbers here ({names})" if names else "numbers are compared here"
-    reason = f"{what}, which it does not know; {taken('numbers')}"
+    reason = f"{what}, which {planner} does not know; {taken('numbers')}"
     return Crashed(reason, planner, 0.0)
 
 

@@ -76,18 +76,30 @@ class Ranges:
         (a, b), (c, d) = (self._of(part) for part in expression[1:])
         match expression[0]:
             case "+":
-                return a + c, b + d
+                return _sum(a, c), _sum(b, d)
             case "-":
-                return a - d, b - c
+                return _sum(a, -d), _sum(b, -c)
             case "*":
                 ends = [_product(x, y) for x in (a, b) for y in (c, d)]
                 return min(ends), max(ends)
         if c <= 0 <= d:
             return ANYTHING
-        ends = [_product(x, 1 / y if math.isfinite(y) else 0) for x in (a, b) for y in (c, d)]
+        inverse = [Fraction(0) if isinstance(y, float) else 1 / y for y in (c, d)]
+        ends = [_product(x, y) for x in (a, b) for y in inverse]
         return min(ends), max(ends)
+
+
+def _sum(one: _End, other: _End) -> _End:
+    """A sum of ends; no fraction becomes a float, for which it may be too great."""
+    if isinstance(one, float):
+        return one
+    return other if isinstance(other, float) else one + other
 
 
 def _product(one: _End, other: _End) -> _End:
     """A product of ends of ranges; nothing times infinity is nothing here."""
-    return Fraction(0) if not one or not other else one * other
+    if not one or not other:
+        return Fraction(0)
+    if isinstance(one, float) or isinstance(other, float):
+        return math.inf if (one > 0) == (other > 0) else -math.inf
+    return one * other

@@ -1,13 +1,17 @@
 """A planner that plans from no state twice."""
 
+from collections.abc import Callable, Hashable, Sequence
+
 from tpvqa.pddl import State, Task
-from tpvqa.planning.protocol import Plan, Planner, PlanningResult, Unsolvable
+from tpvqa.pddl.lasting import Running
+from tpvqa.planning.protocol import Plan, Planner, PlanningResult, TemporalPlanner, Unsolvable
 
 
 class Remembering:
-    """Remembers the plans of one task, for experiments in which states come again and again.
+    """Remembers plans, for experiments in which states come again and again.
 
-    Time-outs and crashes are not remembered.
+    Time-outs and crashes are not remembered. What knows time is wrapped by `RememberingTime`; see
+    `remembering`.
 
     Args:
         planner: Plans where nothing is remembered; closed with this one.
@@ -15,8 +19,7 @@ class Remembering:
 
     def __init__(self, planner: Planner):
         self._planner = planner
-        self._results: dict[tuple[int, State], PlanningResult] = {}
-        self._tasks: dict[int, Task] = {}
+        self._results: dict[Hashable, PlanningResult] = {}
 
     @property
     def name(self) -> str:
@@ -28,12 +31,15 @@ class Remembering:
     ) -> PlanningResult:
         """A plan from a state, as the planner behind it made it the first time."""
         state = task.init if state is None else state
-        self._tasks[id(task)] = task  # kept alive, so that its number stays its own
-        key = (id(task), state)
+        return self._known(
+            (task.key, state), lambda: self._planner.plan(task, state, timeout=timeout)
+        )
+
+    def _known(self, key: Hashable, plan: Callable[[], PlanningResult]) -> PlanningResult:
         known = self._results.get(key)
         if known is not None:
             return known
-        result = self._planner.plan(task, state, timeout=timeout)
+        result = plan()
         if isinstance(result, Plan | Unsolvable):
             self._results[key] = result
         return result
@@ -41,3 +47,29 @@ class Remembering:
     def close(self) -> None:
         """End the planner behind it."""
         self._planner.close()
+
+
+class RememberingTime(Remembering):
+    """The same for a planner that knows how long actions last."""
+
+    _planner: TemporalPlanner
+
+    def plan_meanwhile(
+        self,
+        task: Task,
+        state: State,
+        running: Sequence[Running],
+        *,
+        timeout: float | None = None,
+    ) -> PlanningResult:
+        """A plan from a state in which actions are running; see `TemporalPlanner`."""
+        return self._known(
+            (task.key, state, tuple(running)),
+            lambda: self._planner.plan_meanwhile(task, state, running, timeout=timeout),
+        )
+
+
+def remembering(planner: Planner) -> Remembering:
+    """A planner that plans from no state twice, and knows time where the one behind it does."""
+    knows_time = isinstance(planner, TemporalPlanner)
+    return (RememberingTime if knows_time else Remembering)(planner)

@@ -1,7 +1,7 @@
 """Tasks whose actions last, as an engine is given them, and what comes back as a `Plan`."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import groupby, permutations
 from typing import Any
@@ -13,6 +13,7 @@ from tpvqa.planning.propositional import Propositional, propositional
 from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
 
 _MOST_AT_ONCE = 6
+_MOST_TRIED = 20
 SOON = 0.01
 """The time that is left to an action whose time is over and that has not been ended yet."""
 
@@ -20,7 +21,9 @@ SOON = 0.01
 def no_time(task: Task, planner: str) -> Crashed:
     """Why a planner that knows no time does not plan a task whose actions last."""
     names = "" if task.lasting is None else ", ".join(sorted(task.lasting.variables))
-    reason = f"actions last here ({names}), which it does not know; take up:aries or up:tamer"
+    reason = (
+        f"actions last here ({names}), which {planner} does not know; take up:aries or up:tamer"
+    )
     return Crashed(reason, planner, 0.0)
 
 
@@ -46,7 +49,7 @@ class Schedule:
             Running(action, left.get(action) or self._lasting.duration(action)[0])
             for action in self._lasting.under_way(task, state)
         )
-        self._untimed: str | None = None
+        self._untimed: dict[Action, str] = {}
         ground = propositional(task, state, may=self._may)
         ends = [Literal(self._lasting.running(each.action), False) for each in self.running]
         self.ground: Propositional = replace(
@@ -110,16 +113,33 @@ class Schedule:
             try:
                 self._lasting.duration(action)
             except PDDLError as error:
-                self._untimed = self._untimed or str(error)
+                self._untimed[action] = str(error)
                 return False
         return True
 
     @property
     def out_of_reach(self) -> str | None:
-        """What keeps the goal out of reach: actions that have no duration; None where nothing."""
-        if self.ground.in_reach or self._untimed is None:
+        """What keeps the goal out of reach: actions that have no duration; None where nothing, or
+        where it is not reached with them either."""
+        if self.ground.in_reach or not self._untimed:
             return None
-        return f"the goal is out of reach without what has no duration: {self._untimed}"
+        if not propositional(self.task, self.state).in_reach:
+            return None
+        reason = self._why_untimed(
+            lambda each: (
+                propositional(
+                    self.task, self.state, may=lambda one: one == each or one not in self._untimed
+                ).in_reach
+            )
+        )
+        return f"the goal is out of reach without what has no duration: {reason}"
+
+    def _why_untimed(self, would_do: Callable[[Action], bool]) -> str:
+        """Why the first action has no duration that would do; of those that speak of a thing twice,
+        as a way from a place to itself, last."""
+        first = sorted(self._untimed, key=lambda each: len(each.arguments) - len({*each.arguments}))
+        found = next((each for each in first[:_MOST_TRIED] if would_do(each)), first[0])
+        return self._untimed[found]
 
     def result(
         self, reply: dict[str, Any], limit: float | None, name: str, start: float
@@ -146,8 +166,9 @@ class Schedule:
                 return Plan(actions, sum(a.cost for a in actions), name, seconds, times)
             case "timeout":
                 return TimedOut(limit or 0.0, name, seconds)
-            case "unsolvable" if self._untimed is not None:
-                reason = f"no plan without what has no duration: {self._untimed}"
+            case "unsolvable" if self._untimed:
+                reason = self._why_untimed(lambda _: True)
+                reason = f"no plan without what has no duration: {reason}"
                 return Crashed(reason, name, seconds)
             case "unsolvable" if self.ground.whole:
                 return Unsolvable(reply["reason"], name, seconds)

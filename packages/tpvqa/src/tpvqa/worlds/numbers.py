@@ -1,6 +1,5 @@
 """Numbers in a simulated world: what changes them besides actions, and which the robot measures."""
 
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -16,6 +15,7 @@ from tpvqa.pddl.arithmetic import (
     bound,
     evaluated,
     functions_in,
+    is_number,
     number,
     parsed,
     text_of,
@@ -24,8 +24,6 @@ from tpvqa.pddl.arithmetic import (
 )
 from tpvqa.pddl.numeric import CHANGES, Numeric, changed, numbers_of, with_values
 from tpvqa.yaml_places import Place
-
-_NUMBER = re.compile(r"-?[0-9]{1,12}(\.[0-9]{1,9})?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,8 +122,9 @@ def _has_value(words: Sequence[object], numbers: Numeric) -> bool:
 def _no_expression(part: Expression) -> str:
     """Why something stands for no number; nothing where it does."""
     if isinstance(part, str):
-        proper = _NUMBER.fullmatch(part)
-        return "" if proper else f"expected a number such as 2 or (weight ?s), found {shown(part)}"
+        if is_number(part):
+            return ""
+        return f"expected a number such as 2 or (weight ?s), found {shown(part)}"
     if part[0] not in ARITHMETIC:
         return ""  # a function
     if len(part) != 3:
@@ -182,7 +181,7 @@ def _drift(place: Place, name: str) -> Drift:
 
 def _number(place: Place) -> Fraction:
     said = str(getattr(place.node, "value", ""))
-    if _NUMBER.fullmatch(said) is None:
+    if not is_number(said):
         raise place.wrong(f"expected a number such as -10 or 2.5, found {shown(said)}")
     return number(said)
 

@@ -108,7 +108,7 @@ def static_description(task: Any) -> dict[str, Any]:
             }
             for axiom in task.axioms
         ],
-        "durative": getattr(task, "durative", None),
+        "durative": task.durative,
         "numeric": None,
         "metric": task.metric,
     }

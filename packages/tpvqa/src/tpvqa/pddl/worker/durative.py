@@ -16,15 +16,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from tpvqa.errors import suggestion_or_list
-from tpvqa.pddl.worker.durations import (
-    Duration,
-    blocks,
-    check_functions,
-    quickest,
-    said,
-    sections,
-    values_of,
-)
+from tpvqa.pddl.arithmetic import COMPARISONS
+from tpvqa.pddl.numeric import CHANGES
+from tpvqa.pddl.worker.blocks import block_of, blocks, said, sections
+from tpvqa.pddl.worker.durations import check_facts, duration_of, quickest
+from tpvqa.pddl.worker.functions import Functions
 from tpvqa.pddl.worker.lisp import Block, Word, line_of
 from tpvqa.pddl.worker.reading_error import ReadingError
 
@@ -32,7 +28,7 @@ PREFIXES = ("start", "while", "end", "cancel")
 _UNPLANNED = ("while", "cancel")
 _REQUIREMENTS = (":durative-actions", ":duration-inequalities")
 _TIMES = (("at", "start"), ("over", "all"), ("at", "end"))
-_NUMERIC = ("increase", "decrease", "assign", "scale-up", "scale-down", "<", ">", "<=", ">=", "=")
+_NUMERIC = (*CHANGES, *COMPARISONS)
 
 
 def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
@@ -43,9 +39,9 @@ def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
         problem: The problem; what says how long actions last is taken out of it.
 
     Returns:
-        The durative actions by name, parameters and duration, `[lowest, highest]`, each a number,
-        `[function, argument, …]` or an operator with two of such; the values of the functions;
-        whether the problem asks for the quickest plan. None for a domain without any.
+        The durative actions by name, parameters and duration, `[lowest, highest]`, each as
+        `Functions.expression` gives it; the values of the functions; whether the problem asks for
+        the quickest plan. None for a domain without any.
 
     Raises:
         ReadingError: They cannot be read, or hold what is not known.
@@ -62,16 +58,24 @@ def taken_apart(domain: Block, problem: Block) -> dict[str, Any] | None:
         for each in part[1:]
         if isinstance(each, Block) and each
     ]
-    actions = [_Durative(section, taken, declared) for section in found]
+    for number, section in enumerate(found):
+        if section[1:] and any(section[1] == other[1] for other in found[:number] if other[1:]):
+            raise ReadingError(
+                f"there are two durative actions of the name {said(section[1])}; expected one of "
+                "each",
+                "domain",
+                section.line,
+            )
+    functions = Functions(domain, problem)
+    actions = [_Durative(section, taken, declared, functions) for section in found]
     place = next(n for n, section in enumerate(domain) if section is found[0])
     domain[:] = [section for section in domain if all(section is not each for each in found)]
     domain[place:place] = [snap for action in actions for snap in action.snaps()]
     _declare(domain, [action.running for action in actions])
-    functions = {k: line for each in actions for k, line in each.duration.functions.items()}
-    check_functions(domain, problem, functions)
+    check_facts(problem)
     return {
         "actions": [action.described() for action in actions],
-        "values": values_of(domain, problem, functions),
+        "values": functions.values(domain, problem),
         "quickest": quickest(problem),
     }
 
@@ -113,7 +117,9 @@ def without_running(task: Any, groups: Groups) -> Groups:
 class _Durative:
     """One durative action as its author wrote it."""
 
-    def __init__(self, section: Block, taken: set[str], predicates: list[str]):
+    def __init__(
+        self, section: Block, taken: set[str], predicates: list[str], functions: Functions
+    ):
         self.line = section.line
         name = section[1] if len(section) > 1 else None
         if not isinstance(name, Word):
@@ -133,9 +139,10 @@ class _Durative:
             )
         self._parameters = self._parts.get(":parameters", Block(self.line))
         variables = [word for word in self._parameters if str(word).startswith("?")]
-        self._atom = _block(self.line, f"running-{name}", *variables)
-        self.running = _block(self.line, f"running-{name}", *self._parameters)
-        self.duration = Duration(name, self._parts[":duration"])
+        self._atom = block_of(self.line, f"running-{name}", *variables)
+        self.running = block_of(self.line, f"running-{name}", *self._parameters)
+        known = {*map(str, variables), *functions.things}
+        self.duration = duration_of(name, self._parts[":duration"], functions, known)
         self._conditions = [self._at(":condition", time) for time in _TIMES]
         self._effects = [self._at(":effect", time) for time in _TIMES]
         if self._effects[1]:
@@ -175,25 +182,25 @@ class _Durative:
         """The four actions that it becomes."""
         start, during, end = self._conditions
         begins, _, ends = self._effects
-        runs, stopped = self._atom, _block(self.line, "not", self._atom)
+        runs, stopped = self._atom, block_of(self.line, "not", self._atom)
         plain = [each for each in begins if each[:1] not in (["forall"], ["when"])]
-        undone = [_block(self.line, "when", each, _opposite(each)) for each in plain]
+        undone = [block_of(self.line, "when", each, _opposite(each)) for each in plain]
         for prefix, needs, does in (
             ("start", [stopped, *start], [runs, *begins]),
             ("while", [runs, *during], [runs]),
             ("end", [runs, *during, *end], [stopped, *ends]),
             ("cancel", [runs], [stopped, *undone]),
         ):
-            snap = _block(self.line, ":action", Word(f"{prefix}-{self.name}", self.name.line))
+            snap = block_of(self.line, ":action", Word(f"{prefix}-{self.name}", self.name.line))
             snap += [Word(":parameters", self.line), self._parameters]
-            snap += [Word(":precondition", self.line), _block(self.line, "and", *needs)]
-            snap += [Word(":effect", self.line), _block(self.line, "and", *does)]
+            snap += [Word(":precondition", self.line), block_of(self.line, "and", *needs)]
+            snap += [Word(":effect", self.line), block_of(self.line, "and", *does)]
             yield snap
 
     def described(self) -> dict[str, Any]:
         """What its parts do not say."""
         variables = [str(word) for word in self._atom[1:]]
-        return {"name": str(self.name), "variables": variables, "duration": self.duration.bounds}
+        return {"name": str(self.name), "variables": variables, "duration": self.duration}
 
     def _at(self, key: str, time: tuple[str, str]) -> list[Block]:
         """The conditions or effects of a time, as parts of a conjunction."""
@@ -214,7 +221,7 @@ class _Durative:
                 yield block[2]
         elif head == "forall" and len(block) == 3:
             for part in self._projected(block[2], time, key):
-                yield _block(block.line, "forall", block[1], part)
+                yield block_of(block.line, "forall", block[1], part)
         elif head == "when" and len(block) == 3:
             yield from self._when(block, time)
         else:
@@ -241,7 +248,7 @@ class _Durative:
                 block.line,
             )
         for effect in effects:
-            yield _block(block.line, "when", _block(block.line, "and", *now), effect)
+            yield block_of(block.line, "when", block_of(block.line, "and", *now), effect)
 
     def _check_plain(self, block: object) -> None:
         """See that there are no numbers in it that change."""
@@ -270,16 +277,10 @@ def _declare(domain: Block, running: list[Block]) -> None:
     place = next(
         n for n, part in enumerate(domain) if isinstance(part, Block) and part[0] == ":action"
     )
-    domain.insert(place, _block(domain.line, ":predicates", *running))
-
-
-def _block(line: int, *parts: object) -> Block:
-    block = Block(line)
-    block += [Word(part, line) if type(part) is str else part for part in parts]
-    return block
+    domain.insert(place, block_of(domain.line, ":predicates", *running))
 
 
 def _opposite(literal: Block) -> Any:
     if literal[:1] == ["not"] and len(literal) == 2:
         return literal[1]
-    return _block(literal.line, "not", literal)
+    return block_of(literal.line, "not", literal)

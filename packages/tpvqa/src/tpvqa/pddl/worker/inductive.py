@@ -61,12 +61,8 @@ def inductive_groups(
             any state that it allows.
         work: Facts drawn from others beyond which none is found.
 
-    Returns:
-        None at all where no effect is conditional: the translator's invariants say it all.
     """
     actions = list(actions)
-    if not any(when for each in actions for when, _ in (*each.add_effects, *each.del_effects)):
-        return []
     steps = [_Step.of(each) for each in actions]
     added = {key for step in steps for _, key, adds in step.effects if adds}
     kept: dict[frozenset[AtomKey], bool] = {}

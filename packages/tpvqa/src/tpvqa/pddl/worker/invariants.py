@@ -34,10 +34,21 @@ def described_groups(
         first: What else may hold initially.
     """
     kept = _widest(_laws(task, grounding.atoms), [])
-    kept = _widest(inductive_groups(grounding.actions, grounding.atoms, first), kept)
+    if _lawless(task, grounding):
+        kept = _widest(inductive_groups(grounding.actions, grounding.atoms, first), kept)
     proved = [atoms for atoms, exactly_one in kept if exactly_one]
     others = [group for group in grounding.mutex_groups if not any(group <= p for p in proved)]
     return _listed(_widest(_reached(grounding, others, state), kept))
+
+
+def _lawless(task: Any, grounding: Grounding) -> bool:
+    """Whether there may be groups that the translator's invariants do not find.
+
+    It takes a conditional effect to add and not to delete, and the end of an action that lasts to
+    delete only what is needed then, though it was needed at its start.
+    """
+    effects = (e for each in grounding.actions for e in (*each.add_effects, *each.del_effects))
+    return task.durative is not None or any(when for when, _ in effects)
 
 
 def lawful_groups(task: Any, reachable: Set[AtomKey]) -> list[tuple[list[AtomKey], bool]]:

@@ -1,5 +1,6 @@
 """PDDL text → nested lists whose every word and parenthesis knows its line."""
 
+import re
 from collections.abc import Iterator
 
 from tpvqa.errors import shown
@@ -14,6 +15,9 @@ _SECTIONS = frozenset(
 )
 """What begins a block of a definition, and nothing within one."""
 _OF_AN_ACTION = frozenset({":parameters", ":precondition", ":effect"})
+
+_TYPED = re.compile(r"(?<!\S)-(?=[A-Za-z])")
+"""The hyphen before a type that is written onto it, as in `?b -boat`; no name begins so."""
 
 
 class Word(str):
@@ -57,7 +61,8 @@ def _words(text: str) -> Iterator[Word]:
             )
         for mark in "()":
             code = code.replace(mark, f" {mark} ")
-        for word in code.replace("?", " ?").split():
+        code = _TYPED.sub("- ", code.replace("?", " ?"))
+        for word in code.split():
             if len(word) > _LONGEST:
                 raise LispError(
                     f"the word that begins with {word[:20]!r} has {len(word):,} letters; expected "

@@ -1,6 +1,6 @@
 """Metrics of other things than the cost of a plan, which no planner here goes by."""
 
-from tpvqa.pddl.worker.durations import blocks, said, sections
+from tpvqa.pddl.worker.blocks import blocks, said, sections
 from tpvqa.pddl.worker.lisp import Block
 from tpvqa.pddl.worker.reading_error import ReadingError
 

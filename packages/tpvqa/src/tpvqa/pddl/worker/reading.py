@@ -242,6 +242,8 @@ def _check_types(task: Any, blocks: dict[str, Block]) -> None:
         typed += [*action.parameters, *_quantified(action.precondition)]
         for effect in action.effects:
             typed += [*effect.parameters, *_quantified(effect.condition)]
+    for function in task.functions:
+        typed += function.arguments
     for axiom in task.axioms:
         typed += [*axiom.parameters, *_quantified(axiom.condition)]
     typed += _quantified(task.goal)

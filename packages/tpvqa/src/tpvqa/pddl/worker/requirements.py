@@ -1,9 +1,8 @@
 """What a domain asks for that Fast Downward does not know: said where it stands, with who could."""
 
-from collections.abc import Iterator
-
 from tpvqa.errors import shown, suggestion
 from tpvqa.pddl.outside.engines import where_known
+from tpvqa.pddl.worker.blocks import blocks
 from tpvqa.pddl.worker.lisp import Block, line_of
 
 _KNOWN = frozenset(
@@ -55,7 +54,7 @@ def beyond(domain: Block) -> tuple[str, int | None] | None:
     if declared is not None:
         return declared
     names = _predicates(domain)
-    for block in _blocks(domain):
+    for block in blocks(domain):
         head = block[0] if block else None
         if isinstance(head, str) and head in _HEADS and str(head) not in names:
             feature = _HEADS[str(head)]
@@ -84,10 +83,3 @@ def _predicates(domain: Block) -> set[str]:
         for each in section
         if isinstance(each, Block) and each
     }
-
-
-def _blocks(block: Block) -> Iterator[Block]:
-    yield block
-    for part in block:
-        if isinstance(part, Block):
-            yield from _blocks(part)
