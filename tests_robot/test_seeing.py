@@ -12,7 +12,7 @@ from tpvqa_robots.mishaps import Mishaps
 from tpvqa_robots.skills.kinematics import Grip, Kinematics, OutOfReachError
 from tpvqa_robots.skills.seeing import see
 from tpvqa_robots.toys.cameras import OVERHEAD
-from tpvqa_robots.toys.scene import TABLE
+from tpvqa_robots.toys.room import TABLE
 from tpvqa_robots.world import ToysWorld
 
 

@@ -13,7 +13,7 @@ from tpvqa import Atom, load_task
 from tpvqa.chance import chance
 from tpvqa.tasks import find_task
 from tpvqa_robots.mishaps import Mishaps
-from tpvqa_robots.toys.scene import TABLE
+from tpvqa_robots.toys.room import TABLE
 from tpvqa_robots.toys.things import MOVABLE
 from tpvqa_robots.world import ToysWorld
 

@@ -20,7 +20,7 @@ from tpvqa_robots.skills.simulated import SimulatedRobot
 from tpvqa_robots.toys.cameras import CAMERAS, OVERHEAD, Cameras, Errors
 from tpvqa_robots.toys.machine import Machine, Slip
 from tpvqa_robots.toys.mujoco import load_mujoco
-from tpvqa_robots.toys.truth import ToysTruth
+from tpvqa_robots.truth import PhysicalTruth
 
 DEADLINE = 60.0
 """Seconds of simulated time that a skill has where nobody says."""
@@ -62,7 +62,7 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         self._before: State | None = None
         self._known: tuple[float, State] | None = None
         self.last_outcome: Outcome | None = None
-        self.truth = ToysTruth(
+        self.truth = PhysicalTruth(
             task, self._state, lambda: self._state() if self._before is None else self._before
         )
         self._closed = False

@@ -12,7 +12,8 @@ from tpvqa_robots.toys.cameras import Cameras
 from tpvqa_robots.toys.machine import Machine
 from tpvqa_robots.toys.scene import SPOTS, build
 from tpvqa_robots.toys.things import Spot
-from tpvqa_robots.toys.truth import CONTAINERS, atoms_of, see_known, true_state
+from tpvqa_robots.toys.truth import CONTAINERS, KNOWN, true_state
+from tpvqa_robots.truth import atoms_of, see_known
 
 SLIPS_AFTER = 0.25
 """Seconds after a turn begins at which the fingers give way, where they do."""
@@ -46,11 +47,11 @@ class ToysWorld(PhysicalWorld):
         episode: int = 0,
         on_tick: Callable[[Self], None] | None = None,
     ):
-        see_known(task)
+        see_known(task, KNOWN, world=self.name, example="collect_toys")
         wrong = Mishaps(appendix=True) if mishaps is None else mishaps
         super().__init__(
             task,
-            atoms_of(task),
+            atoms_of(task, KNOWN),
             mishaps=wrong,
             seed=seed,
             episode=episode,

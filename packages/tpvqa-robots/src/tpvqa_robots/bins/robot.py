@@ -8,7 +8,7 @@ from tpvqa_robots.skills.motions import Guard, Told
 from tpvqa_robots.skills.seeing import Seen, seen_as
 from tpvqa_robots.skills.simulated import AXIS, SimulatedRobot, SkillError
 from tpvqa_robots.toys.cameras import OVERHEAD, Shot
-from tpvqa_robots.toys.scene import TABLE
+from tpvqa_robots.toys.room import TABLE
 
 BINS = (SOURCE, *TARGETS)
 

@@ -12,8 +12,8 @@ from typing import Any
 
 from tpvqa.pddl import Atom, State
 from tpvqa_robots.bins.scene import AT, HALF, RIM, SOURCE, TARGETS, THINGS
-from tpvqa_robots.toys.scene import TABLE
-from tpvqa_robots.toys.truth import touched_by_both
+from tpvqa_robots.toys.room import TABLE
+from tpvqa_robots.truth import touched_by_both
 
 KNOWN = ("in", "in_hand", "hand_empty")
 """The predicates of which this world knows when they hold."""

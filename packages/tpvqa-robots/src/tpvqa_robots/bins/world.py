@@ -16,7 +16,7 @@ from tpvqa_robots.physical import PhysicalWorld
 from tpvqa_robots.toys.cameras import Cameras
 from tpvqa_robots.toys.machine import Machine
 from tpvqa_robots.toys.things import Spot
-from tpvqa_robots.toys.truth import atoms_of, see_known
+from tpvqa_robots.truth import atoms_of, see_known
 
 APART = 0.12
 """Between the middles of two things at first, at least, metres."""

@@ -33,7 +33,7 @@ def skill_server(
     from tpvqa_robots.ros2.link import load_rclpy
     from tpvqa_robots.ros2.of_world import WorldRobot
     from tpvqa_robots.ros2.server import SkillServer
-    from tpvqa_robots.toys.truth import atoms_of
+    from tpvqa_robots.truth import atoms_of
 
     load_rclpy()
     files = find_task(task)
@@ -41,7 +41,7 @@ def skill_server(
     made, _ = make_world(world, {"task": loaded, "seed": seed, "episode": 0})
     try:
         tells = truth_of(made)
-        atoms = atoms_of(loaded) if tells is not None else ()
+        atoms = atoms_of(loaded, loaded.predicates) if tells is not None else frozenset()
 
         def true() -> State:
             assert tells is not None

@@ -19,7 +19,7 @@ from tpvqa_robots.skills.motions import Guard, Motions, Stopped, Told
 from tpvqa_robots.skills.seeing import HUES, Seen, see
 from tpvqa_robots.toys.cameras import CAMERAS, OVERHEAD, Cameras, Shot
 from tpvqa_robots.toys.machine import Machine
-from tpvqa_robots.toys.scene import TABLE
+from tpvqa_robots.toys.room import TABLE
 
 CARRY = Grip(0.36, 0.0, 0.98, np.pi / 2)
 """Where the gripper is while the base turns: before the table's edge, above its top."""

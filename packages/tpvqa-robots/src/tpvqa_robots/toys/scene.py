@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa_robots.toys.mujoco import load_mujoco, robosuite_models
+from tpvqa_robots.toys.room import TABLE, furnished
 from tpvqa_robots.toys.things import (
     COLOURS,
     GOAL_SIZE,
@@ -17,8 +18,6 @@ from tpvqa_robots.toys.things import (
     eggplant,
 )
 
-TABLE = 0.70
-"""Height of the table's top, metres."""
 GOAL = (0.62, 0.0)
 """Centre of the goal area; the arm's foot stands over the origin when the base has not turned."""
 ARM_JOINTS = tuple(
@@ -35,21 +34,7 @@ SPOTS: Mapping[str, Spot] = {
     "toy_eggplant": Spot(0.55, -0.56, 0.5),
 }
 
-_ROOM = """<mujoco model="toys">
-<compiler angle="radian" autolimits="true"/>
-<statistic center=".5 0 .7" extent="6"/>
-<option timestep="0.002" integrator="implicitfast" cone="elliptic" impratio="20"/>
-<visual>
-  <headlight ambient=".38 .38 .40" diffuse=".22 .22 .22" specular="0 0 0"/>
-  <quality shadowsize="4096" offsamples="4"/><map znear="0.007" zfar="4" shadowclip="1.4"/>
-  <global offwidth="1280" offheight="960"/>
-</visual>
-<asset>
-  <texture type="skybox" builtin="gradient" rgb1=".93 .94 .96" rgb2=".70 .76 .84"
-    width="128" height="128"/>
-  <texture name="tiles" type="2d" builtin="checker" rgb1=".52 .53 .55" rgb2=".47 .485 .505"
-    markrgb=".42 .43 .45" mark="edge" width="300" height="300"/>
-  <material name="tiles" texture="tiles" texrepeat="5 5" texuniform="false"/>
+_ASSETS = """
   <texture name="grain" type="2d" builtin="flat" rgb1=".66 .54 .40" width="200" height="200"
     mark="random" markrgb=".61 .49 .35" random=".08"/>
   <material name="wood" texture="grain" specular=".15" shininess=".2"/>
@@ -60,25 +45,14 @@ _ROOM = """<mujoco model="toys">
   <material name="yellow" rgba=".95 .78 .12 1" specular=".4"/>
   <material name="orange" rgba=".93 .48 .10 1" specular=".3"/>
   <material name="green" rgba=".25 .58 .22 1" specular=".3"/>
-  {materials}
-</asset>
-<worldbody>
-  <light pos="-.6 1.6 3.0" dir=".35 -.5 -1" diffuse=".55 .54 .50" specular=".25 .25 .25"
-    directional="true"/>
-  <light pos="1.5 -2 3" dir="-.3 .5 -1" diffuse=".22 .23 .26" specular=".1 .1 .1"
-    directional="true" castshadow="false"/>
-  <geom name="floor" type="plane" size="8 8 .1" material="tiles" group="1" friction="1 .02 .003"/>
-  <body name="table" pos="0 0 {table}">
+"""
+_TABLE = """
     <geom name="table" type="box" pos=".78 0 -.02" size=".31 .85 .02" material="wood" group="1"
       friction="1 .02 .003" condim="4"/>
     {legs}
     <geom name="goal_area" type="box" pos="{gx} {gy} .0004" size="{ga} {gb} .0006"
       material="goal" group="1" contype="0" conaffinity="0"/>
-  </body>
-  {things}
-  {bystanders}
-  <camera name="room" pos="2.15 -1.45 1.75" xyaxes=".60 .80 0 -.33 .25 .91" fovy="38"/>
-</worldbody></mujoco>"""
+"""
 
 _MAST = """<mujoco><worldbody><body name="mast">
   <geom type="capsule" fromto="-.42 0 .35 -.42 0 1.78" size=".018" rgba=".25 .26 .28 1" group="1"
@@ -110,23 +84,17 @@ def _things(spots: Mapping[str, Spot]) -> str:
     return "".join(found)
 
 
-def _room(spots: Mapping[str, Spot]) -> str:
+def _room(spots: Mapping[str, Spot]) -> Any:
     legs = "".join(
         f'<geom type="box" pos="{x} {y} -.37" size=".025 .025 .33" material="metal" group="1"/>'
         for x in (0.52, 1.04)
         for y in (-0.8, 0.8)
     )
-    return _ROOM.format(
-        materials=_materials(),
-        table=TABLE,
-        legs=legs,
-        gx=GOAL[0],
-        gy=GOAL[1],
-        ga=GOAL_SIZE[0] / 2,
-        gb=GOAL_SIZE[1] / 2,
-        things=_things(spots),
-        bystanders=bystanders(),
+    table = _TABLE.format(
+        legs=legs, gx=GOAL[0], gy=GOAL[1], ga=GOAL_SIZE[0] / 2, gb=GOAL_SIZE[1] / 2
     )
+    things = _things(spots) + bystanders()
+    return furnished("toys", assets=_ASSETS + _materials(), table=table, things=things)
 
 
 def part_of_robosuite(file: Path) -> Any:
@@ -197,7 +165,7 @@ def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
     Raises:
         MissingExtraError: MuJoCo or robosuite is not installed.
     """
-    return with_robot(load_mujoco().MjSpec.from_string(_room(spots)))
+    return with_robot(_room(spots))
 
 
 def with_robot(room: Any) -> Any:

@@ -11,63 +11,25 @@
 | `found(x)` | at least `SHOWN` pixels of the overhead camera show it |
 """
 
-from collections.abc import Callable, Collection, Iterable, Mapping
-from itertools import product
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
-from tpvqa.errors import WorldError
-from tpvqa.pddl import Action, Atom, State, Task
-from tpvqa.worlds.earlier_truth import EarlierTruth
-from tpvqa_robots.toys.scene import GOAL, TABLE
+from tpvqa.pddl import Atom, State
+from tpvqa_robots.toys.room import TABLE
+from tpvqa_robots.toys.scene import GOAL
 from tpvqa_robots.toys.things import GOAL_SIZE, HEIGHT, LENGTH, MOVABLE, WALL, WIDTH
+from tpvqa_robots.truth import touched_by_both
 
 FALLEN = 0.45
 """Metres above the floor."""
 RESTING = 0.03
 RIM = 0.03
 SHOWN = 250
-FINGERS = ("left", "right")
 KNOWN = ("in_hand", "hand_empty", "found", "on")
 """The predicates of which this world knows when they hold."""
 CONTAINERS = tuple(name for name in MOVABLE if name.endswith("container"))
-
-
-def see_known(
-    task: Task,
-    known: Collection[str] = KNOWN,
-    *,
-    world: str = "toys",
-    example: str = "collect_toys",
-) -> None:
-    """See whether a task is about what a world knows.
-
-    Args:
-        task: The task.
-        known: The predicates of which the world knows when they hold.
-        world: The world; named in errors.
-        example: A task that it knows.
-
-    Raises:
-        WorldError: It has a predicate of which the world cannot tell whether it holds.
-    """
-    strange = sorted(set(task.predicates) - set(known) - {"="})
-    if strange:
-        raise WorldError(
-            f"The world {world!r} cannot tell when {strange[0]!r} holds; it knows "
-            f"{', '.join(known)}. Run {example} in it, or another task with these predicates."
-        )
-
-
-def atoms_of(task: Task, known: Collection[str] = KNOWN) -> frozenset[Atom]:
-    """All facts that known predicates and a task's objects make up."""
-    return frozenset(
-        Atom(predicate, names)
-        for predicate, kinds in task.predicates.items()
-        if predicate in known
-        for names in product(*([n for n in task.objects if task.is_a(n, kind)] for kind in kinds))
-    )
 
 
 def true_state(model: Any, data: Any, pixels: Mapping[str, int], atoms: Iterable[Atom]) -> State:
@@ -97,17 +59,6 @@ def true_state(model: Any, data: Any, pixels: Mapping[str, int], atoms: Iterable
     return frozenset(atom for atom in atoms if holds(atom))
 
 
-def touched_by_both(model: Any, data: Any, name: str) -> bool:
-    """Whether parts of both fingers touch a body."""
-    body, touching = model.body(name).id, set()
-    for contact in data.contact[: data.ncon]:
-        bodies = [int(model.geom_bodyid[geom]) for geom in contact.geom]
-        if body in bodies and bodies[0] != bodies[1]:
-            other = model.body(bodies[1] if bodies[0] == body else bodies[0]).name
-            touching |= {side for side in FINGERS if other.startswith(f"arm_hand_{side}")}
-    return len(touching) == len(FINGERS)
-
-
 def _place(data: Any, name: str) -> str | None:
     at = data.body(name).xpos
     if at[2] < FALLEN:
@@ -126,44 +77,3 @@ def _within(container: Any, at: Any) -> bool:
     return bool(
         abs(x) <= LENGTH / 2 - WALL and abs(y) <= WIDTH / 2 - WALL and 0 <= z <= HEIGHT + RIM
     )
-
-
-class ToysTruth:
-    """What is true now: a live `TruthSource` that also knows what was before the last action.
-
-    Args:
-        task: Tells what follows from the state.
-        now: Gives the facts that hold now.
-        before: Gives those that held before the last action.
-    """
-
-    def __init__(self, task: Task, now: Callable[[], State], before: Callable[[], State]):
-        self._task, self._now, self._then = task, now, before
-
-    def holds(self, atom: Atom) -> bool:
-        """Whether a fact is true now."""
-        return self._present.holds(atom)
-
-    def visible(self, atom: Atom) -> bool:
-        """Pictures show what they show; nothing is said to be out of sight."""
-        return True
-
-    def possible(self, action: Action) -> bool:
-        """Whether all preconditions of an action hold now."""
-        return self._present.possible(action)
-
-    def successful(self, action: Action) -> bool:
-        """Whether all effects of an action hold now."""
-        return self._present.successful(action)
-
-    def scene(self) -> str:
-        """A fingerprint of the true state."""
-        return self._present.scene()
-
-    def earlier(self) -> EarlierTruth:
-        """What was true before the last action; at first what is true now."""
-        return EarlierTruth(self._task, self._then(), self.visible)
-
-    @property
-    def _present(self) -> EarlierTruth:
-        return EarlierTruth(self._task, self._now(), self.visible)
