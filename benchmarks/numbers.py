@@ -33,6 +33,8 @@ CELLS = {
         ("tpvqa", "oracle:0.9"),
         ("tpvqa:3", "oracle:0.9"),
         ("tpvqa:5", "oracle:0.9"),
+        ("tpvqa:any", "oracle:1.0"),
+        ("tpvqa:5:any", "oracle:0.9"),
     ),
     "aircraft": (
         ("none", "oracle:1.0"),
@@ -43,6 +45,9 @@ CELLS = {
         ("tpvqa:5", "oracle:0.9"),
         ("tpvqa:5", "oracle:0.9:0:0.74"),
         ("tpvqa:5", "flawed:late:0.9"),
+        ("tpvqa:any", "oracle:1.0"),
+        ("tpvqa:5:any", "oracle:0.9"),
+        ("tpvqa:5:any", "oracle:0.9:0:0.74"),
     ),
 }
 
@@ -77,7 +82,7 @@ def main(name: str, seeds: int = 50, engine: str = "aries") -> None:
     with TemporaryDirectory() as folder:
         for called, files in configurations(name, Path(folder)):
             for monitor, vlm in CELLS[name]:
-                print(f"{called:18} {monitor:8} {vlm:17} ", end="", flush=True)
+                print(f"{called:18} {monitor:11} {vlm:17} ", end="", flush=True)
                 print(of_cell(configuration(files, monitor, vlm), planner, seeds), flush=True)
     planner.close()
 

@@ -325,9 +325,11 @@ def test_the_majority_rule(given_replies: list[Reply]) -> None:
     if no + yes == 0:
         assert Majority.TIE_DENIES.denies(answers) is None
         assert Majority.STRICT.denies(answers) is None
+        assert Majority.ANY.denies(answers) is None
     else:
         assert Majority.TIE_DENIES.denies(answers) is (no >= yes)
         assert Majority.STRICT.denies(answers) is (no > yes)
+        assert Majority.ANY.denies(answers) is (no > 0)
 
 
 @pytest.fixture(scope="module")

@@ -89,7 +89,9 @@ class MonitorConfig(Part):
         gt=0,
     )
     majority: str | None = setting(
-        "--majority", "tie (at least half deny, the default) or strict (more than half)."
+        "--majority",
+        "When answers deny an action: tie (at least half of them, the default), strict (more than "
+        "half) or any (a single one).",
     )
     no_alternatives: bool = setting(
         "--no-alternatives",

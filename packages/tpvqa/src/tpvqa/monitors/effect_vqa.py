@@ -32,7 +32,7 @@ class EffectVQA(PlainArguments):
         if arguments not in ("", *Majority):
             raise PluginError(
                 f"'effectvqa:{arguments}' is not understood. Write effectvqa, or with the majority "
-                "tie or strict at its end, e.g. effectvqa:strict."
+                "tie, strict or any at its end, e.g. effectvqa:strict."
             )
         return cls(majority=arguments or majority)
 

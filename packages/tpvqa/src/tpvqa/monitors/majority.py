@@ -16,6 +16,9 @@ class Majority(StrEnum):
 
     TIE_DENIES = "tie"  # at least half of the answered literals are denied
     STRICT = "strict"  # more than half are
+    ANY = (
+        "any"  # a single one is: no majority, where three preconditions outvote the one that fails
+    )
 
     @classmethod
     def named(cls, name: str) -> "Majority":
@@ -28,8 +31,8 @@ class Majority(StrEnum):
             return cls(name)
         except ValueError:
             raise PluginError(
-                f"There is no majority {name!r}. Write 'tie' (half of the answers deny) or "
-                "'strict' (more than half must)."
+                f"There is no majority {name!r}. Write 'tie' (half of the answers deny), "
+                "'strict' (more than half must) or 'any' (one is enough)."
             ) from None
 
     def denies(self, answers: Sequence[Answer]) -> bool | None:
@@ -38,4 +41,6 @@ class Majority(StrEnum):
         if not votes:
             return None
         denied = votes.count(False)
+        if self is Majority.ANY:
+            return denied > 0
         return 2 * denied >= len(votes) if self is Majority.TIE_DENIES else 2 * denied > len(votes)

@@ -59,8 +59,8 @@ class TPVQA(CorrectingMonitor, PlainArguments):
         if words not in ([], [PLAIN]):
             raise PluginError(
                 f"'tpvqa:{arguments}' is not understood. Write tpvqa[:K][:MAJORITY][:{PLAIN}], in "
-                "this order: votes over K looks, the majority tie or strict; for example tpvqa:5, "
-                f"tpvqa:strict or tpvqa:5:strict:{PLAIN}."
+                "this order: votes over K looks, the majority tie, strict or any; for example "
+                f"tpvqa:5, tpvqa:any or tpvqa:5:strict:{PLAIN}."
             )
         return cls(majority=rule, votes=int(votes), alternatives=not (words or no_alternatives))
 

@@ -32,7 +32,7 @@ class Votes(CorrectingMonitor, PlainArguments):
         if not votes.isdecimal() or int(votes) < 1 or rule not in ("", *Majority):
             raise PluginError(
                 f"'vote:{arguments}' is not understood. Write vote:K for votes over K looks, "
-                "e.g. vote:5, or with the majority tie or strict at its end, e.g. vote:5:strict."
+                "e.g. vote:5, or with the majority tie, strict or any at its end: vote:5:strict."
             )
         return cls(int(votes), majority=rule or majority)
 
