@@ -58,17 +58,16 @@ def touched_by_both(model: Any, data: Any, name: str) -> bool:
     return len(touching) == len(FINGERS)
 
 
-class PhysicalTruth:
-    """What is true now: a live `TruthSource` that also knows what was before the last action.
+class PresentTruth:
+    """What is true now: a live `TruthSource`.
 
     Args:
         task: Tells what follows from the state.
         now: Gives the facts that hold now.
-        before: Gives those that held before the last action.
     """
 
-    def __init__(self, task: Task, now: Callable[[], State], before: Callable[[], State]):
-        self._task, self._now, self._then = task, now, before
+    def __init__(self, task: Task, now: Callable[[], State]):
+        self._task, self._now = task, now
 
     def holds(self, atom: Atom) -> bool:
         """Whether a fact is true now."""
@@ -90,10 +89,24 @@ class PhysicalTruth:
         """A fingerprint of the true state."""
         return self._present.scene()
 
-    def earlier(self) -> EarlierTruth:
-        """What was true before the last action; at first what is true now."""
-        return EarlierTruth(self._task, self._then(), self.visible)
-
     @property
     def _present(self) -> EarlierTruth:
         return EarlierTruth(self._task, self._now(), self.visible)
+
+
+class PhysicalTruth(PresentTruth):
+    """The same, of a world that also knows what was before the last action.
+
+    Args:
+        task: Tells what follows from the state.
+        now: Gives the facts that hold now.
+        before: Gives those that held before the last action.
+    """
+
+    def __init__(self, task: Task, now: Callable[[], State], before: Callable[[], State]):
+        super().__init__(task, now)
+        self._then = before
+
+    def earlier(self) -> EarlierTruth:
+        """What was true before the last action; at first what is true now."""
+        return EarlierTruth(self._task, self._then(), self.visible)

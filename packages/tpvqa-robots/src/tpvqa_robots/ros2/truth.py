@@ -4,11 +4,11 @@ import json
 from typing import Any
 
 from tpvqa.errors import WorldError
-from tpvqa.pddl import Action, Atom, State, Task
-from tpvqa.worlds.earlier_truth import EarlierTruth
+from tpvqa.pddl import Atom, State, Task
+from tpvqa_robots.truth import PresentTruth
 
 
-class PublishedTruth:
+class PublishedTruth(PresentTruth):
     """The true state as it was last published.
 
     Args:
@@ -17,7 +17,8 @@ class PublishedTruth:
     """
 
     def __init__(self, task: Task, topic: str):
-        self._task, self._topic = task, topic
+        super().__init__(task, self._told)
+        self._topic = topic
         self.state: State | None = None
         self.stamp = 0.0
 
@@ -31,28 +32,7 @@ class PublishedTruth:
             return
         self.state, self.stamp = state, stamp
 
-    def holds(self, atom: Atom) -> bool:
-        """Whether a fact is true now."""
-        return self._present.holds(atom)
-
-    def visible(self, atom: Atom) -> bool:
-        """Pictures show what they show; nothing is said to be out of sight."""
-        return True
-
-    def possible(self, action: Action) -> bool:
-        """Whether all preconditions of an action hold now."""
-        return self._present.possible(action)
-
-    def successful(self, action: Action) -> bool:
-        """Whether all effects of an action hold now."""
-        return self._present.successful(action)
-
-    def scene(self) -> str:
-        """A fingerprint of the true state."""
-        return self._present.scene()
-
-    @property
-    def _present(self) -> EarlierTruth:
+    def _told(self) -> State:
         if self.state is None:
             raise WorldError(f"Nothing has come on {self._topic}, which is to tell what is true.")
-        return EarlierTruth(self._task, self.state, self.visible)
+        return self.state
