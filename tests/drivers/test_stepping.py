@@ -99,7 +99,7 @@ def test_a_listener_that_breaks_is_named_and_the_trial_goes_on(planner: Planner)
 def test_a_limit_of_time_ends_a_trial(planner: Planner, monitor: str) -> None:
     config = CONFIG.but(
         monitor={"spec": monitor},
-        limits=Limits(seconds=0.001, repeats=10**6, actions=10**6).model_dump(),
+        limits=Limits(seconds=1e-6, repeats=10**6, actions=10**6).model_dump(),
         simulation={"failure": 1.0, "disturbance": 0.0},
     )
     with Trial(config, planner=planner) as trial:
