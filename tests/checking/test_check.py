@@ -201,6 +201,22 @@ def test_actions_that_are_never_possible_are_told_with_what_they_lack(files: Fil
     assert found[0].line == files.line("domain.pddl", "(:action polish")
 
 
+def test_what_a_disturbance_brings_about_hides_no_other_impossible_action(files: Files) -> None:
+    """What falls back onto a tray makes neither a curse, nor what rests on it, possible."""
+    extra = """
+  (:action exorcise
+    :parameters (?p - part ?t - tray)
+    :precondition (and (cursed ?t) (lies ?p ?t))
+    :effect (pressed ?p)))
+"""
+    files.change("domain.pddl", "    :effect (pressed ?p)))\n", "    :effect (pressed ?p))" + extra)
+    files.change("domain.pddl", "(free)\n", "(free) (cursed ?t - tray)\n")
+    (found,) = (each for each in files.found() if each.kind == "action-never-possible")
+    assert "(cursed ?t), which never holds" in found.says
+    files.change("world.yaml", '"(lies ?p spare_tray)", ', '"(cursed spare_tray)", ')
+    assert "action-never-possible" not in {each.kind for each in files.found()}
+
+
 def test_an_action_without_objects_or_facts_for_it_is_told(files: Files) -> None:
     extra = """
   (:action paint

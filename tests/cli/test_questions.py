@@ -18,6 +18,7 @@ from tests.vlm.chat_server import Act, ChatServer
 from tpvqa.cli import main
 
 Run = Callable[..., tuple[int, str, str]]
+TIMED = Path(__file__).parents[2] / "examples/timed/laboratory"
 GRIPPER = """
 (define (domain gripper) (:predicates (at-robby ?r) (carry ?o ?g) (at ?o ?r))
   (:action move :parameters (?from ?to) :precondition (at-robby ?from)
@@ -167,6 +168,17 @@ def test_a_task_without_a_plan_and_bad_input_have_their_own_exit_codes(
     for words in ((), ("clean_dishes", "--domain", domain), ("--domain", domain)):
         assert tpvqa("questions", *words)[0] == 2
     assert "Did you mean 'eat_apple'" in tpvqa("questions", "eat_aple")[2]
+
+
+def test_a_planner_that_can_is_named_and_taken_where_actions_last(tpvqa: Run) -> None:
+    pytest.importorskip("up_aries")
+    files = [TIMED / "domain.pddl", TIMED / "problem.pddl"]
+    code, _, said = tpvqa("questions", *files)
+    assert code != 0
+    assert "up:aries" in said
+    code, out, _ = tpvqa("questions", *files, "--planner", "up:aries")
+    assert code == 0
+    assert "Is the scalpel in the autoclave?" in out
 
 
 def test_asking_prints_answer_and_probability(tpvqa: Run, picture: Path) -> None:

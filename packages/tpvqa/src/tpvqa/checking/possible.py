@@ -20,11 +20,12 @@ def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Fin
 
     Args:
         task: The task.
-        undone: The predicates of facts that disturbances bring about: what needs them may come to
-            be possible.
+        undone: The predicates of facts that disturbances bring about: what needs them, and what
+            comes of that, may come to be possible.
     """
     if task.left_out:
         return  # what is left out may make them possible
+    undone = _following(task, undone)
     reached = {words[0] for words in task.reachable_actions}
     proved = h2_mutexes(task)
     by_name: dict[str, list[Action]] = {}
@@ -32,12 +33,12 @@ def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Fin
         by_name.setdefault(action.name, []).append(action)
     for schema in task.schemas:
         why = ""
-        if undone & set(_predicates(schema.precondition)) or _unplanned(task, schema):
+        if _unplanned(task, schema):
             continue
         if schema.name not in reached or schema.name not in by_name:
-            why = _never(task, schema)
-        elif all(_excluded(action, proved) for action in by_name[schema.name]):
-            why = _excluded(by_name[schema.name][0], proved)
+            why = _never(task, schema, undone)
+        elif all(_excluded(action, proved, undone) for action in by_name[schema.name]):
+            why = _excluded(by_name[schema.name][0], proved, undone)
         if why:
             yield Finding(
                 "action-never-possible",
@@ -49,6 +50,20 @@ def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Fin
             )
 
 
+def _following(task: Task, undone: frozenset[str]) -> frozenset[str]:
+    """Those predicates, and all that actions may bring about which need one of them."""
+    while True:
+        more = {
+            effect.literal.predicate
+            for schema in task.schemas
+            if undone & set(_predicates(schema.precondition))
+            for effect in schema.effects
+        }
+        if more <= undone:
+            return undone
+        undone |= more
+
+
 def _unplanned(task: Task, schema: ActionSchema) -> bool:
     """Whether no plan of a planner has an action: a part of one that lasts which changes nothing,
     or takes it back."""
@@ -56,14 +71,14 @@ def _unplanned(task: Task, schema: ActionSchema) -> bool:
     return phase not in (None, Phase.START, Phase.END)
 
 
-def _never(task: Task, schema: ActionSchema) -> str:
-    """Why no ground action of a schema is reachable."""
+def _never(task: Task, schema: ActionSchema, undone: frozenset[str]) -> str:
+    """Why no ground action of a schema is reachable; empty where a disturbance may change that."""
     for parameter in schema.parameters:
         if not task.objects_by_type.get(parameter.type):
             return f"there is no object of the type {parameter.type} for {parameter.name}"
     possible = task.reachable_atoms | task.init
     for literal in _needed(schema.precondition):
-        if literal.predicate == "=" or not literal.positive:
+        if literal.predicate == "=" or not literal.positive or literal.predicate in undone:
             continue
         kinds = {p.name: p.type for p in schema.parameters}
         fitting = any(
@@ -77,6 +92,8 @@ def _never(task: Task, schema: ActionSchema) -> str:
         if not fitting:
             said = f"({' '.join((literal.predicate, *literal.arguments))})"
             return f"it needs {said}, which never holds, and nothing brings it about"
+    if undone & set(_predicates(schema.precondition)):
+        return ""
     return "no objects meet its whole precondition, even where nothing is ever undone"
 
 
@@ -99,9 +116,10 @@ def _needs(condition: Condition) -> Iterator[Literal]:
             yield from _needs(part)
 
 
-def _excluded(action: Action, proved: Mutexes) -> str:
+def _excluded(action: Action, proved: Mutexes, undone: frozenset[str]) -> str:
     """Why a ground action is never possible although each of its preconditions may hold."""
-    atoms = [literal.atom for literal in _needs(action.precondition) if literal.positive]
+    needed = (literal.atom for literal in _needs(action.precondition) if literal.positive)
+    atoms = [atom for atom in needed if atom.predicate not in undone]
     for atom in atoms:
         if atom in proved.never:
             return f"it needs {atom.pddl()}, which never holds"

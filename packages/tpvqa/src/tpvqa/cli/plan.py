@@ -41,6 +41,15 @@ Problem = Annotated[
 ]
 Domain = Annotated[Path | None, typer.Option(help="Your own domain.")]
 OwnProblem = Annotated[Path | None, typer.Option("--problem", help="Your own problem.")]
+PlannerName = Annotated[
+    str | None,
+    typer.Option(
+        "--planner",
+        help="fast-downward, fast-downward:optimal, :lama or :anytime, clingo, up:NAME (an "
+        "engine of unified-planning) or a plug-in; see docs/planners.md.",
+        show_default="fast-downward",
+    ),
+]
 
 
 def plan(
@@ -56,14 +65,7 @@ def plan(
             "or a JSON list of atoms. Facts that no action changes may be left out."
         ),
     ] = None,
-    planner: Annotated[
-        str | None,
-        typer.Option(
-            help="fast-downward, fast-downward:optimal, :lama or :anytime, clingo, up:NAME (an "
-            "engine of unified-planning) or a plug-in; see docs/planners.md.",
-            show_default="fast-downward",
-        ),
-    ] = None,
+    planner: PlannerName = None,
     optimal: Annotated[
         bool,
         typer.Option(

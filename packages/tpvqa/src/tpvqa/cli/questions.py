@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn
 import typer
 
 from tpvqa.cli.options import ANSWERING, task_config, trial_options
-from tpvqa.cli.plan import CRASHED, TIMED_OUT, UNSOLVABLE, Domain, OwnProblem, Problem, Task
+from tpvqa.cli.plan import (
+    CRASHED,
+    TIMED_OUT,
+    UNSOLVABLE,
+    Domain,
+    OwnProblem,
+    PlannerName,
+    Problem,
+    Task,
+)
 from tpvqa.cli.saying import cell, plain, tell
 from tpvqa.config.layers import Layer, settings
 
@@ -47,6 +56,7 @@ def questions(
             "one, else fallbacks.",
         ),
     ] = None,
+    planner: PlannerName = None,
     timeout: Annotated[
         float,
         typer.Option(
@@ -87,11 +97,11 @@ def questions(
     except GroundingTimedOut as error:
         _no_questions(str(error), TIMED_OUT)
     book = book.worded(wording)
-    planner = make_planner("fast-downward")
+    chosen = make_planner("fast-downward" if planner is None else planner)
     try:
-        result = planner.plan(loaded, timeout=timeout)
+        result = chosen.plan(loaded, timeout=timeout)
     finally:
-        planner.close()
+        chosen.close()
     match result:
         case Plan(actions):
             pass

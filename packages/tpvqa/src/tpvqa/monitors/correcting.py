@@ -63,6 +63,8 @@ class CorrectingMonitor:
         What the robot measures of numbers is believed, and what nobody sees of them is doubted
         where the action fails again and again.
         """
+        if _phase(step) is Phase.CANCEL and not step.reported:
+            return (yield from self._after_cancelling(step))
         verdict = measured(step, (yield from check_effects(self._asker, step)))
         if step.task.numeric is not None:
             verdict = doubted(step, verdict, self._remember(step))
@@ -78,6 +80,22 @@ class CorrectingMonitor:
             questions = self._about_the_goal(step)
             return (yield from self._check_goal(step, verdict, questions))
         return verdict
+
+    def _after_cancelling(self, step: Step) -> Check:
+        """What was cancelled does not run, whatever became of its effects: to cancel it once more
+        would change nothing. What is denied of them is looked for, and planned from there.
+        """
+        questions = step.book.effects(step.action, step.state)
+        denied, answers = yield from self._asker.ask(questions)
+        if denied is None:
+            return give_up(questions)
+        stopped = replace(step, state=step.task.apply(step.state, step.action))
+        self._remember(step).record(step.state, stopped.state)
+        if _denied(answers):
+            corrected = yield from self._correct(stopped, answers)
+            if corrected != stopped.state:
+                return self._replan(stopped, "effects", answers, corrected)
+        return Verdict(Decision.GO_ON, tally("effects", answers), stopped.state)
 
     def _about_the_goal(self, step: Step) -> tuple[FactQuestion, ...]:
         """What is asked in the end: numbers at least, as they change unseen."""
@@ -160,8 +178,12 @@ class CorrectingMonitor:
 
 def _looks_meanwhile(step: Step) -> bool:
     """Whether it is a look at what runs: each single fact is needed, and none outvotes another."""
+    return _phase(step) is Phase.WHILE
+
+
+def _phase(step: Step) -> Phase | None:
     lasting = step.task.lasting
-    return lasting is not None and lasting.phase_of(step.action.name) is Phase.WHILE
+    return None if lasting is None else lasting.phase_of(step.action.name)
 
 
 def _denied(answers: Sequence[Answer]) -> list[Literal]:
