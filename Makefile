@@ -91,7 +91,7 @@ $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/py
 	@$(PYTHON) -m venv $(ROBOT_VENV)
 	@echo "installing tpvqa and its robots into $(ROBOT_VENV) …"
 	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) \
-	  -e packages/tpvqa -e 'packages/tpvqa-robots[gym,ros2,trees]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
+	  -e packages/tpvqa -e 'packages/tpvqa-robots[grasps,gym,ros2,trees]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
 	  'pytest>=8.2' 'pytest-xdist>=3.6' 'pytest-rerunfailures>=15' 'hypothesis>=6.100'
 	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) --no-deps robosuite==1.5.2
 	@touch $@

@@ -15,6 +15,8 @@ from tpvqa.plugins import PlainArguments
 from tpvqa.worlds.capabilities import Noiseless
 from tpvqa.worlds.outcome import Failure, Outcome
 from tpvqa.worlds.protocol import Execution, Report
+from tpvqa_robots.grasps.antipodal import antipodal
+from tpvqa_robots.grasps.methods import Method
 from tpvqa_robots.mishaps import Drawn, Mishaps
 from tpvqa_robots.skills.simulated import SimulatedRobot
 from tpvqa_robots.toys.cameras import CAMERAS, OVERHEAD, Cameras, Errors
@@ -35,6 +37,7 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         task: What the trial is about.
         atoms: The facts of which is told whether they hold.
         mishaps: What is made to go wrong.
+        grasps: How the robot finds grasps.
         seed: With `episode`, see `tpvqa.chance`.
         episode: The same.
         on_tick: Told after every 20 ms of simulated time: for a film.
@@ -52,11 +55,13 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         atoms: frozenset[Atom],
         *,
         mishaps: Mishaps,
+        grasps: Method = antipodal,
         seed: int = 0,
         episode: int = 0,
         on_tick: Callable[[], None] | None = None,
     ):
         self._task, self._atoms, self._mishaps = task, atoms, mishaps
+        self.grasps = grasps
         self.drawn = Drawn(self._mishaps, seed, episode)
         self._seed, self._episode, self._on_tick = seed, episode, on_tick
         self._before: State | None = None

@@ -5,6 +5,8 @@ from typing import Any, Self
 
 from tpvqa.chance import chance
 from tpvqa.pddl import Action, State, Task
+from tpvqa_robots.grasps.antipodal import antipodal
+from tpvqa_robots.grasps.methods import Method, said
 from tpvqa_robots.mishaps import Mishaps
 from tpvqa_robots.physical import PhysicalWorld
 from tpvqa_robots.skills.simulated import SimulatedRobot
@@ -27,6 +29,7 @@ class ToysWorld(PhysicalWorld):
     Args:
         task: One with the predicates of `collect_toys`.
         mishaps: What is made to go wrong.
+        grasps: How the robot finds grasps.
         seed: With `episode`, see `tpvqa.chance`.
         episode: The same.
         on_tick: Told after every 20 ms of simulated time: for a film.
@@ -43,6 +46,7 @@ class ToysWorld(PhysicalWorld):
         task: Task,
         *,
         mishaps: Mishaps | None = None,
+        grasps: Method = antipodal,
         seed: int = 0,
         episode: int = 0,
         on_tick: Callable[[Self], None] | None = None,
@@ -53,6 +57,7 @@ class ToysWorld(PhysicalWorld):
             task,
             atoms_of(task, KNOWN),
             mishaps=wrong,
+            grasps=grasps,
             seed=seed,
             episode=episode,
             on_tick=None if on_tick is None else lambda: on_tick(self),
@@ -60,12 +65,14 @@ class ToysWorld(PhysicalWorld):
 
     @classmethod
     def from_spec(cls, arguments: str, *, task: Task, seed: int, episode: int) -> "ToysWorld":
-        """The world of `toys`, `toys:appendix` or `toys:slip=0.2:bad=0.1:noise=1`.
+        """The world of `toys`, `toys:appendix` or `toys:slip=0.2:bad=0.1:noise=1:grasps=ggcnn`.
 
         Raises:
             PluginError: The words are not understood.
         """
-        return cls(task, mishaps=Mishaps.read(arguments), seed=seed, episode=episode)
+        grasps, words = said(arguments, cls.name)
+        mishaps = Mishaps.read(words)
+        return cls(task, mishaps=mishaps, grasps=grasps, seed=seed, episode=episode)
 
     def room(self, seed: int, episode: int) -> Any:
         """The table, with things near where they usually stand."""
@@ -73,7 +80,7 @@ class ToysWorld(PhysicalWorld):
 
     def robot_of(self, machine: Machine, cameras: Cameras) -> SimulatedRobot:
         """The robot, which knows the things' colours."""
-        return SimulatedRobot(machine, cameras, bad_grasp=self.drawn.is_bad)
+        return SimulatedRobot(machine, cameras, bad_grasp=self.drawn.is_bad, grasps=self.grasps)
 
     def true(self, machine: Machine, pixels: Mapping[str, int]) -> State:
         """See `toys.truth`."""

@@ -11,6 +11,8 @@ from tpvqa.pddl import Action, State, Task
 from tpvqa_robots.bins.robot import BinsRobot
 from tpvqa_robots.bins.scene import AT, HALF, SOURCE, THINGS, build
 from tpvqa_robots.bins.truth import KNOWN, true_state
+from tpvqa_robots.grasps.antipodal import antipodal
+from tpvqa_robots.grasps.methods import Method, said
 from tpvqa_robots.mishaps import Mishaps
 from tpvqa_robots.physical import PhysicalWorld
 from tpvqa_robots.toys.cameras import Cameras
@@ -30,6 +32,7 @@ class BinsWorld(PhysicalWorld):
     Args:
         task: One with the predicates of `sort_groceries`.
         mishaps: What is made to go wrong.
+        grasps: How the robot finds grasps.
         seed: With `episode`, see `tpvqa.chance`.
         episode: The same.
 
@@ -41,22 +44,34 @@ class BinsWorld(PhysicalWorld):
     name = "bins"
 
     def __init__(
-        self, task: Task, *, mishaps: Mishaps | None = None, seed: int = 0, episode: int = 0
+        self,
+        task: Task,
+        *,
+        mishaps: Mishaps | None = None,
+        grasps: Method = antipodal,
+        seed: int = 0,
+        episode: int = 0,
     ):
         see_known(task, KNOWN, world=self.name, example="sort_groceries")
         super().__init__(
-            task, atoms_of(task, KNOWN), mishaps=mishaps or Mishaps(), seed=seed, episode=episode
+            task,
+            atoms_of(task, KNOWN),
+            mishaps=mishaps or Mishaps(),
+            grasps=grasps,
+            seed=seed,
+            episode=episode,
         )
 
     @classmethod
     def from_spec(cls, arguments: str, *, task: Task, seed: int, episode: int) -> "BinsWorld":
-        """The world of `bins` or `bins:slip=0.2:bad=0.1:noise=1`.
+        """The world of `bins` or `bins:slip=0.2:bad=0.1:noise=1:grasps=ggcnn`.
 
         Raises:
             PluginError: The words are not understood.
         """
-        mishaps = Mishaps.read(arguments, cls.name) if arguments else None
-        return cls(task, mishaps=mishaps, seed=seed, episode=episode)
+        grasps, words = said(arguments, cls.name)
+        mishaps = Mishaps.read(words, cls.name) if words else None
+        return cls(task, mishaps=mishaps, grasps=grasps, seed=seed, episode=episode)
 
     def room(self, seed: int, episode: int) -> Any:
         """The bins, with things anywhere in the big one."""
@@ -64,7 +79,7 @@ class BinsWorld(PhysicalWorld):
 
     def robot_of(self, machine: Machine, cameras: Cameras) -> BinsRobot:
         """The robot, which knows where the bins are."""
-        return BinsRobot(machine, cameras, bad_grasp=self.drawn.is_bad)
+        return BinsRobot(machine, cameras, bad_grasp=self.drawn.is_bad, grasps=self.grasps)
 
     def true(self, machine: Machine, pixels: Mapping[str, int]) -> State:
         """See `bins.truth`."""

@@ -5,10 +5,10 @@ Grasps: the edges that the pads meet have to face each other within a cone of fr
 camera did not see is taken to be free.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+
+from tpvqa_robots.grasps.grasp import DEEP, LOWEST, Grasp
 
 CELL = 0.003
 """Side of a cell of the map, metres."""
@@ -20,33 +20,10 @@ SPARE = 0.004
 """Left between an open finger and the thing, metres."""
 PAD = (-0.010, -0.005, 0.0, 0.005, 0.010)
 """Where along a pad its edge is looked at, metres."""
-DEEP, LOWEST = 0.024, 0.022
-"""How far below the top the fingers close, and the least height above the table, metres."""
 CONE = 0.45
 """The greatest slope of an edge against the pad: what friction holds."""
 ANGLES = 18
 STARTS = 350
-
-
-@dataclass(frozen=True, slots=True)
-class Grasp:
-    """Where the fingers close.
-
-    Attributes:
-        x: Metres ahead of the arm's foot.
-        y: Metres to its left.
-        z: Metres above the floor.
-        angle: Of the direction in which they close, radians from x.
-        width: Of what is between them, metres.
-        quality: From 0 to 1; the best is tried first.
-    """
-
-    x: float
-    y: float
-    z: float
-    angle: float
-    width: float
-    quality: float
 
 
 def heights(

@@ -13,7 +13,9 @@ from tpvqa.errors import UnknownNameError
 from tpvqa.observation import Depth, Frame, Observation, SensedFact
 from tpvqa.pddl import Action, Atom
 from tpvqa.worlds import Execution, Report
-from tpvqa_robots.grasps.antipodal import Grasp, antipodal
+from tpvqa_robots.grasps.antipodal import antipodal
+from tpvqa_robots.grasps.grasp import Grasp
+from tpvqa_robots.grasps.methods import Method
 from tpvqa_robots.skills.kinematics import Grip, Kinematics, OutOfReachError
 from tpvqa_robots.skills.motions import Guard, Motions, Stopped, Told
 from tpvqa_robots.skills.seeing import HUES, Seen, see
@@ -78,6 +80,7 @@ class SimulatedRobot:
         machine: Its drives.
         cameras: Its eyes.
         bad_grasp: Tells whether a grasp of a thing is to go wrong: it is then made 8 cm beside.
+        grasps: How grasps are found.
     """
 
     def __init__(
@@ -86,9 +89,10 @@ class SimulatedRobot:
         cameras: Cameras,
         *,
         bad_grasp: Callable[[str], bool] = lambda thing: False,
+        grasps: Method = antipodal,
     ):
         self.machine, self.cameras = machine, cameras
-        self._bad_grasp = bad_grasp
+        self._bad_grasp, self._grasps = bad_grasp, grasps
         self._kinematics = Kinematics(
             machine.model, machine.qpos, machine.dofs, yaw=lambda: machine.yaw
         )
@@ -291,7 +295,7 @@ class SimulatedRobot:
 
     def _reachable(self, shot: Shot, seen: Seen, guard: Guard) -> Grasp:
         valid = np.isfinite(shot.points[..., 2])
-        grasps = antipodal(
+        grasps = self._grasps(
             shot.points[valid], seen.mask[valid], centre=(seen.x, seen.y), table=TABLE
         )
         if not grasps:

@@ -76,7 +76,7 @@ class Cameras:
 
     def __init__(self, model: Any, errors: Errors, *, seed: int, episode: int = 0):
         self._mj = mj = load_mujoco()
-        self._model, self._errors, self._seed = model, errors, (seed, episode)
+        self._model, self._errors = model, errors
         self._lock = threading.Lock()
         try:
             self._canvas = mj.Renderer(model, HEIGHT, WIDTH)
@@ -88,9 +88,14 @@ class Cameras:
         self._option = mj.MjvOption()
         self._option.geomgroup[:] = [0, 1, 0, 0, 0, 0]
         self._option.sitegroup[:] = 0
+        self.draw(seed, episode)
+
+    def draw(self, seed: int, episode: int) -> None:
+        """Draw where the cameras are taken to be: the errors of another trial."""
+        self._seed = seed, episode
         drawn = chance_array(seed, episode, "camera")
-        self._shift = drawn.normal(0, errors.shift, 3)
-        self._turn = drawn.normal(0, errors.turn, 3)
+        self._shift = drawn.normal(0, self._errors.shift, 3)
+        self._turn = drawn.normal(0, self._errors.turn, 3)
 
     def close(self) -> None:
         """Free the canvas. Can be called twice."""

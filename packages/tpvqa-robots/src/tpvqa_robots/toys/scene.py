@@ -156,6 +156,15 @@ def _linked(hand: Any) -> Any:
     return hand
 
 
+def gripper() -> Any:
+    """The Robotiq 85 as a spec, its fingers' linkages closed.
+
+    Raises:
+        MissingExtraError: MuJoCo or robosuite is not installed.
+    """
+    return _linked(part_of_robosuite(robosuite_models() / "grippers" / "robotiq_gripper_85.xml"))
+
+
 def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
     """The compiled model of the toys' table with the robot before it.
 
@@ -188,7 +197,7 @@ def with_robot(room: Any) -> Any:
     mast = mj.MjSpec.from_string(_MAST)
     base.body("base").add_frame().attach_body(mast.body("mast"), "", "")
     arm = part_of_robosuite(assets / "robots" / "ur5e" / "robot.xml")
-    hand = _linked(part_of_robosuite(assets / "grippers" / "robotiq_gripper_85.xml"))
+    hand = gripper()
     arm.body("right_hand").add_frame().attach_body(
         hand.body("robotiq_85_adapter_link"), "hand_", ""
     )
