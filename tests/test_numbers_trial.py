@@ -84,7 +84,7 @@ def test_comparisons_are_asked_before_and_after(planner: Planner) -> None:
     assert comparisons >= {("precondition", ">="), ("effect", "<="), ("effect", ">=")}
     for _, operator, text in said:
         if operator == ">=":
-            assert re.search(r"(display|basket) show at least [0-9.]+ (percent|kilograms)\?", text)
+            assert re.search(r"(display|basket) show at least [0-9.]+ (percent|kg)\?", text)
 
 
 def test_what_drained_is_found_out_and_charged(planner: Planner) -> None:

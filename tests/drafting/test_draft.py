@@ -135,6 +135,23 @@ def test_predicates_become_questions_that_people_ask(
     assert SAID[predicate] in said[predicate]
 
 
+def test_what_is_stored_is_in_a_box_and_on_a_shelf(tmp_path: Path) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    domain.write_text(
+        "(define (domain lab) (:requirements :typing) (:types vial shelf box - object)"
+        " (:predicates (stored ?v - vial ?s - shelf) (packed ?v - vial ?b - box))"
+        " (:action put :parameters (?v - vial ?s - shelf ?b - box)"
+        " :precondition (stored ?v ?s) :effect (and (packed ?v ?b) (not (stored ?v ?s)))))"
+    )
+    problem.write_text(
+        "(define (problem p) (:domain lab) (:objects sample - vial top_shelf - shelf"
+        " red_box - box) (:init (stored sample top_shelf)) (:goal (packed sample red_box)))"
+    )
+    written = draft(load_task(domain, problem))
+    assert "Is the {v} stored on the {s}?" in written
+    assert "Is the {v} packed in the {b}?" in written
+
+
 def test_verbs_agree_with_several_things(said: dict[str, set[str]]) -> None:
     assert "Are the beans clean?" in said["(clean ?p - plate)"]
 

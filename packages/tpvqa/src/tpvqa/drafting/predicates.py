@@ -69,9 +69,12 @@ def _done(
         joint: str | None = extra if extra in PREPOSITIONS else lexicon.TAKES.get(base)
         if extra and extra not in PREPOSITIONS:
             said = f"{said} {extra}"
+        place = joint in (None, "at", "on", "in") and things.are_places(rest[0].objects)
+        if place and extra not in PREPOSITIONS and all(map(things.holds_things, rest[0].objects)):
+            joint = None  # stored: in a box, but on a shelf
         where = (
             phrases.placed(rest[0], joint if joint in ("on", "in") else None)
-            if joint in (None, "at", "on", "in") and things.are_places(rest[0].objects)
+            if place
             else f"{'with' if joint is None else joint} {rest[0].said}"
         )
         tail = " ".join([where.strip(), *others(rest[1:])])
