@@ -90,6 +90,8 @@ def compare(
     from tpvqa.bench.checking import need_extras
     from tpvqa.bench.vlms.asking import ask_all
     from tpvqa.bench.vlms.comparing import compare as compared
+    from tpvqa.bench.vlms.looks import OF_PICTURES
+    from tpvqa.bench.vlms.recorded_looks import OF_EPISODES
     from tpvqa.cli.progress import CountBar
     from tpvqa.cli.vlm_tables import print_comparison
     from tpvqa.errors import TpvqaError
@@ -104,6 +106,7 @@ def compare(
         of, looks, task = _of_pictures(pictures, *own, hidden=hidden)
     else:
         of, looks, task = _of_episodes(episodes or [], *own, hidden=hidden)
+    cluster = OF_EPISODES if pictures is None else OF_PICTURES
     _check_out(out)
     with CountBar("looks") as bar:
         try:
@@ -113,7 +116,7 @@ def compare(
             said = "the same command goes on" if kept else "with --cache FILE it could go on"
             print(f"interrupted; {said}", file=sys.stderr)
             raise typer.Exit(130) from None
-    found = compared(rows, of, prices=prices, seed=config.seed)
+    found = compared(rows, of, cluster=cluster, prices=prices, seed=config.seed)
     _write(out, rows, found)
     if as_json:
         print(json.dumps(found.plain(), indent=1))
