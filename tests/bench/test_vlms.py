@@ -397,3 +397,14 @@ def test_what_cannot_be_compared_is_told(tpvqa: Run, words: tuple[str, ...], why
     code, _, err = tpvqa("vlm", "compare", "embedded", *words)
     assert code == 2
     assert why in err
+
+
+def test_what_fails_leaves_no_folder(tpvqa: Run, lamps: tuple[object, ...]) -> None:  # noqa: F811
+    assert tpvqa("vlm", "compare", "bright", *lamps, "--replay", "none.db")[0] == 2
+    assert not Path("vlm-compare").exists()
+
+
+def test_a_vlm_that_is_named_twice_is_told(tpvqa: Run, lamps: tuple[object, ...]) -> None:  # noqa: F811
+    code, _, err = tpvqa("vlm", "compare", "oracle:0.8", "oracle:0.8", *lamps)
+    assert code == 0
+    assert "is named 2 times, and asked once" in err

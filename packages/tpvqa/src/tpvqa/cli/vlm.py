@@ -107,10 +107,15 @@ def compare(
     else:
         of, looks, task = _of_episodes(episodes or [], *own, hidden=hidden)
     cluster = OF_EPISODES if pictures is None else OF_PICTURES
-    _check_out(out)
+    _tell_doubled(vlms)
+    made = _check_out(out)
     with CountBar("looks") as bar:
         try:
             rows = ask_all(vlms, looks, config=config, task=task, repeats=repeats, progress=bar)
+        except TpvqaError:
+            if made:
+                out.rmdir()
+            raise
         except KeyboardInterrupt:
             kept = config.vlm.cache is not None
             said = "the same command goes on" if kept else "with --cache FILE it could go on"
@@ -220,14 +225,24 @@ def _wordings(files: Sequence[Path]) -> dict[str, Path]:
     return found
 
 
-def _check_out(out: Path) -> None:
-    """What would end the work at its end is told before it."""
+def _tell_doubled(vlms: Sequence[str]) -> None:
+    from tpvqa.vlm.making import in_full
+
+    specs = [in_full(vlm) for vlm in vlms]
+    for spec in dict.fromkeys(spec for spec in specs if specs.count(spec) > 1):
+        tell(f"note: {spec} is named {specs.count(spec)} times, and asked once", error=True)
+
+
+def _check_out(out: Path) -> bool:
+    """What would end the work at its end is told before it; gives whether the folder is new."""
     from tpvqa.errors import WriteError
 
+    there = out.exists()
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise WriteError.of(out, error, "Name another folder with --out") from error
+    return not there
 
 
 def _write(out: Path, rows: "Sequence[Row]", found: "Comparison") -> None:
