@@ -133,5 +133,5 @@ def test_a_description_that_is_no_json_is_told_in_words(taught: Path, tmp_path: 
     folder = shutil.copytree(taught, tmp_path / "torn")
     (folder / "taught.json").write_text('{\n "schema": ')
     with pytest.raises(AnswerError, match="is no JSON: line 2, expecting value") as told:
-        TaughtVLM(folder)
+        TaughtVLM(folder).check()
     assert "JSONDecodeError" not in str(told.value)
