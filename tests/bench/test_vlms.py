@@ -15,8 +15,9 @@ from sklearn import metrics as sklearn_metrics
 
 from tests.cli.conftest import Run, tpvqa  # noqa: F401
 from tests.conftest import Install
-from tests.lamps import DOMAIN, PROBLEM, QUESTIONS, make_set
+from tests.lamps import DOMAIN, PROBLEM, QUESTIONS, edit, make_set, without
 from tpvqa.bench.vlms.asking import Row
+from tpvqa.bench.vlms.comparing import compare
 from tpvqa.bench.vlms.lasting import lasting_errors
 from tpvqa.bench.vlms.scoring import difference, score
 from tpvqa.questions import Way
@@ -264,7 +265,87 @@ def test_wordings_are_compared_in_pairs(
     lines = {(each["predicate"], each["wording"]): each for each in json.loads(out)["wordings"]}
     assert lines["lit", "shining"]["difference"]["accuracy"]["value"] == -1
     assert lines["lit", "questions"]["score"]["accuracy"]["value"] == 1
-    assert lines["lit", "questions"]["verdict"]
+    assert {lines["lit", name]["verdict"] for name in ("questions", "shining")} == {"not known"}
+
+
+def test_of_few_groups_no_wording_is_said_to_be_among_the_best(
+    tpvqa: Run,  # noqa: F811
+    lamps: tuple[object, ...],
+    tmp_path: Path,
+) -> None:
+    other = tmp_path / "shining.yaml"
+    other.write_text(
+        QUESTIONS.read_text().replace("lit", "shining").replace("  shining:", "  lit:")
+    )
+    words = ("vlm", "compare", "bright", *lamps, "--questions", QUESTIONS, "--questions", other)
+    said = " ".join(tpvqa(*words)[1].split())
+    assert "among the best" not in said
+    assert "groups of looks that hang together (pictures that show the same facts" in said
+    assert "which wording is best is not known where there are fewer than 6 groups" in said
+    drawn = Path("vlm-compare/compare.svg").read_text()
+    assert "bright, questions" in drawn  # each wording by itself
+    assert "bright, shining" in drawn
+
+
+def worded(*, right: dict[str, float], clusters: int) -> list[Row]:
+    """Two questions about each scene in each wording, right so often."""
+    return [
+        row(
+            cluster=str(k),
+            scene=str(k),
+            look=str(k),
+            fact=f"(on a b{truth})",
+            wording=wording,
+            question=f"{wording} {truth}?",
+            truth=truth,
+            reply=Reply.YES if truth is (k < rate * clusters) else Reply.NO,
+        )
+        for wording, rate in right.items()
+        for k in range(clusters)
+        for truth in (True, False)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("clusters", "right", "verdicts"),
+    [
+        (40, {"one": 0.95, "two": 0.1}, ["best", ""]),
+        (40, {"one": 0.95, "two": 0.95}, ["among the best", "among the best"]),
+        (5, {"one": 1.0, "two": 0.0}, ["not known", "not known"]),
+    ],
+)
+def test_the_verdict_on_a_wording_needs_an_interval(
+    clusters: int, right: dict[str, float], verdicts: list[str]
+) -> None:
+    found = compare(worded(right=right, clusters=clusters), "scenes")
+    assert [each.verdict for each in found.wordings if each.predicate is None] == verdicts
+
+
+@pytest.mark.parametrize(
+    ("vlm", "why"),
+    [
+        ("oracle", "pairs of answers about other pictures of one scene there is no error"),
+        ("oracle:0", "a predicate's errors are all or none"),
+    ],
+)
+def test_why_nothing_is_known_of_errors_that_last_is_the_true_reason(
+    tpvqa: Run,  # noqa: F811
+    lamps: tuple[object, ...],
+    vlm: str,
+    why: str,
+) -> None:
+    code, out, err = tpvqa("vlm", "compare", vlm, *lamps)
+    assert code == 0, err
+    assert why in " ".join(out.split())
+
+
+def test_where_no_scene_was_answered_twice_that_is_said(
+    tpvqa: Run,  # noqa: F811
+    lamps: tuple[object, ...],
+) -> None:
+    edit(Path(str(lamps[1])), without("both2.jpg"))
+    _, out, err = tpvqa("vlm", "compare", "oracle", *lamps)
+    assert "no question was answered of two pictures of one scene" in " ".join(out.split()), err
 
 
 def test_wordings_of_one_file_are_compared_too(
@@ -316,3 +397,14 @@ def test_what_cannot_be_compared_is_told(tpvqa: Run, words: tuple[str, ...], why
     code, _, err = tpvqa("vlm", "compare", "embedded", *words)
     assert code == 2
     assert why in err
+
+
+def test_what_fails_leaves_no_folder(tpvqa: Run, lamps: tuple[object, ...]) -> None:  # noqa: F811
+    assert tpvqa("vlm", "compare", "bright", *lamps, "--replay", "none.db")[0] == 2
+    assert not Path("vlm-compare").exists()
+
+
+def test_a_vlm_that_is_named_twice_is_told(tpvqa: Run, lamps: tuple[object, ...]) -> None:  # noqa: F811
+    code, _, err = tpvqa("vlm", "compare", "oracle:0.8", "oracle:0.8", *lamps)
+    assert code == 0
+    assert "is named 2 times, and asked once" in err

@@ -80,3 +80,41 @@ def test_a_single_question_is_asked_in_the_same_ways(tpvqa: Run) -> None:
         code, out, err = tpvqa("ask", picture, *texts, *vlm, "--max-requests", "1")
     assert code == 2
     assert "--max-requests" in " ".join(err.split())
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("--together",), "--together is for --vlm openai:MODEL, and this VLM is 'embedded'"),
+        (("--max-requests", "3"), "--max-requests is for --vlm openai:MODEL"),
+        (("--batch", "3"), "--batch is for --vlm hf:MODEL"),
+        (("--device", "banana"), "write auto, cpu, cuda, cuda:N or mps, not 'banana'"),
+        (("--picture-quality", "101"), "a quality of JPEG from 1 to 100, or png, not '101'"),
+    ],
+)
+def test_an_option_that_does_not_fit_is_told_with_what_would(
+    tpvqa: Run, words: tuple[str, ...], why: str
+) -> None:
+    code, _, err = tpvqa("run", "eat_apple", "--vlm", "embedded", *words)
+    assert code == 2
+    assert why in " ".join(err.split())
+
+
+def test_ask_speaks_of_the_vlm_alone(tpvqa: Run) -> None:
+    a_file = Path("picture.jpg")
+    a_file.write_bytes(a_picture())
+    code, _, err = tpvqa("ask", a_file, "Is it late?", "--option", "foo=1")
+    assert code == 2
+    assert "There is no option for this VLM 'foo'" in err
+    code, _, err = tpvqa("ask", a_file, " ")
+    assert code == 2
+    assert "A question is empty" in err
+
+
+def test_one_price_alone_is_told(tpvqa: Run) -> None:
+    with ChatServer(lambda *_: 0.9) as server:
+        vlm = ("--vlm", "openai:m", "--base-url", server.url, "--max-actions", "1")
+        _, _, err = tpvqa("run", "eat_apple", *vlm, "--price-prompt", "1")
+        assert "note: --price-completion is not given" in err
+        prices = ("--price-prompt", "1", "--price-completion", "0")
+        assert "is not given" not in tpvqa("run", "eat_apple", *vlm, *prices)[2]

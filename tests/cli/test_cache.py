@@ -134,7 +134,8 @@ def test_it_is_pruned(tpvqa: Run, asked: Path) -> None:
     for option, left in (
         (("--older-than", "1h"), 3),
         (("--model", "embedded", "--dry-run"), 0),
-        (("--max-size", "1k"), 0),
+        (("--max-size", "1M"), 3),
+        (("--model", "embedded"), 0),
     ):
         code, out, _ = tpvqa("cache", "prune", asked, *option)
         assert code == 0
@@ -149,6 +150,37 @@ def test_it_is_pruned(tpvqa: Run, asked: Path) -> None:
         code, _, err = tpvqa("cache", "prune", asked, *words)
         assert code == 2
         assert why in err
+
+
+def test_a_size_below_that_of_an_empty_file_takes_nothing(tpvqa: Run, asked: Path) -> None:
+    code, _, err = tpvqa("cache", "prune", asked, "--max-size", "8K")
+    assert code == 2
+    said = " ".join(err.split())
+    assert "and 8,000 are allowed" in said
+    assert stats(asked).answers == 3
+    tpvqa("cache", "prune", asked, "--model", "embedded")
+    assert f"a file without any answer has {stats(asked).bytes:,} bytes" in said
+
+
+def test_an_export_writes_over_nothing_and_knows_its_endings(tpvqa: Run, asked: Path) -> None:
+    Path("a.csv").write_text("mine")
+    code, _, err = tpvqa("cache", "export", asked, "--out", "a.csv")
+    assert (code, "--force" in err, Path("a.csv").read_text()) == (2, True, "mine")
+    assert tpvqa("cache", "export", asked, "--out", "a.csv", "--force")[0] == 0
+    assert Path("a.csv").read_text() != "mine"
+    code, _, err = tpvqa("cache", "export", asked, "--out", "a.xls")
+    assert code == 2
+    assert "Write .csv or .jsonl" in err
+    assert not Path("a.xls").exists()
+    assert tpvqa("cache", "export", asked, "--out", "a.xls", "--format", "csv")[0] == 0
+
+
+def test_a_folder_is_called_a_folder(tpvqa: Run, shipped_picture: Path) -> None:
+    Path("answers").mkdir()
+    for use in ("--cache", "--replay"):
+        code, _, err = tpvqa("ask", shipped_picture, "Is it late?", use, "answers")
+        assert code == 2
+        assert "it is a folder" in err
 
 
 def test_there_is_nothing_in_no_file(tpvqa: Run) -> None:

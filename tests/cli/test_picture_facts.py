@@ -26,6 +26,7 @@ def spoilt(folder: Path, old: str, new: str) -> Path:
     ("fact", "said"),
     [
         ("(litt left)", "there is no predicate 'litt'. Did you mean 'lit'?"),
+        ("(shining left)", "there is no predicate 'shining'. Known:"),
         ("(lit left right)", "lit takes 1 arguments (lamp), got 2"),
     ],
 )
@@ -37,6 +38,8 @@ def test_a_fact_that_the_domain_does_not_have_is_an_error_with_its_place(
     told = " ".join(error.split())
     assert code == 2
     assert f"{MANIFEST}: 0.png: {fact}: {said}" in told
+    assert ".. " not in told
+    assert "?. " not in told
     assert not (tmp_path / "taught").exists()
 
 
@@ -50,3 +53,24 @@ def test_an_object_that_the_problem_does_not_have_is_told(
     assert (
         "note: lefft is no object of the problem. Did you mean 'left'? Facts about it, in 1" in told
     )
+
+
+@pytest.mark.parametrize("command", [TRAIN, CALIBRATE, COMPARE])
+def test_another_picture_than_the_manifests_is_refused(
+    command: tuple[object, ...], tpvqa: Run, tmp_path: Path
+) -> None:
+    lamps = make_lamp_set(tmp_path / "lamps", 6)
+    (lamps / "0.png").write_bytes((lamps / "1.png").read_bytes())
+    code, _, error = tpvqa(*command, "--pictures", lamps)
+    assert code == 2
+    assert "0.png: its SHA-256 is not the manifest's" in " ".join(error.split())
+
+
+@pytest.mark.parametrize("command", [TRAIN, CALIBRATE, COMPARE])
+def test_a_set_of_another_domain_is_refused(
+    command: tuple[object, ...], tpvqa: Run, tmp_path: Path
+) -> None:
+    lamps = spoilt(tmp_path / "lamps", '"lamps"', '"lanterns"')
+    code, _, error = tpvqa(*command, "--pictures", lamps)
+    assert code == 2
+    assert "of the domain 'lanterns', and the task is of 'lamps'" in " ".join(error.split())

@@ -369,6 +369,7 @@ def test_a_filtered_picture_is_unknown() -> None:
     [
         (Act(401, {"error": {"message": "Incorrect API key sk-12345"}}), "OPENAI_API_KEY"),
         (Act(404, {"error": {"message": "The model `test` does not exist"}}), "does not exist"),
+        (refusal(404, "It has 'a'.", param="model", code="gone"), "has 'a', model, gone, invalid"),
         (Act(400, {"error": {"message": "image input is not supported"}}), "take pictures"),
         (Act(500, {"error": {"message": "image input is not supported"}}), "take pictures"),
         (
@@ -377,7 +378,15 @@ def test_a_filtered_picture_is_unknown() -> None:
         ),
         (Act(200, "<!doctype html>", {"Content-Type": "text/html"}), "web page"),
     ],
-    ids=["key", "model", "blind", "blind, as llama.cpp says it", "quota", "web page"],
+    ids=[
+        "key",
+        "model",
+        "model, with its code",
+        "blind",
+        "blind, as llama.cpp says it",
+        "quota",
+        "web page",
+    ],
 )
 def test_what_no_retry_mends_is_an_error_with_its_remedy(act: Act, remedy: str) -> None:
     with ChatServer(scripted, script=always(act)) as server:

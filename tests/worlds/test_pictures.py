@@ -139,7 +139,7 @@ def first(**changes: object) -> Change:
     [
         (lambda manifest: manifest.update(domain="toys"), "of the domain 'toys', and the task"),
         (lambda manifest: manifest.update(version=2), "version: Input should be 1"),
-        (lambda manifest: manifest.update(pictures=[]), "pictures: Tuple should have at least 1"),
+        (lambda manifest: manifest.update(pictures=[]), "the set has no pictures"),
         (first(seen=["(litt left)"]), r"dark\.png: \(litt left\) .* Did you mean 'lit'"),
         (first(state=["()"]), r"pictures\.0\.state\.0: .*is not an atom"),
         (first(sha256="0"), r"dark\.png: its SHA-256 is not the manifest's"),

@@ -82,6 +82,12 @@ def test_what_is_no_regular_file_or_no_picture_is_told(lamps: Path) -> None:
         load_set(lamps)
 
 
+def test_a_set_without_pictures_is_told(lamps: Path) -> None:
+    edit(lamps, lambda manifest: manifest.update(pictures=[]))
+    with pytest.raises(PictureSetError, match=r"manifest\.json: the set has no pictures\. Mend it"):
+        load_set(lamps)
+
+
 JUNK: list[Any] = [
     None, 0, -1, 1e300, True, "", "x", "(", ")", "()", "(lit)", "(lit left left)", "(lit nowhere)",
     "((lit left)", "\x1b[2J", [], ["(lit left)"], {}, {"a": 1}, [[]], "../x.png", "A" * 5000,

@@ -127,3 +127,11 @@ def test_whatever_bytes_are_changed_nothing_else_is_raised(data: st.DataObject) 
     except ValueError:
         return
     assert all(np.isfinite(each).all() for each in found.values())
+
+
+def test_a_description_that_is_no_json_is_told_in_words(taught: Path, tmp_path: Path) -> None:
+    folder = shutil.copytree(taught, tmp_path / "torn")
+    (folder / "taught.json").write_text('{\n "schema": ')
+    with pytest.raises(AnswerError, match="is no JSON: line 2, expecting value") as told:
+        TaughtVLM(folder).check()
+    assert "JSONDecodeError" not in str(told.value)

@@ -84,8 +84,11 @@ def test_the_hub_cannot_be_reached(asked: Any, monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(constants, "ENDPOINT", "http://127.0.0.1:1")
     monkeypatch.setattr(constants, "HF_HUB_OFFLINE", False)
-    monkeypatch.setattr(time, "sleep", lambda seconds: None)  # between tries
+    slept: list[float] = []
+    monkeypatch.setattr(time, "sleep", slept.append)  # between tries
     said = asked("nobody/no-such-model")
+    assert not slept
+    assert "Retrying" not in said
     assert "Is there a network" in said
     assert "name a folder" in said
 
@@ -171,6 +174,16 @@ def test_the_processor_is_missing(asked: Any, tmp_path: Path, saved: Saved) -> N
         file.unlink()
     (folder / "processor_config.json").unlink()
     assert "cannot be loaded" in asked(folder) or "missing" in asked(folder)
+
+
+@pytest.mark.parametrize("family", ["vilt", "blip", "smolvlm"])
+def test_the_tokenizer_is_missing(asked: Any, family: str, tmp_path: Path, saved: Saved) -> None:
+    folder = shutil.copytree(saved(family), tmp_path / "dumb")
+    for file in (*folder.glob("tokenizer*"), *folder.glob("vocab*")):
+        file.unlink()
+    said = asked(folder)
+    assert "its tokenizer is missing" in said
+    assert "tokenizer.json" in said
 
 
 @pytest.mark.parametrize("device", ["cuda", "cuda:7", "mps"])

@@ -135,13 +135,14 @@ class BudgetError(AnswerError):
 
     Args:
         what: Requests, tokens or money.
-        spent: How much of how much is spent.
+        spent: How much of how much is spent, with what tested the server before the trial.
         option: What sets the limit.
     """
 
     def __init__(self, what: str, spent: str, option: str):
         super().__init__(
-            f"the budget of {what} does not allow another request: {spent} spent. Go on with "
+            f"the budget of {what} does not allow another request: {spent} spent, with the "
+            "question that tests the server before a trial. Go on with "
             f"`tpvqa resume` and a larger {option}"
         )
 

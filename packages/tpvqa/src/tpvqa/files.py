@@ -14,6 +14,7 @@ from pathlib import Path
 from tpvqa.errors import WriteError
 
 _PLAIN = "it is a link, a pipe or a device, where a plain file is expected"
+_FOLDER = "it is a folder, where a plain file is expected"
 
 
 def open_plain(path: Path | str, flags: int, *, follow: bool = False) -> int:
@@ -37,9 +38,10 @@ def open_plain(path: Path | str, flags: int, *, follow: bool = False) -> int:
         if error.errno in (errno.ELOOP, errno.ENXIO):
             raise OSError(error.errno, _PLAIN) from None
         raise
-    if not stat.S_ISREG(os.fstat(found).st_mode):
+    kind = os.fstat(found).st_mode
+    if not stat.S_ISREG(kind):
         os.close(found)
-        raise OSError(errno.EINVAL, _PLAIN)
+        raise OSError(errno.EINVAL, _FOLDER if stat.S_ISDIR(kind) else _PLAIN)
     return found
 
 

@@ -30,6 +30,7 @@ from collections.abc import Callable, Collection, Mapping
 from enum import StrEnum
 from functools import lru_cache
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, requires, version
+from types import MappingProxyType
 from typing import Any, Protocol, runtime_checkable
 
 from tpvqa.distributions import remedy
@@ -364,13 +365,30 @@ def see_free(options: Mapping[str, Any], context: Mapping[str, Any]) -> None:
             raise TpvqaError(f"--option {name}: plug-ins are given {name!r} already; leave it out")
 
 
-def see_taken(options: Mapping[str, Any], taken: Collection[str], context: Collection[str]) -> None:
+def see_taken(
+    options: Mapping[str, Any],
+    taken: Collection[str],
+    context: Collection[str],
+    *,
+    whose: str = "this VLM",
+    wanting: Mapping[str, str] = MappingProxyType({}),
+) -> None:
     """See that every option is one that a plug-in took.
 
+    Args:
+        options: Those of the user.
+        taken: The names of what plug-ins took.
+        context: All that they could have had.
+        whose: Of what the options are, for the message.
+        wanting: What is said instead of an option that is not taken, where that is known.
+
     Raises:
-        UnknownNameError: One is not.
+        PluginError: One of `wanting` is not taken.
+        UnknownNameError: Another is not.
     """
     for option in options:
         if option not in taken:
+            if option in wanting:
+                raise PluginError(wanting[option])
             known = set(taken) - (set(context) - set(options)) - {"arguments", "truth"}
-            raise UnknownNameError("option for this world, monitor and VLM", option, known)
+            raise UnknownNameError(f"option for {whose}", option, known)

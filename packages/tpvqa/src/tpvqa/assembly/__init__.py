@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from tpvqa import __version__
-from tpvqa.assembly.answering import answering
+from tpvqa.assembly.answering import OF_TRIALS, answering, wanting
 from tpvqa.assembly.lasting import see_lasting, watching
 from tpvqa.assembly.numbers import see_numbers
 from tpvqa.assembly.simulating import simulate
@@ -195,7 +195,8 @@ class Trial:
         made, by_vlm = answering(self, vlm, context)
         see_fitting(self, made, world, self._begun_as)
         if self._every_option:
-            see_taken(options, by_world | by_monitor | by_vlm, context)
+            taken = by_world | by_monitor | by_vlm
+            see_taken(options, taken, context, whose=OF_TRIALS, wanting=wanting(self.vlm_spec))
         if made is not vlm and isinstance(made, Closing):
             self._closing.append(made.close)
         self.parts = Parts(self.task, self.book, planner, world, made, person)

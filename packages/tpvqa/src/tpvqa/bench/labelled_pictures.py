@@ -72,9 +72,11 @@ def questions_about(
     books = shipped_books(domain) if books is None else books
     found = list(_questions(pictures, books, in_all_words=in_all_words))
     if not found:
-        names = ", ".join(book.task.name for book in books) or f"a shipped task of {domain!r}"
+        names = ", ".join(repr(book.task.name) for book in books)
+        asked = f"the problem {names}" if names else f"a shipped task of {domain!r}"
         raise CalibrationError(
-            f"{pictures.folder}: no fact of this set is asked about in {names}. Name a set of that "
+            f"{pictures.folder}: no fact of this set, of the domain {domain!r}, is asked about in "
+            f"{asked}. Name a set of that "
             "domain, your own --domain, --problem and --questions, or take episodes"
         )
     return found

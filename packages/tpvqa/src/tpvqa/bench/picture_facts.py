@@ -48,7 +48,8 @@ def _strange_objects(atom: Atom, task: Task, pictures: PictureSet[P], file: str)
         unknown = [name for name in atom.arguments if name not in task.objects]
         if unknown and wanted is not None and len(wanted) == len(atom.arguments):
             return {name: suggestion(name, task.objects) for name in unknown}
+        said = str(error) if str(error).endswith((".", "?")) else f"{error}."
         raise CalibrationError(
-            f"{pictures.folder / MANIFEST}: {file}: {error}. Write facts as the domain has them"
+            f"{pictures.folder / MANIFEST}: {file}: {said} Write facts as the domain has them"
         ) from None
     return {}

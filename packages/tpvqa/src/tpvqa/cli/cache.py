@@ -13,7 +13,7 @@ import typer
 from tpvqa.cli.saying import cell, plain, tell
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from tpvqa.vlm.kept.upkeep import Kept
 
@@ -21,6 +21,7 @@ _EXIT = "Exit codes: 0 done, 2 bad input, 6 could not be written, 130 interrupte
 _DAY = 86_400
 _SECONDS = {"h": 3600, "d": _DAY, "w": 7 * _DAY, "m": 30 * _DAY, "y": 365 * _DAY}
 _BYTES = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9}
+_FORMS: "Mapping[str, Literal['jsonl', 'csv']]" = {"": "jsonl", ".csv": "csv", ".jsonl": "jsonl"}
 File = Annotated[Path, typer.Argument(help="File of recorded answers.")]
 
 cache_app = typer.Typer(
@@ -148,14 +149,18 @@ def export(
         Literal["jsonl", "csv"] | None,
         typer.Option("--format", help="Default: by the ending of --out, else jsonl."),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over the file of --out.")] = False,
 ) -> None:
     """Write all answers as JSON lines or as CSV."""
     from io import StringIO
 
+    from tpvqa.errors import TpvqaError
     from tpvqa.files import write_whole
 
     if form is None:
-        form = "csv" if out is not None and out.suffix == ".csv" else "jsonl"
+        form = _FORMS["" if out is None else _ending(out)]
+    if out is not None and out.exists() and not force:
+        raise TpvqaError(f"{out} is there already. Name another file, or write over it: --force")
     if out is None:
         _write(file, form, sys.stdout)
         return
@@ -163,6 +168,18 @@ def export(
     count = _write(file, form, text)
     write_whole(out, text.getvalue().encode(), remedy="Name another file with --out")
     tell(f"wrote {count:,} answers to {out}")
+
+
+def _ending(out: Path) -> str:
+    from tpvqa.errors import TpvqaError, shown
+
+    ending = out.suffix.lower()
+    if ending not in filter(None, _FORMS):
+        raise TpvqaError(
+            f"{out}: the ending {shown(ending)} says no format. Write .csv or .jsonl, or name the "
+            "format by --format"
+        )
+    return ending
 
 
 def _write(file: Path, form: str, stream: TextIO) -> int:

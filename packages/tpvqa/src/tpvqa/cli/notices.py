@@ -1,5 +1,6 @@
 """What users are told before anything runs."""
 
+import shlex
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,6 +9,7 @@ if TYPE_CHECKING:
     from tpvqa.belief.calibration import Calibration
     from tpvqa.belief.priors import Priors
     from tpvqa.config import TrialConfig
+    from tpvqa.errors import AnswerError
     from tpvqa.pddl import Task
     from tpvqa.questions import QuestionBook
     from tpvqa.tasks import TaskFiles
@@ -108,3 +110,34 @@ def about_calibration(vlm: str, calibration: "Calibration | None") -> list[str]:
     if calibration is not None and calibration.vlm not in ("", vlm):
         notices.append(f"the calibration was learnt of {calibration.vlm}, and this VLM is {vlm}")
     return notices
+
+
+def about_prices(config: "TrialConfig") -> list[str]:
+    """What to know of a price where only one of the two is named."""
+    named = {
+        "--price-prompt": config.vlm.price_prompt,
+        "--price-completion": config.vlm.price_completion,
+    }
+    lacking = [option for option, price in named.items() if price is None]
+    if len(lacking) != 1:
+        return []
+    return [f"{lacking[0]} is not given: its tokens are counted as costing nothing"]
+
+
+def lost_midway(error: "AnswerError", folder: Path, config: "TrialConfig") -> "AnswerError":
+    """The error of a VLM that can be asked no more, with the command that goes on later.
+
+    Args:
+        error: Why it cannot be asked.
+        folder: The episode.
+        config: Of the trial.
+    """
+    from tpvqa.errors import AnswerError
+
+    words = ["tpvqa", "resume", str(folder)]
+    if config.vlm.base_url is not None:
+        words += ["--base-url", config.vlm.base_url]
+    return AnswerError(
+        f"{error}\nWhat was done until then is in {folder}. Once the VLM can be asked again, go on "
+        f"with:\n{shlex.join(words)}"
+    )

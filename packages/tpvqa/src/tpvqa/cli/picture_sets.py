@@ -22,7 +22,8 @@ def opened_set(where: str, books: "Sequence[QuestionBook] | None") -> "PictureSe
         books: The user's own questions, where they named some.
 
     Raises:
-        TpvqaError: There is no such set, or its facts are none of the questions' domain.
+        TpvqaError: There is no such set, it is of another domain than the questions, or a picture
+            is not the one that its manifest means.
     """
     from tpvqa.bench.picture_facts import see_facts
     from tpvqa.worlds.pictures import load_set
@@ -30,8 +31,11 @@ def opened_set(where: str, books: "Sequence[QuestionBook] | None") -> "PictureSe
     if where == SHIPPED:
         return load_set(shipped_set())
     opened = load_set(Path(where))
-    for notice in see_facts(opened, books[0].task) if books else ():
-        tell(f"note: {notice}", error=True)
+    if books:
+        opened.see_domain(books[0].task.domain_name)
+        for notice in see_facts(opened, books[0].task):
+            tell(f"note: {notice}", error=True)
+    opened.check()
     return opened
 
 

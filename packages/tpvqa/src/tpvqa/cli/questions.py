@@ -140,12 +140,15 @@ def ask(
     from tpvqa.assembly.answering import vlm_with_answers
     from tpvqa.config.layers import combined
     from tpvqa.defaults import default_vlm
+    from tpvqa.errors import TpvqaError
     from tpvqa.pddl import Atom
     from tpvqa.plugins import Closing
     from tpvqa.questions import FactQuestion, Way
     from tpvqa.vlm.pictures import observe_file
     from tpvqa.vlm.sight import ask_seeing
 
+    if not all(text.strip() for text in question):
+        raise TpvqaError('A question is empty. Write for example "Is the fridge open?"')
     observation = observe_file(image)
     model = vlm_with_answers(vlm or default_vlm(), combined(layers))
     # A VLM that looks at pictures goes by the words alone.

@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tpvqa.cli.no_effect import without_effect
-from tpvqa.cli.notices import about_answers, about_calibration, about_start, about_vlm, about_words
+from tpvqa.cli.notices import (
+    about_answers,
+    about_calibration,
+    about_prices,
+    about_start,
+    about_vlm,
+    about_words,
+    lost_midway,
+)
 from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_options
 from tpvqa.cli.plan import Problem, Task
 from tpvqa.cli.saying import tell
@@ -69,7 +77,7 @@ def run(
     from tpvqa.assembly.told import about_risk
     from tpvqa.drivers import Interrupted
     from tpvqa.episodes import EpisodeWriter
-    from tpvqa.errors import TpvqaError
+    from tpvqa.errors import AnswerError, TpvqaError
 
     layers = trial_layers([*layers, *_optimal(optimal)], task, problem_file)
     config = trial_config(layers)
@@ -85,6 +93,7 @@ def run(
             *about_files(layers),
             *about_words(trial.book),
             *about_vlm(trial.config, trial.vlm_spec),
+            *about_prices(config),
             *_about_calibration(trial),
             *about_risk(trial),
             *without_effect(trial, {key for layer in layers for key in layer.values}),
@@ -104,6 +113,8 @@ def run(
                 ended = trial.run(writer, folder=folder, listeners=[view])
         except Interrupted as stop:
             ended = stop.ended
+        except AnswerError as lost_vlm:
+            raise lost_midway(lost_vlm, folder, config) from lost_vlm
         finally:
             writer.close()
         lost = _keep_experience(trial, ended)

@@ -92,8 +92,10 @@ def serve_vlm(
         _try(model)
         serving.run(ready=lambda: _say_ready(serving, token=token, as_json=as_json))
         counts = serving.counts
+        questions = "1 question" if counts.answered == 1 else f"{counts.answered} questions"
+        calls = "1 call" if counts.calls == 1 else f"{counts.calls} calls"
         tell(
-            f"ended: {counts.answered} questions answered in {counts.calls} calls of the VLM, "
+            f"ended: {questions} answered in {calls} of the VLM, "
             f"{counts.refused} refused, {counts.failed} failed, {counts.given_up} given up",
             error=True,
         )

@@ -280,7 +280,7 @@ class EpisodeView:
         self._line(f"{headline} [dim]({counts})[/]")
         if event.usage is not None:
             cost = "" if event.cost is None else f", costs {event.cost:.4g}"
-            self._line(f"[dim]the VLM took {marked(event.usage.said)}{cost}[/]")
+            self._line(f"[dim]the trial's questions took {marked(event.usage.said)}{cost}[/]")
         if saves := self._worth.more_would_save():
             self._line(f"[dim]{marked(saves)}[/]")
 

@@ -91,7 +91,7 @@ def train(
     """Teach a VLM with labelled pictures or episodes, and show what it learnt.
 
     Part of the pictures is held back; the figures before and after are on those alone. The small
-    network, embedded, learns the questions of any domain in seconds, to be taken as --vlm
+    network, embedded, learns the questions of any domain in a minute or so, to be taken as --vlm
     embedded:FOLDER. For hf:MODEL an adapter is written (LoRA), to be taken as --vlm hf:FOLDER.
     """
     from tpvqa.cli.progress import CountBar

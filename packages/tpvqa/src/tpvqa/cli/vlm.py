@@ -90,6 +90,8 @@ def compare(
     from tpvqa.bench.checking import need_extras
     from tpvqa.bench.vlms.asking import ask_all
     from tpvqa.bench.vlms.comparing import compare as compared
+    from tpvqa.bench.vlms.looks import OF_PICTURES
+    from tpvqa.bench.vlms.recorded_looks import OF_EPISODES
     from tpvqa.cli.progress import CountBar
     from tpvqa.cli.vlm_tables import print_comparison
     from tpvqa.errors import TpvqaError
@@ -104,16 +106,22 @@ def compare(
         of, looks, task = _of_pictures(pictures, *own, hidden=hidden)
     else:
         of, looks, task = _of_episodes(episodes or [], *own, hidden=hidden)
-    _check_out(out)
+    cluster = OF_EPISODES if pictures is None else OF_PICTURES
+    _tell_doubled(vlms)
+    made = _check_out(out)
     with CountBar("looks") as bar:
         try:
             rows = ask_all(vlms, looks, config=config, task=task, repeats=repeats, progress=bar)
+        except TpvqaError:
+            if made:
+                out.rmdir()
+            raise
         except KeyboardInterrupt:
             kept = config.vlm.cache is not None
             said = "the same command goes on" if kept else "with --cache FILE it could go on"
             print(f"interrupted; {said}", file=sys.stderr)
             raise typer.Exit(130) from None
-    found = compared(rows, of, prices=prices, seed=config.seed)
+    found = compared(rows, of, cluster=cluster, prices=prices, seed=config.seed)
     _write(out, rows, found)
     if as_json:
         print(json.dumps(found.plain(), indent=1))
@@ -217,14 +225,24 @@ def _wordings(files: Sequence[Path]) -> dict[str, Path]:
     return found
 
 
-def _check_out(out: Path) -> None:
-    """What would end the work at its end is told before it."""
+def _tell_doubled(vlms: Sequence[str]) -> None:
+    from tpvqa.vlm.making import in_full
+
+    specs = [in_full(vlm) for vlm in vlms]
+    for spec in dict.fromkeys(spec for spec in specs if specs.count(spec) > 1):
+        tell(f"note: {spec} is named {specs.count(spec)} times, and asked once", error=True)
+
+
+def _check_out(out: Path) -> bool:
+    """What would end the work at its end is told before it; gives whether the folder is new."""
     from tpvqa.errors import WriteError
 
+    there = out.exists()
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise WriteError.of(out, error, "Name another folder with --out") from error
+    return not there
 
 
 def _write(out: Path, rows: "Sequence[Row]", found: "Comparison") -> None:

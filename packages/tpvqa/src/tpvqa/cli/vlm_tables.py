@@ -26,6 +26,7 @@ def print_comparison(found: "Comparison") -> None:
     """Print all VLMs, then their parts, differences and wordings."""
     from rich.console import Console
 
+    from tpvqa.bench.vlms.comparing import NOT_KNOWN
     from tpvqa.bench.vlms.lasting import LEAST
 
     console = Console()
@@ -33,7 +34,7 @@ def print_comparison(found: "Comparison") -> None:
     intervals = "95% intervals over" if found.clusters >= LEAST else "too few for intervals:"
     tell(
         f"{found.of}: {found.looks:,} looks; {intervals} {found.clusters} groups of looks that "
-        "hang together"
+        f"hang together ({found.cluster})"
     )
     console.print(_whole(found))
     for by in dict.fromkeys(part.by for vlm in found.vlms for part in vlm.parts):
@@ -45,6 +46,11 @@ def print_comparison(found: "Comparison") -> None:
         )
     if found.wordings:
         console.print(_wordings(found))
+        if any(each.verdict == NOT_KNOWN for each in found.wordings):
+            tell(
+                f"which wording is best is not known where there are fewer than {LEAST} groups of "
+                "looks: no interval can be given"
+            )
     for vlm in found.vlms:
         tell(_about_lasting(vlm))
 
@@ -80,7 +86,9 @@ def _of(vlm: "OfVLM", by: str) -> "Iterator[Any]":
 
 
 def _wordings(found: "Comparison") -> "Table":
-    table = _table("VLM", "about", "wording", "for example", "balanced", "less the first", "")
+    table = _table(
+        "VLM", "about", "wording", "for example", "balanced", "less the first", "verdict"
+    )
     for each in found.wordings:
         other = each.difference
         table.add_row(
@@ -109,7 +117,7 @@ def _table(first: str, *others: str) -> "Table":
 def _about_lasting(vlm: "OfVLM") -> str:
     found = vlm.lasting
     if found.share is None:
-        other = "whether errors last is not known: no two pictures of one scene were answered"
+        other = f"whether errors last is not known: {_why_not_known(vlm)}"
     else:
         other = (
             f"errors that last {_interval(found.share, found.low, found.high)}, by {found.pairs:,} "
@@ -121,6 +129,16 @@ def _about_lasting(vlm: "OfVLM") -> str:
         f"{vlm.vlm}: {other}; on one picture asked again {_plain(found.same_picture)} "
         f"({found.same_picture_pairs:,} pairs)"
     )
+
+
+def _why_not_known(vlm: "OfVLM") -> str:
+    pairs = vlm.lasting.pairs
+    if not pairs:
+        return "no question was answered of two pictures of one scene"
+    of = f"in {pairs:,} pairs of answers about other pictures of one scene"
+    if vlm.score.when_answered.value == 1:
+        return f"{of} there is no error"
+    return f"{of} a predicate's errors are all or none, and so tell scenes not apart"
 
 
 def figure_rows(found: "Comparison") -> list[dict[str, Any]]:

@@ -1,13 +1,17 @@
 """What a setting is; and the settings of who answers."""
 
+import re
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from tpvqa.addresses import checked_address
+from tpvqa.errors import shown
 
-DEVICE = r"^(auto|cpu|mps|cuda(:[0-9]{1,2})?)$"
+DEVICE = re.compile(r"auto|cpu|mps|cuda(:[0-9]{1,2})?")
 """What a device is called."""
+QUALITY = re.compile(r"png|100|[1-9][0-9]?")
+"""How pictures are sent."""
 
 
 def setting(
@@ -35,6 +39,18 @@ def setting(
 
 def _address(value: str | None) -> str | None:
     return None if value is None else checked_address(value)
+
+
+def _device(value: str | None) -> str | None:
+    if value is None or DEVICE.fullmatch(value):
+        return value
+    raise ValueError(f"write auto, cpu, cuda, cuda:N or mps, not {shown(value)}")
+
+
+def _quality(value: str | None) -> str | None:
+    if value is None or QUALITY.fullmatch(value):
+        return value
+    raise ValueError(f"write a quality of JPEG from 1 to 100, or png, not {shown(value)}")
 
 
 class Part(BaseModel):
@@ -73,7 +89,7 @@ class VLMConfig(Part):
         "--replay", "The same, but the VLM is not needed: what is not there is refused.", file=True
     )
 
-    device: Annotated[str | None, Field(pattern=DEVICE)] = setting(
+    device: Annotated[str | None, AfterValidator(_device)] = setting(
         "--device", "hf: auto (a GPU where there is one; the default), cpu, cuda, cuda:N or mps."
     )
     dtype: Literal["auto", "float32", "bfloat16", "float16"] | None = setting(
@@ -105,7 +121,7 @@ class VLMConfig(Part):
         ge=32,
         le=8192,
     )
-    picture_quality: Annotated[str, Field(pattern=r"^(png|100|[1-9][0-9]?)$")] | None = setting(
+    picture_quality: Annotated[str | None, AfterValidator(_quality)] = setting(
         "--picture-quality",
         "openai: send pictures as JPEG of this quality (1 to 100), or as png. Default: as they "
         "are, those made smaller as JPEG of 90.",

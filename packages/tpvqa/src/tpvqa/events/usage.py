@@ -32,4 +32,4 @@ class UsageRecord(Record):
         tokens = f"{self.prompt_tokens:,} + {self.completion_tokens:,} tokens"
         if self.untold:
             tokens += f", {self.untold} replies without a count"
-        return f"{self.requests} requests, {tokens}"
+        return f"{self.requests} request{'' if self.requests == 1 else 's'}, {tokens}"

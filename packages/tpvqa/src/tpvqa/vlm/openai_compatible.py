@@ -314,7 +314,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
             except Retry as retry:
                 failures.append(retry)
             last, times = failures[-1], len(failures)
-            why = last.why if times == 1 else f"{last.why}, {times} times"
+            why = last.why if times == 1 else f"{last.why.rstrip('.')}, {times} times"
             if times <= self._retries:
                 pause = pause_before(last, times - 1, inquiry.texts[0])
                 if asyncio.get_running_loop().time() + pause < end:

@@ -40,6 +40,7 @@ class Server:
         self.model, self.base_url, self._request_timeout = model, base_url, timeout
         self.text = ServerText("")
         self._connection: Connection | None = None
+        self._speaks = False  # once a reply was no web page
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
@@ -122,15 +123,18 @@ class Server:
         except _UNDECODED as error:
             return Reading(Reply.UNKNOWN, text=f"garbled reply: {type(error).__name__}: {error}")
         if "html" in response.headers.get("content-type", ""):
+            if self._speaks:  # the address is right: a gateway's page of errors
+                return Reading(Reply.UNKNOWN, text="garbled reply: a web page")
             raise AnswerError(
                 f"{self.where()} answers with a web page. Is the path right (usually /v1)?"
             )
+        self._speaks = True
         content: bytes = response.content
         return content
 
     def _refused(self, error: "APIStatusError") -> Reading | str:
         status, parts = error.status_code, complaint(error.body)
-        said = ", ".join(parts.values()) or f"HTTP status {status}"
+        said = ", ".join(part.rstrip(". ") for part in parts.values()) or f"HTTP status {status}"
         if any("content_" in value for key, value in parts.items() if key in ("code", "type")):
             return Reading(Reply.UNKNOWN, text=f"refused: {said}")
         if 300 <= status < 400:

@@ -104,10 +104,18 @@ def read_taught(folder: Path, network: Weights) -> tuple[Taught, str]:
             raise ValueError("it was taught on another network, of another version")
         return _taught(told, unpacked(arrays), branch), hashlib.sha256(text).hexdigest()[:16]
     except (ValueError, KeyError, TypeError, IndexError, RecursionError) as error:
-        said = str(error) if type(error) is ValueError else repr(error)
+        said = _why(error)
         raise AnswerError(
             f"{folder} does not hold what the network was taught ({said[:300]}). {_REMEDY}."
         ) from error
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, json.JSONDecodeError):
+        return f"{TAUGHT} is no JSON: line {error.lineno}, {error.msg[:1].lower()}{error.msg[1:]}"
+    if isinstance(error, KeyError):
+        return f"it lacks {error}"
+    return str(error) if type(error) is ValueError else repr(error)
 
 
 def _taught(told: Mapping[str, Any], arrays: Mapping[str, Floats], branch: str) -> Taught:

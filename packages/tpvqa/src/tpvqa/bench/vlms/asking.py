@@ -146,7 +146,7 @@ def _see_options(specs: Sequence[str], config: TrialConfig) -> None:
     """See that every option is one that some VLM takes."""
     taken = set().union(*(takes(load_spec(Kind.VLM, spec)) for spec in specs))
     if "*" not in taken:
-        see_taken(config.options, taken, config.options)
+        see_taken(config.options, taken, config.options, whose="these VLMs")
 
 
 def _times(spec: str, repeats: int) -> int:

@@ -18,6 +18,9 @@ PARTS: Mapping[str, Callable[[Row], str]] = MappingProxyType(
 )
 """By what answers are told apart, where there is more than one of it."""
 FREE: Mapping[str, float] = MappingProxyType({})
+AMONG = "among the best"
+NOT_KNOWN = "not known"
+"""Whether a wording is among the best, where no interval can be given."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +68,11 @@ class Worded:
         example: A question in them.
         score: The figures.
         difference: From the first wording, on the same facts in the same pictures; None for it.
+        lasting: How far errors last in these words; None but for all predicates.
         verdict: "best" where it is surely better than all others, "among the best" where it is
-            the highest or not told apart from that, else empty; by balanced accuracy (or
-            accuracy, where only yes or only no is ever right).
+            the highest or not told apart from that, `NOT_KNOWN` where there are too few groups of
+            looks to tell, else empty; by balanced accuracy (or accuracy, where only yes or only no
+            is ever right).
     """
 
     vlm: str
@@ -76,6 +81,7 @@ class Worded:
     example: str
     score: Score
     difference: Difference | None
+    lasting: Lasting | None
     verdict: str
 
 
@@ -87,6 +93,7 @@ class Comparison:
         of: What was asked about.
         looks: How many looks.
         clusters: Independent groups of them.
+        cluster: What makes a group, in words.
         vlms: In the order of asking.
         differences: Of every other VLM from the first.
         wordings: Where there are several.
@@ -95,6 +102,7 @@ class Comparison:
     of: str
     looks: int
     clusters: int
+    cluster: str
     vlms: tuple[OfVLM, ...]
     differences: tuple[Difference, ...]
     wordings: tuple[Worded, ...]
@@ -105,13 +113,19 @@ class Comparison:
 
 
 def compare(
-    rows: Sequence[Row], of: str, *, prices: Mapping[str, float] = FREE, seed: int = 0
+    rows: Sequence[Row],
+    of: str,
+    *,
+    cluster: str = "looks",
+    prices: Mapping[str, float] = FREE,
+    seed: int = 0,
 ) -> Comparison:
     """Compare the answers of several VLMs.
 
     Args:
         rows: All answers.
         of: What was asked about.
+        cluster: What makes looks a group, in words.
         prices: Of a question, by VLM.
         seed: Decides what is drawn for the intervals.
     """
@@ -126,6 +140,7 @@ def compare(
         of=of,
         looks=len({row.look for row in rows}),
         clusters=len({row.cluster for row in rows}),
+        cluster=cluster,
         vlms=tuple(_of_vlm(vlm, own, prices.get(vlm), seed) for vlm, own in by_vlm.items()),
         differences=tuple(each for each in differences if each is not None),
         wordings=tuple(each for own in by_vlm.values() for each in _worded(own, seed)),
@@ -170,10 +185,8 @@ def _lines(predicate: str | None, rows: list[Row], seed: int) -> list[Worded]:
         for name, own in groups.items()
         if name != best
     }
-    worse = {name for name, found in behind.items() if found and (found.merit.low or 0.0) > 0}
-    verdicts = {name: "" if name in worse else "among the best" for name in groups}
-    if len(worse) == len(behind):
-        verdicts[best] = "best"
+    verdicts = {name: _verdict(found) for name, found in behind.items()}
+    verdicts[best] = _verdict_of_best(set(verdicts.values()))
     return [
         Worded(
             vlm=own[0].vlm,
@@ -184,10 +197,25 @@ def _lines(predicate: str | None, rows: list[Row], seed: int) -> list[Worded]:
             difference=None
             if name == first
             else difference(own, groups[first], (name, first), seed=seed),
+            lasting=None if predicate else lasting_errors(own, seed=seed),
             verdict=verdicts[name],
         )
         for name, own in groups.items()
     ]
+
+
+def _verdict(behind: Difference | None) -> str:
+    """Of a wording, by how much the best is better."""
+    if behind is None or behind.merit.low is None:
+        return NOT_KNOWN
+    return "" if behind.merit.low > 0 else AMONG
+
+
+def _verdict_of_best(others: set[str]) -> str:
+    """Of the best wording, by what is said of the others."""
+    if others == {NOT_KNOWN}:
+        return NOT_KNOWN
+    return "best" if others == {""} else AMONG
 
 
 def _merit(found: Score) -> float:

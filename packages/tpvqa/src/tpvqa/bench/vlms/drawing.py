@@ -1,12 +1,14 @@
 """The figure of a comparison: every figure with its interval, and accuracy by predicate."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from tpvqa.bench.figures import GRID, INK, Figure
 from tpvqa.bench.style import styled_pyplot
 from tpvqa.bench.vlms.comparing import Comparison, OfVLM
-from tpvqa.bench.vlms.scoring import Estimate
+from tpvqa.bench.vlms.lasting import Lasting
+from tpvqa.bench.vlms.scoring import Estimate, Score
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5230", "#882255")
 """Of VLMs, from the palette of Okabe and Ito (2008)."""
@@ -22,6 +24,45 @@ _MOST = 12
 """Parts that fit beside each other."""
 
 
+@dataclass(frozen=True, slots=True)
+class Line:
+    """What is drawn in one colour: a VLM, or a VLM in one wording.
+
+    Attributes:
+        name: What it is called.
+        score: Its figures.
+        lasting: How far its errors last.
+        predicates: Accuracy by predicate.
+    """
+
+    name: str
+    score: Score
+    lasting: Lasting
+    predicates: Mapping[str, Estimate]
+
+
+def lines_of(found: Comparison) -> list[Line]:
+    """The VLMs; where there are several wordings each VLM once in each, as they are no one VLM's
+    answers to one question."""
+    lines: list[Line] = []
+    for vlm in found.vlms:
+        known = {part.name: part.score.accuracy for part in vlm.parts if part.by == "predicate"}
+        worded = [each for each in found.wordings if each.vlm == vlm.vlm]
+        named = [(each, each.lasting) for each in worded if each.predicate is None]
+        for whole, lasting in named:
+            own = {
+                each.predicate: each.score.accuracy
+                for each in worded
+                if each.predicate is not None and each.wording == whole.wording
+            }
+            if lasting is not None:
+                name = f"{_short(vlm.vlm)}, {_short(whole.wording)}"
+                lines.append(Line(name, whole.score, lasting, known | own))
+        if not named:
+            lines.append(Line(_short(vlm.vlm), vlm.score, vlm.lasting, known))
+    return lines
+
+
 def comparison_figure(found: Comparison) -> Figure:
     """Every figure of every VLM with its 95% interval; below, accuracy by predicate.
 
@@ -29,8 +70,9 @@ def comparison_figure(found: Comparison) -> Figure:
         MissingExtraError: matplotlib is not installed.
     """
     pyplot = styled_pyplot()
-    names = _parts(found.vlms)
-    height = 1.5 + 0.42 * len(found.vlms)
+    names, lines = _parts(found.vlms), lines_of(found)
+    looks = list(zip(lines, _cycled(COLOURS, lines), _cycled(MARKERS, lines), strict=True))
+    height = 1.5 + 0.42 * len(lines)
     lower = 3.6 if names else 0.0
     figure = pyplot.figure(figsize=(13.33, height + lower + 0.6))
     upper, *rest = (
@@ -38,10 +80,8 @@ def comparison_figure(found: Comparison) -> Figure:
     )
     panels = upper.subplots(1, len(_PANELS) + 1, sharey=True)
     for axes, (key, title, up) in zip(panels, (*_PANELS, ("", "errors that last", False))):  # noqa: B905
-        for place, (vlm, colour, marker) in enumerate(
-            zip(found.vlms, _cycled(COLOURS, found.vlms), _cycled(MARKERS, found.vlms), strict=True)
-        ):
-            told = getattr(vlm.score, key) if key else _lasting(vlm)
+        for place, (line, colour, marker) in enumerate(looks):
+            told = getattr(line.score, key) if key else _lasting(line)
             _dot(axes, told, place, colour, marker)
         axes.set_title(f"{title}\n{'higher' if up else 'lower'} is better", fontsize=11, color=INK)
         axes.set_xlim(-0.03, 1.03)
@@ -50,8 +90,8 @@ def comparison_figure(found: Comparison) -> Figure:
         axes.set_axisbelow(True)
         axes.tick_params(length=0)
         axes.spines["left"].set_visible(False)
-    panels[0].set_yticks(range(len(found.vlms)), [_short(each.vlm) for each in found.vlms])
-    panels[0].set_ylim(len(found.vlms) - 0.4, -0.6)
+    panels[0].set_yticks(range(len(lines)), [line.name for line in lines])
+    panels[0].set_ylim(len(lines) - 0.4, -0.6)
     told = found.vlms[0].score.accuracy.low is not None
     figure.suptitle(
         f"{found.of}: {found.looks:,} looks, {found.vlms[0].score.answers:,} questions, "
@@ -61,7 +101,7 @@ def comparison_figure(found: Comparison) -> Figure:
         ha="left",
     )
     if names:
-        _by_predicate(rest[0].subplots(), found.vlms, names)
+        _by_predicate(rest[0].subplots(), looks, names)
     return figure
 
 
@@ -75,17 +115,14 @@ def _parts(vlms: Sequence[OfVLM]) -> list[str]:
     return sorted(counts, key=lambda name: -counts[name])[:_MOST]
 
 
-def _by_predicate(axes: Any, vlms: Sequence[OfVLM], names: Sequence[str]) -> None:
-    step = 0.7 / max(len(vlms), 1)
-    for k, (vlm, colour, marker) in enumerate(
-        zip(vlms, _cycled(COLOURS, vlms), _cycled(MARKERS, vlms), strict=True)
-    ):
-        known = {part.name: part.score.accuracy for part in vlm.parts if part.by == "predicate"}
+def _by_predicate(axes: Any, looks: Sequence[tuple[Line, str, str]], names: Sequence[str]) -> None:
+    step = 0.7 / max(len(looks), 1)
+    for k, (line, colour, marker) in enumerate(looks):
         for place, name in enumerate(names):
-            if name in known:
-                at = place + (k - (len(vlms) - 1) / 2) * step
-                _dot(axes, known[name], at, colour, marker, upright=True)
-        axes.plot([], [], color=colour, marker=marker, linestyle="none", label=_short(vlm.vlm))
+            if name in line.predicates:
+                at = place + (k - (len(looks) - 1) / 2) * step
+                _dot(axes, line.predicates[name], at, colour, marker, upright=True)
+        axes.plot([], [], color=colour, marker=marker, linestyle="none", label=line.name)
     axes.set_xticks(range(len(names)), names)
     axes.set_xlim(-0.6, len(names) - 0.4)
     axes.set_ylim(-0.03, 1.05)
@@ -121,8 +158,8 @@ def _dot(
         )
 
 
-def _lasting(vlm: OfVLM) -> Estimate:
-    found = vlm.lasting
+def _lasting(line: Line) -> Estimate:
+    found = line.lasting
     return Estimate(found.share, found.low, found.high)
 
 
@@ -135,5 +172,5 @@ def _short(vlm: str) -> str:
     return vlm if len(vlm) <= 30 else f"{vlm[:20]}…{vlm[-9:]}"
 
 
-def _cycled(values: Sequence[str], vlms: Sequence[OfVLM]) -> list[str]:
-    return [values[k % len(values)] for k, _ in enumerate(vlms)]
+def _cycled(values: Sequence[str], lines: Sequence[Line]) -> list[str]:
+    return [values[k % len(values)] for k, _ in enumerate(lines)]

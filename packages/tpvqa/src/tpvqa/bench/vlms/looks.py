@@ -10,6 +10,9 @@ from tpvqa.questions import FactQuestion, Question, QuestionBook
 from tpvqa.worlds.pictures import PictureSet
 from tpvqa.worlds.pictures.manifest import P
 
+OF_PICTURES = "pictures that show the same facts, true and false alike"
+"""What makes a group of pictures: errors that last are the scene's, however often it is taken."""
+
 
 @dataclass(frozen=True, slots=True)
 class Labelled:

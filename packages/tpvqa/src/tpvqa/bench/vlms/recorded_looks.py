@@ -22,6 +22,8 @@ from tpvqa.questions import ActionQuestion, FactQuestion, Question, QuestionBook
 
 AS_ASKED = "as asked"
 """The wording of a question in an episode."""
+OF_EPISODES = "the looks of one episode"
+"""What makes a group."""
 
 
 @dataclass

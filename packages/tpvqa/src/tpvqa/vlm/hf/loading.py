@@ -11,7 +11,7 @@ from tpvqa.vlm.hf.failures import told_plainly
 from tpvqa.vlm.hf.family import Family, Loaded
 from tpvqa.vlm.hf.processors import processor_of
 from tpvqa.vlm.hf.quiet import quiet
-from tpvqa.vlm.hf.source import Source, source_of
+from tpvqa.vlm.hf.source import CONFIG, Source, source_of
 from tpvqa.vlm.hf.vilt import Vilt
 
 PACKAGES = ("torch", "transformers", "peft")
@@ -50,6 +50,7 @@ def load(model: str, *, device: str, dtype: str, trained: bool = True) -> Loaded
     where = device_of(device)
     with quiet(), told_plainly(name, "loaded"):
         try:
+            _see_had(name, source)
             config = _config(name, source)
             kind = _class_of(name, config)
             made = kind.from_pretrained(
@@ -120,6 +121,22 @@ def _class_of(name: str, config: Any) -> Any:
             "images and text to text, e.g. hf:HuggingFaceTB/SmolVLM-256M-Instruct."
         )
     return AutoModelForImageTextToText
+
+
+def _see_had(name: str, source: Source) -> None:
+    """See that a model is here or on the hub: asked once, as transformers tries for half a minute.
+
+    Raises:
+        AnswerError: It is not.
+    """
+    from huggingface_hub import get_hf_file_metadata, hf_hub_url, try_to_load_from_cache
+
+    if source.on_disk or isinstance(try_to_load_from_cache(source.base, CONFIG), str):
+        return
+    try:
+        get_hf_file_metadata(hf_hub_url(source.base, CONFIG))
+    except Exception as error:  # noqa: BLE001  of whichever HTTP client the hub's package takes
+        raise AnswerError(_not_had(name, source, error)) from None
 
 
 def _not_had(name: str, source: Source, error: Exception) -> str:

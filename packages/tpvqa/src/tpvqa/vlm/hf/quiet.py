@@ -7,11 +7,14 @@ from contextlib import contextmanager
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep transformers from writing to standard error while something is done with it."""
+    """Keep transformers and the hub's client from writing to standard error meanwhile."""
+    from huggingface_hub.utils import logging as of_hub
     from transformers.utils import logging
 
     level, bars = logging.get_verbosity(), logging.is_progress_bar_enabled()
+    level_of_hub = of_hub.get_verbosity()
     logging.set_verbosity(logging.CRITICAL)
+    of_hub.set_verbosity(of_hub.CRITICAL)
     logging.disable_progress_bar()
     try:
         with warnings.catch_warnings():
@@ -19,5 +22,6 @@ def quiet() -> Iterator[None]:
             yield
     finally:
         logging.set_verbosity(level)
+        of_hub.set_verbosity(level_of_hub)
         if bars:
             logging.enable_progress_bar()

@@ -12,6 +12,9 @@ ADAPTER_WEIGHTS = "adapter_model.safetensors"
 CONFIG = "config.json"
 _HUB_NAME = re.compile(r"[A-Za-z0-9][\w.-]{0,95}(/[A-Za-z0-9][\w.-]{0,95})?")
 _LARGEST = 2**20
+VOCABULARIES = ("tokenizer.json", "vocab.txt", "vocab.json", "*.model", "*.tiktoken", "tekken.json")
+"""Files that hold a tokenizer's words, of which a model has one: without any, transformers makes a
+tokenizer that knows none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +73,12 @@ def _see_model(folder: Path) -> None:
         )
     if not safe:
         raise AnswerError(f"hf:{folder}: there are no weights (*.safetensors) in it.")
+    if not any(any(folder.glob(name)) for name in VOCABULARIES):
+        raise AnswerError(
+            f"hf:{folder}: its tokenizer is missing: there is none of {', '.join(VOCABULARIES)}. "
+            "Put it beside the weights, as `save_pretrained` of the processor or a download of the "
+            "hub leaves it."
+        )
 
 
 def _base_of(folder: Path) -> str:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from tpvqa.errors import CacheError
@@ -201,10 +202,16 @@ def prune(
         dry: Whether only to count; what `most` would take is not known then.
 
     Raises:
-        CacheError: The file cannot be used, or has no such VLM.
+        CacheError: The file cannot be used, has no such VLM, or `most` is less than an empty file.
     """
     if not path.exists():  # which writing would make
         raise CacheError(f"{path}: there is no such file")
+    least = 0 if most is None else _least()
+    if most is not None and most < least:
+        raise CacheError(
+            f"{path}: a file without any answer has {least:,} bytes, and {most:,} are allowed. "
+            "Allow more, or take the file away"
+        )
     file = AnswerFile(path, writing=not dry)
     try:
         before = _size(path)
@@ -228,6 +235,14 @@ def prune(
         return Pruned(taken, left, before, _size(path))
     finally:
         file.close()
+
+
+def _least() -> int:
+    """The size of a file that holds no answer."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "empty"
+        AnswerFile(path, writing=True).close()
+        return _size(path)
 
 
 def _take(

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar, Generic
 
-from tpvqa.errors import PictureError, PictureSetError
+from tpvqa.errors import PictureError, PictureSetError, shown
 from tpvqa.pictures import read_picture
 from tpvqa.worlds.pictures.manifest import MANIFEST, Manifest, P, Picture, digest, read_manifest
 
@@ -43,6 +43,18 @@ class PictureSet(Generic[P]):
             return read_picture(picture.file, inside=self.folder)
         except PictureError as error:
             raise PictureSetError(f"{error}. {self.gone}") from error
+
+    def see_domain(self, domain: str) -> None:
+        """See that the pictures are of a task's domain.
+
+        Raises:
+            PictureSetError: They are of another.
+        """
+        if self.manifest.domain != domain:
+            raise PictureSetError(
+                f"{self.folder}: the pictures are of the domain {shown(self.manifest.domain)}, and "
+                f"the task is of {shown(domain)}. Name another set"
+            )
 
     def check(self) -> None:
         """See whether all pictures are there, and are those that the manifest means.

@@ -207,11 +207,7 @@ class PictureWorld(DrawnWorld[Picture]):
             PictureSetError: One is missing or damaged, or tells of what the domain does not know.
         """
         task, manifest = self.simulation.task, self.pictures.manifest
-        if manifest.domain != task.domain_name:
-            raise PictureSetError(
-                f"{self._folder}: the pictures are of the domain {manifest.domain!r}, and the task "
-                f"is of {task.domain_name!r}. Name another set"
-            )
+        self.pictures.see_domain(task.domain_name)
         for picture in manifest.pictures:
             place = f"{self._folder / picture.file}:"
             if Path(picture.file).suffix.lower() not in (".jpg", ".jpeg", ".png"):
