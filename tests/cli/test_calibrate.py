@@ -47,6 +47,15 @@ def test_from_trials_of_tasks_of_ones_own(tpvqa: Run) -> None:
     assert "none.yaml" in err
 
 
+def test_from_trials_of_a_logic_program(tpvqa: Run) -> None:
+    program = Path(__file__).parents[2] / "examples" / "programs" / "clean_dishes.lp"
+    for option in ("--domain", "--problem"):
+        words = [option, program, "--trials", 4, "--vlm", "oracle:0.9", "--out", f"{option}.json"]
+        code, out, err = tpvqa("calibrate", *words)
+        assert code == 0, err
+        assert "effect        clean" in out
+
+
 def test_json_has_the_promised_fields(tpvqa: Run) -> None:
     code, out, _ = tpvqa("calibrate", *TRIALS, "--json", "--curves", "seen.svg")
     found = json.loads(out)

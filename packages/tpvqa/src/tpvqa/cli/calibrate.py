@@ -77,7 +77,8 @@ def calibrate(
         int | None, typer.Option(help="Run so many trials of every task.", min=1)
     ] = None,
     domain: Annotated[
-        Path | None, typer.Option(help="With --pictures or --trials: your own domain.")
+        Path | None,
+        typer.Option(help="With --pictures or --trials: your own domain, or a logic program."),
     ] = None,
     problem: Annotated[
         list[Path] | None,
@@ -148,7 +149,7 @@ def calibrate(
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
     if experience is not None and not episodes:
         raise TpvqaError("--experience counts the faults of recorded episodes: name their folders.")
-    problems = problem or []
+    domain, problems = _own(domain, problem or [])
     if any((domain, problems, questions, world_file)):
         _check_own(domain, problems, world_file, pictures=pictures is not None, trials=trials)
     own = (domain, problems[0] if problems else None, questions)
@@ -259,6 +260,16 @@ def own_book(
     return [QuestionBook.load(questions, load_task(domain, problem))]
 
 
+def _own(domain: Path | None, problems: list[Path]) -> tuple[Path | None, list[Path]]:
+    """Domain and problems, where a logic program may be named once for both."""
+    from tpvqa.tasks import domain_and_problem
+
+    if len(problems) > 1:
+        return domain, problems
+    domain, problem = domain_and_problem(domain, next(iter(problems), None))
+    return domain, [] if problem is None else [problem]
+
+
 def _check_own(
     domain: Path | None,
     problems: Sequence[Path],
@@ -276,7 +287,8 @@ def _check_own(
 
     if domain is None or not problems or not (pictures or trials is not None):
         raise TpvqaError(
-            "Give --domain and --problem (and --questions) beside --pictures FOLDER or --trials N."
+            "Give --domain and --problem, or a logic program (.lp) as --domain alone, (and "
+            "--questions) beside --pictures FOLDER or --trials N."
         )
     if pictures and (len(problems) > 1 or world_file is not None):
         raise TpvqaError("Beside --pictures give one --problem, and no --world-file.")

@@ -39,7 +39,7 @@ Task = Annotated[
 Problem = Annotated[
     Path | None, typer.Argument(metavar="[PROBLEM]", help="Your problem, after a domain file.")
 ]
-Domain = Annotated[Path | None, typer.Option(help="Your own domain.")]
+Domain = Annotated[Path | None, typer.Option(help="Your own domain, or a logic program (.lp).")]
 OwnProblem = Annotated[Path | None, typer.Option("--problem", help="Your own problem.")]
 
 
