@@ -19,8 +19,8 @@ UNSOLVABLE, TIMED_OUT, CRASHED = 3, 4, 5
 OPTIMAL = "fast-downward:optimal"
 
 _EXIT = (
-    "Exit codes: 0 a plan was found, 2 bad input, 3 no plan exists, 4 timed out, "
-    "5 the planner crashed (or ran out of memory), 130 interrupted."
+    "Exit codes: 0 a plan was found, 2 bad input, or a task that is not for this planner, "
+    "3 no plan exists, 4 timed out, 5 the planner crashed (or ran out of memory), 130 interrupted."
 )
 
 
@@ -125,11 +125,13 @@ def _spec(planner: str | None, *, optimal: bool) -> str:
 
 
 def _exit_code(result: "PlanningResult") -> int:
-    from tpvqa.planning import Plan, TimedOut, Unsolvable
+    from tpvqa.planning import Plan, TimedOut, Unfit, Unsolvable
 
     match result:
         case Plan():
             return 0
+        case Unfit():
+            return 2
         case Unsolvable():
             return UNSOLVABLE
         case TimedOut():
@@ -139,7 +141,7 @@ def _exit_code(result: "PlanningResult") -> int:
 
 
 def _as_json(result: "PlanningResult") -> dict[str, Any]:
-    from tpvqa.planning import Plan, TimedOut, Unsolvable
+    from tpvqa.planning import Plan, TimedOut, Unfit, Unsolvable
 
     who = {"planner": result.planner, "seconds": round(result.seconds, 6)}
     match result:
@@ -151,12 +153,14 @@ def _as_json(result: "PlanningResult") -> dict[str, Any]:
             return {"plan": None, "result": "timed out", "limit": limit, **who}
         case Unsolvable(reason):
             return {"plan": None, "result": "unsolvable", "reason": reason, **who}
+        case Unfit(reason):
+            return {"plan": None, "result": "cannot be planned", "reason": reason, **who}
         case _:
             return {"plan": None, "result": "crashed", "reason": result.reason, **who}
 
 
 def _as_text(result: "PlanningResult") -> str:
-    from tpvqa.planning import Plan, TimedOut, Unsolvable
+    from tpvqa.planning import Plan, TimedOut, Unfit, Unsolvable
 
     match result:
         case Plan(actions, cost):
@@ -173,6 +177,8 @@ def _as_text(result: "PlanningResult") -> str:
             return f"Timed out after {limit:g} s. Give it more time with --timeout."
         case Unsolvable(reason):
             return f"There is no plan: {reason}."
+        case Unfit(reason):
+            return f"This task cannot be planned with {result.planner}: {reason}."
         case _:
             return f"The planner crashed: {result.reason}."
 
