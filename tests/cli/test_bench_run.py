@@ -289,3 +289,20 @@ def test_the_core_alone_has_run_and_says_where_the_others_are(
     code, _, err = tpvqa("bench", "belief")
     assert code == 2
     assert "comes with tpvqa-experiments" in err
+
+
+def test_a_problem_without_a_plan_is_refused_at_the_start(tpvqa: Run, tmp_path: Path) -> None:
+    (tmp_path / "lamp.lp").write_text("fluent(lit). action(a). causes(a, -lit). goal(lit).\n")
+    code, out, err = tpvqa("bench", "run", "lamp.lp", *QUICK, "--monitors", "tp")
+    assert (code, out) == (2, "")
+    assert "lamp: there is no plan from the start: " in err
+
+
+def test_what_is_refused_is_not_advised_on_before(tpvqa: Run) -> None:
+    words = [*OWN, "--vlm", "oracle:3", "--monitors", "belief"]
+    code, _, err = tpvqa("bench", "run", *words)
+    assert code == 2
+    assert "calibrate" not in err
+    code, _, err = tpvqa("bench", "run", *OWN, *QUICK, "--conditions", "failure=7")
+    assert code == 2
+    assert "rates of faults from 0 to 1" in err

@@ -202,3 +202,13 @@ def test_a_task_that_is_not_for_a_planner_is_no_crash(folder: Path) -> None:
     assert done.returncode == 2
     assert "This task cannot be planned with fast-downward: actions last here" in done.stderr
     assert "crashed" not in done.stderr
+
+
+def test_no_name_of_a_planner_and_half_an_atom(folder: Path) -> None:
+    done = tpvqa("plan", "clean_dishes", "--planner", "", cwd=folder)
+    assert done.returncode == 2
+    assert "--planner must not be empty" in done.stderr
+    (folder / "state").write_text("(free left")
+    done = tpvqa("plan", "clean_dishes", "--from-state", "state", cwd=folder)
+    assert done.returncode == 2
+    assert "a ')' is missing" in done.stderr

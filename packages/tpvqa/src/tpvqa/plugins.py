@@ -373,4 +373,4 @@ def see_taken(options: Mapping[str, Any], taken: Collection[str], context: Colle
     for option in options:
         if option not in taken:
             known = set(taken) - (set(context) - set(options)) - {"arguments", "truth"}
-            raise UnknownNameError("option for this world, monitor and VLM", option, known)
+            raise UnknownNameError("--option of this world, monitor or VLM called", option, known)

@@ -124,11 +124,14 @@ def run(
     """Run episodes of any tasks under any monitors, with any VLMs, in any worlds and conditions."""
     import os
 
+    from tpvqa.bench.checking import check, see_plans
     from tpvqa.bench.compared import run_compared
     from tpvqa.bench.condition import normalised
     from tpvqa.bench.grid import Grid
     from tpvqa.bench.stated_risk import TRIALS
     from tpvqa.config.layers import combined
+    from tpvqa.plugins import Kind, load_spec
+    from tpvqa.vlm.capabilities import is_noise_model
 
     config = combined(layers)
     given = {key for layer in layers for key in layer.values}
@@ -154,6 +157,10 @@ def run(
         questions=questions or config.task.questions,
         world_file=world_file or config.task.world_file,
     )
+    cells = grid.cells()
+    given_truth = [cell for cell in cells if is_noise_model(load_spec(Kind.VLM, cell.vlm))]
+    check(given_truth, common.but(options={}), own)  # what is refused needs no advice before
+    see_plans(cells, common, own)
     for notice in (*beside, *_notices(grid, calibration)):
         tell(f"note: {notice}", error=True)
     with bench_bar(out) as progress:

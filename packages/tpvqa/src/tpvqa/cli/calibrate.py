@@ -123,6 +123,9 @@ def calibrate(
         Path | None,
         typer.Option(help="Picture of reliability before and after. Default: beside the file."),
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over files that are there.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the figures as JSON.")] = False,
 ) -> None:
     """Learn from labelled answers what a VLM's answers are worth, and show how reliable they are.
@@ -154,7 +157,7 @@ def calibrate(
         _check_own(domain, problems, world_file, pictures=pictures is not None, trials=trials)
     own = (domain, problems[0] if problems else None, questions)
     image = curves or out.with_suffix(".png")
-    _check(out, image)
+    _check(out, image, force=force)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
     found: Labelled | None = None
@@ -203,9 +206,10 @@ def calibrate(
         tell(f"wrote {out} and {image}")
 
 
-def _check(out: Path, image: Path) -> None:
+def _check(out: Path, image: Path, *, force: bool) -> None:
     """What would end the work at its end is told before it."""
     from tpvqa.belief.platt import regression
+    from tpvqa.belief.writing import writable
     from tpvqa.bench.style import styled_pyplot
     from tpvqa.errors import CalibrationError
 
@@ -214,6 +218,12 @@ def _check(out: Path, image: Path) -> None:
     for path, option in ((out, "--out"), (image, "--curves")):
         if path.is_dir():
             raise CalibrationError(f"{path} is a folder; name a file with {option}")
+    if out.exists() and not force:
+        raise CalibrationError(
+            f"{out} is there, and may be what others go by; name another file with --out, or write "
+            "over it with --force"
+        )
+    writable(out, remedy="Name another file with --out")
 
 
 def _from_episodes(folders: Sequence[Path], vlm: str | None) -> "Labelled":

@@ -202,7 +202,11 @@ def trial_config(
         TpvqaError: A value does not fit.
     """
     config = combined(trial_layers(layers, task, problem))
-    for name, spec in (("--monitor", config.monitor.spec), ("--vlm", config.vlm.spec)):
+    for name, spec in (
+        ("--monitor", config.monitor.spec),
+        ("--vlm", config.vlm.spec),
+        ("--planner", config.planner.spec),
+    ):
         if spec is not None and not spec.strip():
             raise TpvqaError(f"{name} must not be empty.")
     return config

@@ -117,6 +117,8 @@ def _spec(planner: str | None, *, optimal: bool) -> str:
     """The planner that is asked for."""
     from tpvqa.errors import TpvqaError
 
+    if planner is not None and not planner.strip():
+        raise TpvqaError("--planner must not be empty.")
     if not optimal:
         return planner or "fast-downward"
     if planner not in (None, OPTIMAL):

@@ -137,10 +137,13 @@ def read_manifest(folder: Path, kind: type[M], *, missing: str, broken: str) -> 
     try:
         return kind.model_validate_json(text)
     except ValidationError as error:
-        first = error.errors()[0]
+        first, count = error.errors()[0], error.error_count()
+        if first["loc"] == ("pictures",) and first["type"] == "too_short":
+            raise PictureSetError(f"{path}: it holds no pictures. {broken}") from error
         place = ".".join(map(str, first["loc"]))
         raise PictureSetError(
-            f"{path}: {place or 'the file'}: {first['msg']} ({error.error_count()} faults in all). "
+            f"{path}: {place or 'the file'}: {first['msg']} "
+            f"({count} {'fault' if count == 1 else 'faults'} in all). "
             f"{broken}"
         ) from error
 
