@@ -110,7 +110,7 @@ def test_two_workers_and_a_folder_of_problems(tpvqa: Run, tmp_path: Path) -> Non
     code, out, err = tpvqa(*words, "--workers", 1, "--out", "one")
     assert code == 0, err
     table = json.loads(out)
-    tower = str(folder / "build_tower.pddl")
+    tower = "blocks/build_tower.pddl"  # a shipped task has the name alone
     assert [(row["task"], row["vlm"]) for row in table] == [(tower, "oracle")] * 2 + [
         ("row", "oracle")
     ] * 2
@@ -134,6 +134,46 @@ def own_blocks(folder: Path) -> Path:
             copy(file, folder)
     (folder / "row.pddl").write_text(ROW)
     return folder
+
+
+LIGHT = """
+#const n = 2.
+lamp(1..n).
+fluent(lit(L)) :- lamp(L).
+action(press(L)) :- lamp(L).
+causes(press(L), lit(L)) :- lamp(L).
+goal(lit(L)) :- lamp(L).
+"""
+
+
+def test_a_logic_program_is_a_task_however_it_is_named(tpvqa: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "programs"
+    folder.mkdir()
+    (folder / "Light.lp").write_text(LIGHT)
+    words = ["--monitors", "tp", "--episodes", 1, *QUICK]
+    named = ["programs/Light.lp"], ["programs"], ["--problem", "programs/Light.lp"]
+    for number, way in enumerate((*named, ["--domain", "programs/Light.lp"])):
+        code, out, err = tpvqa("bench", "run", *way, *words, "--out", f"b{number}")
+        assert code == 0, err
+        assert [(row["task"], row["errors"]) for row in json.loads(out)] == [("light", 0)]
+    assert rows_of("b0") == rows_of("b1") == rows_of("b2") == rows_of("b3")
+    (tmp_path / "other").mkdir()
+    copy(folder / "Light.lp", tmp_path / "other")
+    assert list(own_tasks([folder, tmp_path / "other"])) == ["programs/Light.lp", "other/Light.lp"]
+    beside = ["--domain", TOYS / "domain.pddl"]
+    code, _, err = tpvqa("bench", "run", "programs/Light.lp", *beside, *words)
+    assert code == 2
+    assert "Light.lp is a logic program, domain and problem in one: leave out --domain" in err
+
+
+def test_a_worker_without_a_program_has_its_text(tmp_path: Path) -> None:
+    file = tmp_path / "light.lp"
+    file.write_text(LIGHT)
+    own = own_tasks([file])["light"]
+    file.unlink()
+    away = Stage("light", OwnTask(own.domain, own.problem, None, None, own.origin))
+    assert away.task.name == "light"
+    assert away.run(Cell("light", "tpvqa", "oracle", "symbolic"), TrialConfig(), 0).completed
 
 
 def test_a_worker_without_the_files_has_their_text(tmp_path: Path) -> None:
@@ -249,3 +289,20 @@ def test_the_core_alone_has_run_and_says_where_the_others_are(
     code, _, err = tpvqa("bench", "belief")
     assert code == 2
     assert "comes with tpvqa-experiments" in err
+
+
+def test_a_problem_without_a_plan_is_refused_at_the_start(tpvqa: Run, tmp_path: Path) -> None:
+    (tmp_path / "lamp.lp").write_text("fluent(lit). action(a). causes(a, -lit). goal(lit).\n")
+    code, out, err = tpvqa("bench", "run", "lamp.lp", *QUICK, "--monitors", "tp")
+    assert (code, out) == (2, "")
+    assert "lamp: there is no plan from the start: " in err
+
+
+def test_what_is_refused_is_not_advised_on_before(tpvqa: Run) -> None:
+    words = [*OWN, "--vlm", "oracle:3", "--monitors", "belief"]
+    code, _, err = tpvqa("bench", "run", *words)
+    assert code == 2
+    assert "calibrate" not in err
+    code, _, err = tpvqa("bench", "run", *OWN, *QUICK, "--conditions", "failure=7")
+    assert code == 2
+    assert "rates of faults from 0 to 1" in err

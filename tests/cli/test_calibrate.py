@@ -42,9 +42,18 @@ def test_from_trials_of_tasks_of_ones_own(tpvqa: Run) -> None:
     assert "pick_up" not in out  # facts are asked about, not actions
     assert "found" in out
     assert Calibration.load(Path("calibration.json")).vlm == "oracle:0.9"
-    code, _, err = tpvqa("calibrate", *own, "--world-file", "none.yaml", *words)
+    code, _, err = tpvqa("calibrate", *own, "--world-file", "none.yaml", *words, "--force")
     assert code == 2
     assert "none.yaml" in err
+
+
+def test_from_trials_of_a_logic_program(tpvqa: Run) -> None:
+    program = Path(__file__).parents[2] / "examples" / "programs" / "clean_dishes.lp"
+    for option in ("--domain", "--problem"):
+        words = [option, program, "--trials", 4, "--vlm", "oracle:0.9", "--out", f"{option}.json"]
+        code, out, err = tpvqa("calibrate", *words)
+        assert code == 0, err
+        assert "effect        clean" in out
 
 
 def test_json_has_the_promised_fields(tpvqa: Run) -> None:
@@ -72,7 +81,7 @@ def test_from_recorded_episodes(tpvqa: Run) -> None:
     assert code == 0, err
     assert "oracle:0.8" in out
     assert Calibration.load(Path("calibration.json")).rows > 10
-    code, _, err = tpvqa("calibrate", "e1", "--vlm", "embedded")
+    code, _, err = tpvqa("calibrate", "e1", "--vlm", "embedded", "--force")
     assert code == 2
     assert "oracle:0.8 answered in it, not embedded" in err
 
@@ -159,3 +168,22 @@ def test_trials_that_teach_are_run_under_the_conditions_given(tpvqa: Run) -> Non
     code, _, err = tpvqa("calibrate", "--pictures", "shipped", "--failure", 0.6)
     assert code == 2
     assert "for --trials" in err
+
+
+def test_a_file_that_is_there_is_written_over_by_force_alone(tpvqa: Run) -> None:
+    Path("c.json").write_text("work")
+    words = ("calibrate", *TRIALS, "--out", "c.json")
+    code, _, err = tpvqa(*words)
+    assert code == 2
+    assert "c.json is there" in err
+    assert "--force" in err
+    assert Path("c.json").read_text() == "work"
+    assert tpvqa(*words, "--force")[0] == 0
+
+
+def test_a_set_without_pictures_says_so(tpvqa: Run, tmp_path: Path) -> None:
+    (tmp_path / "set").mkdir()
+    (tmp_path / "set" / MANIFEST).write_text('{"domain": "household", "pictures": []}')
+    code, _, err = tpvqa("calibrate", "--pictures", "set")
+    assert code == 2
+    assert "it holds no pictures" in err

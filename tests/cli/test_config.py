@@ -170,3 +170,35 @@ def test_help_names_every_monitor_that_is_installed(tpvqa: Run) -> None:
     said = set(re.findall(r"[\w-]+", out))
     assert set(names(Kind.MONITOR)) <= said
     assert "survey" in said
+
+
+TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (None, "there is no such"),
+        (b"", "empty"),
+        (b"\x00\x01\xff", "domain.pddl"),
+        (b"(define (domain toys)\n (:predicates (p", "domain.pddl"),
+        (b"task: eat_apple\n", "domain.pddl"),
+    ],
+)
+def test_files_are_refused_as_run_refuses_them(
+    tpvqa: Run, tmp_path: Path, content: bytes | None, says: str
+) -> None:
+    if content is not None:
+        (tmp_path / "domain.pddl").write_bytes(content)
+    words = ("--domain", "domain.pddl", "--problem", TOYS / "collect.pddl")
+    code, out, err = tpvqa("config", *words)
+    assert (code, out) == (2, "")
+    assert says in err
+    assert tpvqa("run", *words)[::2] == (2, err)
+
+
+@pytest.mark.parametrize("option", ["--questions", "--world-file", "--priors", "--true-start"])
+def test_other_files_are_read_too(tpvqa: Run, option: str) -> None:
+    code, _, err = tpvqa("config", "eat_apple", option, "none.yaml")
+    assert code == 2
+    assert "none.yaml" in err

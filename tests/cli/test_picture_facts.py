@@ -11,7 +11,7 @@ from tpvqa.worlds.pictures import MANIFEST
 
 OWN = ("--domain", DOMAIN, "--problem", PROBLEM, "--questions", QUESTIONS)
 TRAIN = ("train", "embedded", "--out", "taught", *OWN)
-CALIBRATE = ("calibrate", "--vlm", "embedded", "--out", "calibration.json", *OWN)
+CALIBRATE = ("calibrate", "--vlm", "embedded", "--out", "calibration.json", "--force", *OWN)
 COMPARE = ("vlm", "compare", "embedded", *OWN)
 
 

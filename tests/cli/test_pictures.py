@@ -68,7 +68,7 @@ def test_the_folder_can_be_an_option(tpvqa: Run, lamps: Path) -> None:
 
 @pytest.mark.usefixtures("eye")
 def test_calibrating(tpvqa: Run, lamps: Path) -> None:
-    asked = ("calibrate", "--pictures", lamps, "--vlm", "eye", "--json")
+    asked = ("calibrate", "--pictures", lamps, "--vlm", "eye", "--json", "--force")
     code, out, err = tpvqa(*asked, *OWN)
     assert code == 0, err
     found = json.loads(out)

@@ -179,7 +179,7 @@ def test_bad_input(folder: Path, words: tuple[str, ...], message: str) -> None:
 
 def test_help_names_the_exit_codes(folder: Path) -> None:
     text = " ".join(tpvqa("plan", "--help", cwd=folder).stdout.split())
-    assert "Exit codes: 0 a plan was found, 2 bad input, 3 no plan exists, 4 timed out" in text
+    assert "Exit codes: 0 a plan was found, 2 bad input, or a task that is not for" in text
 
 
 def test_tasks(folder: Path) -> None:
@@ -194,3 +194,21 @@ def test_tasks(folder: Path) -> None:
     assert listed[3]["goal"] == ["halved(apple)"]
     assert listed[3]["objects"]["apple"] == "fruit"
     assert Path(listed[3]["problem"]).is_file()
+
+
+def test_a_task_that_is_not_for_a_planner_is_no_crash(folder: Path) -> None:
+    yard = Path(__file__).parents[2] / "examples" / "timed" / "yard"
+    done = tpvqa("plan", yard / "domain.pddl", yard / "problem.pddl", cwd=folder)
+    assert done.returncode == 2
+    assert "This task cannot be planned with fast-downward: actions last here" in done.stderr
+    assert "crashed" not in done.stderr
+
+
+def test_no_name_of_a_planner_and_half_an_atom(folder: Path) -> None:
+    done = tpvqa("plan", "clean_dishes", "--planner", "", cwd=folder)
+    assert done.returncode == 2
+    assert "--planner must not be empty" in done.stderr
+    (folder / "state").write_text("(free left")
+    done = tpvqa("plan", "clean_dishes", "--from-state", "state", cwd=folder)
+    assert done.returncode == 2
+    assert "a ')' is missing" in done.stderr

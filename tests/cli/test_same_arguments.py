@@ -1,6 +1,7 @@
 """`plan`, `questions`, `run` and `bench run` are told what to work on in the same way."""
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Run
+from tpvqa.assembly import Trial
+from tpvqa.config import TaskConfig, TrialConfig
 
 TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
 RUN = ("--vlm", "oracle", "--monitor", "tp", "--seed", 1, "--failure", 0)
@@ -71,6 +74,39 @@ def test_what_is_named_goes_before_what_lies_beside(tpvqa: Run, toys: Path) -> N
     assert "questions.yaml is used" not in err
     assert "put into words by their names in the PDDL; `tpvqa questions` lists them" in err
     assert err.count("note:") == 1
+
+
+@pytest.mark.parametrize("option", ["--domain", "--problem", None])
+def test_a_logic_program_is_domain_and_problem(
+    tpvqa: Run, tmp_path: Path, option: str | None
+) -> None:
+    (tmp_path / "lamp.lp").write_text("action(press). causes(press, lit). goal(lit).\n")
+    named = ("lamp.lp",) if option is None else (option, "lamp.lp")
+    assert "press()" in tpvqa("plan", *named)[1]
+    assert tpvqa("questions", *named)[0] == 0
+    assert "lamp.lp" not in tpvqa("check", *named, "--json")[2]
+    code, out, err = tpvqa("run", *named, *RUN, "--out", "episode")
+    assert (code, "press" in out) == (0, True), err
+    assert tpvqa("show", "episode")[0] == 0
+    shown = tpvqa("config", *named)[1]
+    assert len(re.findall(r"^  (?:domain|problem): .*/lamp.lp  # ", shown, re.MULTILINE)) == 2
+    (tmp_path / "trial.yaml").write_text("task: {domain: lamp.lp}\n")
+    code, _, err = tpvqa("run", "--config", "trial.yaml", *RUN, "--out", "again")
+    assert code == 0, err
+    with Trial(TrialConfig(task=TaskConfig(domain="lamp.lp"))) as trial:
+        assert trial.task.name == "lamp"
+    trials = ("--trials", 2, "--workers", 1)
+    code, _, err = tpvqa("risk", *named, "--vlm", "oracle:0.9", "--monitor", "belief", *trials)
+    assert code == 0, err
+
+
+def test_a_logic_program_has_nothing_beside_it(tpvqa: Run, toys: Path) -> None:
+    domain, program = toys / "domain.pddl", toys / "lamp.lp"
+    program.write_text("action(press). causes(press, lit). goal(lit).\n")
+    for words in ((domain, program), ("--domain", program, "--problem", domain)):
+        code, _, err = tpvqa("plan", *words)
+        assert code == 2
+        assert "a logic program is domain and problem in one; name no" in err
 
 
 @pytest.mark.parametrize("command", ["plan", "questions", "run"])

@@ -89,7 +89,7 @@ BAD = [
     ("action(a).\ngoal(f.\n", 2, "syntax error"),
     ("action(a).\n#script (python)\nimport os\n#end.\ngoal(f).", 2, "#script is not read"),
     ('action(a).\n#  include "/etc/passwd".\n', 2, "#include is not read"),
-    ("action(a). causes(a,g).\ngoal(f).", 2, "nothing ever makes f() true"),
+    ("action(a). causes(a,g).\ngoal(f).", 2, "nothing ever makes f true"),
     ("action(a).\ncauses(b,f).\ngoal(f).", 2, "there is no action(b)"),
     ("action(a).\ncause(a,f).\ngoal(f).", 2, "Did you mean causes?"),
     ("goal(f).\n{ action(a) }.", 2, "no choice"),

@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from tpvqa.errors import PDDLError
+from tpvqa.errors import PDDLError, PlannerError
 from tpvqa.pddl import validate
-from tpvqa.planning import Plan
+from tpvqa.planning import Crashed, Plan, Unsolvable
 from tpvqa.planning.fast_downward import FastDownward
-from tpvqa.planning.unified import task_from_problem
+from tpvqa.planning.unified import sequential_plan, task_from_problem
 
 shortcuts = pytest.importorskip("unified_planning.shortcuts")
 
@@ -70,3 +70,18 @@ def test_the_extra_is_named_where_it_is_missing() -> None:
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert "pip install -e 'packages/tpvqa[up]'" in done.stderr
+
+
+@pytest.mark.parametrize("kind", [Unsolvable, Crashed])
+def test_what_is_no_plan_is_not_handed_over(kind: Any) -> None:
+    with pytest.raises(PlannerError, match=r"no plan to hand over.*it broke.*isinstance"):
+        sequential_plan(shortcuts.Problem("x"), kind("it broke", "clingo", 0.1))
+
+
+def test_problems_whose_actions_last_are_out() -> None:
+    action = shortcuts.DurativeAction("wait")
+    action.set_fixed_duration(3)
+    problem = shortcuts.Problem("x")
+    problem.add_action(action)
+    with pytest.raises(PDDLError, match=r"actions last.*write it as PDDL files"):
+        task_from_problem(problem)

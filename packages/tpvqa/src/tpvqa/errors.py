@@ -59,9 +59,17 @@ def a(noun: str) -> str:
     return f"{'an' if noun[:1] in 'aeiou' else 'a'} {noun}"
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """The end of a sentence about an unknown name, and the nearest known one, where one is near."""
-    near = get_close_matches(word, list(known), n=1) if len(word) <= _LONGEST else []
+def suggestion(word: str, known: Iterable[str], *, near_by: float = 0.6) -> str:
+    """The end of a sentence about an unknown name, and the nearest known one, where one is near.
+
+    Args:
+        word: The unknown name.
+        known: The known ones.
+        near_by: How alike two names have to be, of 1.
+    """
+    near = (
+        get_close_matches(word, list(known), n=1, cutoff=near_by) if len(word) <= _LONGEST else []
+    )
     return f". Did you mean {shown(near[0])}?" if near else "."
 
 

@@ -38,7 +38,7 @@ from tpvqa.planning import Planner
 from tpvqa.planning.making import make_planner
 from tpvqa.plugins import Checked, Closing, Kind, load_spec, see_free, see_taken
 from tpvqa.questions import QuestionBook
-from tpvqa.tasks import find_task
+from tpvqa.tasks import domain_and_problem, find_task
 from tpvqa.text_files import kept_text
 from tpvqa.trial import trial
 from tpvqa.vlm import VLM
@@ -123,8 +123,8 @@ class Trial:
     def _find_files(self) -> None:
         wanted = self.config.task
         files = None if wanted.name is None else find_task(wanted.name)
-        domain = wanted.domain if files is None else files.domain
-        problem = wanted.problem if files is None else files.problem
+        own = domain_and_problem(wanted.domain, wanted.problem)
+        domain, problem = own if files is None else (files.domain, files.problem)
         if domain is None or problem is None:
             raise TpvqaError("Name a shipped task, or give both --domain and --problem.")
         self.domain, self.problem = Path(domain), Path(problem)

@@ -4,6 +4,7 @@ from tpvqa.errors import TpvqaError
 from tpvqa.monitors import Monitor
 from tpvqa.monitors.capabilities import Believing, LooksFirst
 from tpvqa.pddl import Task
+from tpvqa.pddl.outside.engines import taken
 from tpvqa.planning import Planner
 from tpvqa.planning.protocol import TemporalPlanner
 from tpvqa.planning.watching import Watching
@@ -27,7 +28,7 @@ def watching(task: Task, planner: Planner, *, every: float | None) -> Planner:
     if not isinstance(planner, TemporalPlanner):
         raise TpvqaError(
             f"In this domain actions last ({_names(task)}), which the planner {planner.name!r} "
-            "does not know. Take --planner up:aries or up:tamer."
+            f"does not know. As --planner {taken('time')}."
         )
     return Watching(planner, every=every)
 

@@ -4,11 +4,13 @@ from collections.abc import Hashable, Mapping, Sequence
 from importlib.util import find_spec
 
 from tpvqa.bench.cell import Cell
+from tpvqa.bench.condition import settings_of
 from tpvqa.bench.own_task import OwnTask
-from tpvqa.bench.stage import stage
+from tpvqa.bench.stage import shared_planner, stage
 from tpvqa.bench.stated_risk import unstated
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, MissingExtraError, UnknownNameError
+from tpvqa.planning import Unsolvable
 from tpvqa.plugins import Kind, load_spec, takes
 from tpvqa.tasks import find_task
 from tpvqa.vlm.capabilities import is_noise_model
@@ -81,5 +83,23 @@ def _names(cells: Sequence[Cell], common: TrialConfig) -> None:
     for option in common.plugin_options():
         if cells and option not in taken and "*" not in taken:
             raise UnknownNameError(
-                "option for these worlds, monitors and VLMs", option, taken - {"arguments"}
+                "--option of these worlds, monitors or VLMs called", option, taken - {"arguments"}
             )
+
+
+def see_plans(cells: Sequence[Cell], common: TrialConfig, own: Mapping[str, OwnTask]) -> None:
+    """See that tasks of the user's own have a plan, where it is known how the world is at first.
+
+    Raises:
+        BenchError: There is none for one of them.
+    """
+    told = any({"start", "priors"} & settings_of(cell.condition).keys() for cell in cells)
+    if told or common.start.priors is not None or common.start.what != "known":
+        return
+    for name in dict.fromkeys(cell.task for cell in cells if cell.task in own):
+        task = stage(name, own[name]).task
+        if task.left_open:
+            continue
+        result = shared_planner(common.planner.spec).plan(task, timeout=common.planner.timeout)
+        if isinstance(result, Unsolvable):
+            raise BenchError(f"{name}: there is no plan from the start: {result.reason}")

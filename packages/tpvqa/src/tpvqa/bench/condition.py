@@ -74,7 +74,7 @@ def not_understood(condition: str, meant: str = "") -> BenchError:
     """
     return BenchError(
         f"The condition {shown(condition)} is not understood{meant or '.'} Write settings with "
-        f"commas: rates of faults ({', '.join(RATES)}), redo=free, risky or refused, "
+        f"commas: rates of faults from 0 to 1 ({', '.join(RATES)}), redo=free, risky or refused, "
         "moved=RATE, dead=SKILL, elsewhere=THINGS, limits "
         f"({', '.join(LIMITS)}; limits=none), planner=PLANNER, wording=paper, start=unknown, "
         "priors=FILE, believed=VLM, carried=EPISODES; for example failure=0.4,actions=30"

@@ -10,7 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tpvqa.errors import BenchError, PlacedError
-from tpvqa.tasks import QUESTIONS, WORLD, TaskFiles, beside, shipped_tasks
+from tpvqa.pddl.programs.loading import task_name
+from tpvqa.tasks import PROGRAM, QUESTIONS, WORLD, TaskFiles, beside, is_program, shipped_tasks
 from tpvqa.text_files import read_text
 
 DOMAIN = "domain.pddl"
@@ -23,8 +24,8 @@ class OwnTask:
     """The texts of a task's files, and where they were read.
 
     Attributes:
-        domain: The PDDL domain.
-        problem: The PDDL problem.
+        domain: The PDDL domain, or a logic program.
+        problem: The PDDL problem, or the same program.
         questions: How facts and actions are put into questions; None for fallbacks alone.
         world: How facts come undone in a simulated world; None where they do not.
         origin: The files. Another machine may not have them.
@@ -69,10 +70,12 @@ class OwnTask:
             return
         with TemporaryDirectory(prefix="tpvqa-task-") as name:
             folder = Path(name)
+            program = is_program(self.origin.domain)
+            domain = folder / (self.origin.domain.name if program else DOMAIN)
             yield TaskFiles(
                 name=self.origin.name,
-                domain=_written(folder / DOMAIN, self.domain),
-                problem=_written(folder / "problem.pddl", self.problem),
+                domain=_written(domain, self.domain),
+                problem=domain if program else _written(folder / "problem.pddl", self.problem),
                 questions=None
                 if self.questions is None
                 else _written(folder / "questions.yaml", self.questions),
@@ -90,11 +93,12 @@ def own_tasks(
     """Tasks of one's own, by the names that they have in rows.
 
     A task has the name of its problem. Where several have that name, or a shipped task does, it is
-    the problem's path instead.
+    as much of the problem's path as tells them apart.
 
     Args:
-        problems: Problem files, and folders of them.
-        domain: Their domain; by default the `domain.pddl` beside each problem.
+        problems: Problem files, logic programs, and folders of them.
+        domain: Their domain; by default the `domain.pddl` beside each problem. A logic program is
+            its own.
         questions: Their questions; by default the `questions.yaml` beside problem or domain.
         world_file: How facts come undone; by default the `world.yaml` beside one of them.
 
@@ -107,10 +111,21 @@ def own_tasks(
     ]
     names = Counter(each.origin.name for each in found)
     names.update(files.name for files in shipped_tasks())
+    paths = [each.origin.problem for each in found]
     return {
-        each.origin.name if names[each.origin.name] == 1 else str(each.origin.problem): each
+        each.origin.name
+        if names[each.origin.name] == 1
+        else _end_of(each.origin.problem, paths): each
         for each in found
     }
+
+
+def _end_of(path: Path, paths: Sequence[Path]) -> str:
+    """The shortest end of a path, with a folder, that none of the others has."""
+    for length in range(2, len(path.parts)):
+        if sum(each.parts[-length:] == path.parts[-length:] for each in paths) == 1:
+            return "/".join(path.parts[-length:])
+    return str(path)
 
 
 def _expanded(problems: Sequence[Path], domain: Path | None) -> Iterator[Path]:
@@ -120,17 +135,27 @@ def _expanded(problems: Sequence[Path], domain: Path | None) -> Iterator[Path]:
             continue
         domains = {path / DOMAIN} if domain is None else {path / DOMAIN, domain}
         known = {each.resolve() for each in domains}
-        inside = [each for each in sorted(path.glob("*.pddl")) if each.resolve() not in known]
+        files = [*path.glob("*.pddl"), *(path.glob(f"*{PROGRAM}") if domain is None else ())]
+        inside = [each for each in sorted(files) if each.resolve() not in known]
         if not inside:
-            raise BenchError(f"{path} holds no problem: *.pddl besides the domain")
+            raise BenchError(
+                f"{path} holds no problem: *.pddl besides the domain; nor *{PROGRAM} alone"
+            )
         yield from inside
 
 
 def _files(
     problem: Path, domain: Path | None, questions: Path | None, world_file: Path | None
 ) -> TaskFiles:
-    text = _COMMENT.sub("", _text(problem))
-    named = _NAME.search(text)
+    if is_program(problem):
+        if domain is not None and domain.resolve() != problem:
+            raise BenchError(
+                f"{problem} is a logic program, domain and problem in one: leave out --domain"
+            )
+        name, domain = task_name(problem), problem
+    else:
+        named = _NAME.search(_COMMENT.sub("", _text(problem)))
+        name = named[1].lower() if named else problem.stem
     if domain is None:
         domain = problem.parent / DOMAIN
         if not domain.exists():
@@ -138,7 +163,7 @@ def _files(
     questions = questions or beside(QUESTIONS, problem, domain)
     world_file = world_file or beside(WORLD, problem, domain)
     return TaskFiles(
-        name=named[1].lower() if named else problem.stem,
+        name=name,
         domain=domain.resolve(),
         problem=problem,
         questions=None if questions is None else questions.resolve(),

@@ -147,7 +147,7 @@ class Stage:
         return Trial(
             config.but(task=self._named),
             task=self.task,
-            planner=_planner(config.planner.spec),
+            planner=shared_planner(config.planner.spec),
             vlm=None if config.vlm.replay is not None else _shared_vlm(spec, options),
             book=self.book,
             rules=self.rules,
@@ -244,7 +244,8 @@ def _files(task: str, own: OwnTask | None) -> Iterator[TaskFiles]:
 
 
 @lru_cache
-def _planner(spec: str) -> Planner:
+def shared_planner(spec: str) -> Planner:
+    """The planner of a specification that all episodes of a process share."""
     return remembering(make_planner(spec))
 
 

@@ -53,15 +53,17 @@ def run(
         list[str] | None,
         typer.Argument(
             metavar="[TASK]...",
-            help="Shipped tasks (see `tpvqa tasks`), your own problem files, or folders of them. "
-            "Without --domain, the domain.pddl beside a problem is taken; so are a questions.yaml "
-            "and a world.yaml beside problem or domain, unless others are named.",
+            help="Shipped tasks (see `tpvqa tasks`), your own problem files or logic programs "
+            "(.lp), or folders of them. Without --domain, the domain.pddl beside a problem is "
+            "taken; so are a questions.yaml and a world.yaml beside problem or domain, unless "
+            "others are named.",
         ),
     ] = None,
     *,
     layers: Sequence[Layer],
     domain: Annotated[
-        Path | None, typer.Option(help="Your own domain, which all problems are of.")
+        Path | None,
+        typer.Option(help="Your own domain, which all problems are of, or a logic program (.lp)."),
     ] = None,
     problem: Annotated[
         list[Path] | None,
@@ -122,11 +124,14 @@ def run(
     """Run episodes of any tasks under any monitors, with any VLMs, in any worlds and conditions."""
     import os
 
+    from tpvqa.bench.checking import check, see_plans
     from tpvqa.bench.compared import run_compared
     from tpvqa.bench.condition import normalised
     from tpvqa.bench.grid import Grid
     from tpvqa.bench.stated_risk import TRIALS
     from tpvqa.config.layers import combined
+    from tpvqa.plugins import Kind, load_spec
+    from tpvqa.vlm.capabilities import is_noise_model
 
     config = combined(layers)
     given = {key for layer in layers for key in layer.values}
@@ -152,6 +157,10 @@ def run(
         questions=questions or config.task.questions,
         world_file=world_file or config.task.world_file,
     )
+    cells = grid.cells()
+    given_truth = [cell for cell in cells if is_noise_model(load_spec(Kind.VLM, cell.vlm))]
+    check(given_truth, common.but(options={}), own)  # what is refused needs no advice before
+    see_plans(cells, common, own)
     for notice in (*beside, *_notices(grid, calibration)):
         tell(f"note: {notice}", error=True)
     with bench_bar(out) as progress:
@@ -189,19 +198,23 @@ def _tasks(
     """The shipped tasks, and the user's own by their names."""
     from tpvqa.bench.own_task import own_tasks
     from tpvqa.errors import BenchError
+    from tpvqa.tasks import domain_and_problem, is_program
 
     shipped = [name for name in named if not _is_path(name)]
     problems = [Path(name) for name in named if _is_path(name)] + problems
+    if not problems and domain is not None and is_program(domain):
+        problems = [domain]
     file = config.task
+    of_file = domain_and_problem(file.domain, file.problem)
     if not shipped and not problems:
         if file.name is not None:
             shipped = [file.name]
-        elif file.domain is not None and file.problem is not None:
-            problems = [Path(file.problem)]
+        elif of_file[0] is not None and of_file[1] is not None:
+            problems = [Path(of_file[1])]
             domain, questions, world_file = (
                 given or (None if known is None else Path(known))
                 for given, known in (
-                    (domain, file.domain),
+                    (domain, of_file[0]),
                     (questions, file.questions),
                     (world_file, file.world_file),
                 )
@@ -221,7 +234,9 @@ def _tasks(
 
 
 def _is_path(name: str) -> bool:
-    return "/" in name or name.lower().endswith(".pddl") or Path(name).is_dir()
+    from tpvqa.tasks import is_program
+
+    return "/" in name or is_program(name) or name.lower().endswith(".pddl") or Path(name).is_dir()
 
 
 def _calibration(config: "TrialConfig") -> "Calibration | None":

@@ -77,7 +77,8 @@ def calibrate(
         int | None, typer.Option(help="Run so many trials of every task.", min=1)
     ] = None,
     domain: Annotated[
-        Path | None, typer.Option(help="With --pictures or --trials: your own domain.")
+        Path | None,
+        typer.Option(help="With --pictures or --trials: your own domain, or a logic program."),
     ] = None,
     problem: Annotated[
         list[Path] | None,
@@ -122,6 +123,9 @@ def calibrate(
         Path | None,
         typer.Option(help="Picture of reliability before and after. Default: beside the file."),
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over files that are there.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the figures as JSON.")] = False,
 ) -> None:
     """Learn from labelled answers what a VLM's answers are worth, and show how reliable they are.
@@ -148,12 +152,12 @@ def calibrate(
         raise TpvqaError(f"{_SOURCES}; {'none' if not any(given) else 'several'} was given.")
     if experience is not None and not episodes:
         raise TpvqaError("--experience counts the faults of recorded episodes: name their folders.")
-    problems = problem or []
+    domain, problems = _own(domain, problem or [])
     if any((domain, problems, questions, world_file)):
         _check_own(domain, problems, world_file, pictures=pictures is not None, trials=trials)
     own = (domain, problems[0] if problems else None, questions)
     image = curves or out.with_suffix(".png")
-    _check(out, image)
+    _check(out, image, force=force)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
     found: Labelled | None = None
@@ -202,9 +206,10 @@ def calibrate(
         tell(f"wrote {out} and {image}")
 
 
-def _check(out: Path, image: Path) -> None:
+def _check(out: Path, image: Path, *, force: bool) -> None:
     """What would end the work at its end is told before it."""
     from tpvqa.belief.platt import regression
+    from tpvqa.belief.writing import writable
     from tpvqa.bench.style import styled_pyplot
     from tpvqa.errors import CalibrationError
 
@@ -213,6 +218,12 @@ def _check(out: Path, image: Path) -> None:
     for path, option in ((out, "--out"), (image, "--curves")):
         if path.is_dir():
             raise CalibrationError(f"{path} is a folder; name a file with {option}")
+    if out.exists() and not force:
+        raise CalibrationError(
+            f"{out} is there, and may be what others go by; name another file with --out, or write "
+            "over it with --force"
+        )
+    writable(out, remedy="Name another file with --out")
 
 
 def _from_episodes(folders: Sequence[Path], vlm: str | None) -> "Labelled":
@@ -259,6 +270,16 @@ def own_book(
     return [QuestionBook.load(questions, load_task(domain, problem))]
 
 
+def _own(domain: Path | None, problems: list[Path]) -> tuple[Path | None, list[Path]]:
+    """Domain and problems, where a logic program may be named once for both."""
+    from tpvqa.tasks import domain_and_problem
+
+    if len(problems) > 1:
+        return domain, problems
+    domain, problem = domain_and_problem(domain, next(iter(problems), None))
+    return domain, [] if problem is None else [problem]
+
+
 def _check_own(
     domain: Path | None,
     problems: Sequence[Path],
@@ -276,7 +297,8 @@ def _check_own(
 
     if domain is None or not problems or not (pictures or trials is not None):
         raise TpvqaError(
-            "Give --domain and --problem (and --questions) beside --pictures FOLDER or --trials N."
+            "Give --domain and --problem, or a logic program (.lp) as --domain alone, (and "
+            "--questions) beside --pictures FOLDER or --trials N."
         )
     if pictures and (len(problems) > 1 or world_file is not None):
         raise TpvqaError("Beside --pictures give one --problem, and no --world-file.")

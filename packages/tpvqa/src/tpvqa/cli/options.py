@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, get_origin
 
 import typer
 
-from tpvqa.config.layers import Key, Layer, Setting, combined, file_layer, settings
+from tpvqa.config.layers import Key, Layer, Setting, combined, file_layer, origin, settings
 from tpvqa.config.model import TaskConfig, TrialConfig
 from tpvqa.config.parts import VLMConfig
 from tpvqa.errors import TpvqaError
@@ -87,6 +87,8 @@ def trial_layers(
     Raises:
         TpvqaError: A task is given in two ways.
     """
+    from tpvqa.tasks import is_program
+
     files = {("task", "domain"), ("task", "problem")}
     given = files & {key for layer in layers for key in layer.values}
     own: dict[Key, Any] = {}
@@ -97,8 +99,8 @@ def trial_layers(
     elif task is not None:
         if given:
             raise TpvqaError("Give either a shipped task or --domain and --problem, not both.")
-        if task.lower().endswith(".lp") and not given:  # a logic program is both
-            own = {("task", "domain"): _resolved(task), ("task", "problem"): _resolved(task)}
+        if is_program(task):
+            own = {("task", "domain"): _resolved(task)}
             return _with_own(layers, own)
         if task.lower().endswith(".pddl"):
             raise TpvqaError(f"{task} is a domain or a problem alone; name both, the domain first.")
@@ -107,8 +109,22 @@ def trial_layers(
 
 
 def _with_own(layers: Sequence[Layer], own: dict[Key, Any]) -> list[Layer]:
-    given_layers = [*layers, Layer(own, dict.fromkeys(own, "argument"))]
+    given_layers = _named_twice([*layers, Layer(own, dict.fromkeys(own, "argument"))])
     return [_beside(given_layers), *given_layers]
+
+
+def _named_twice(layers: Sequence[Layer]) -> list[Layer]:
+    """The same, with a logic program that was named once as domain and as problem."""
+    from tpvqa.tasks import domain_and_problem
+
+    keys: tuple[Key, Key] = (("task", "domain"), ("task", "problem"))
+    known = {key: value for layer in layers for key, value in layer.values.items() if key in keys}
+    if not all(isinstance(value, str) for value in known.values()):
+        return [*layers]
+    both = dict(zip(keys, domain_and_problem(*(known.get(key) for key in keys)), strict=True))
+    added = {key: value for key, value in both.items() if value != known.get(key)}
+    places = {key: origin(other, layers) for key, other in zip(keys, reversed(keys), strict=True)}
+    return [*layers, Layer(added, {key: places[key] for key in added})]
 
 
 BESIDE = "beside the domain"
@@ -186,7 +202,11 @@ def trial_config(
         TpvqaError: A value does not fit.
     """
     config = combined(trial_layers(layers, task, problem))
-    for name, spec in (("--monitor", config.monitor.spec), ("--vlm", config.vlm.spec)):
+    for name, spec in (
+        ("--monitor", config.monitor.spec),
+        ("--vlm", config.vlm.spec),
+        ("--planner", config.planner.spec),
+    ):
         if spec is not None and not spec.strip():
             raise TpvqaError(f"{name} must not be empty.")
     return config

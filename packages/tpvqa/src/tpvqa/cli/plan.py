@@ -19,8 +19,8 @@ UNSOLVABLE, TIMED_OUT, CRASHED = 3, 4, 5
 OPTIMAL = "fast-downward:optimal"
 
 _EXIT = (
-    "Exit codes: 0 a plan was found, 2 bad input, 3 no plan exists, 4 timed out, "
-    "5 the planner crashed (or ran out of memory), 130 interrupted."
+    "Exit codes: 0 a plan was found, 2 bad input, or a task that is not for this planner, "
+    "3 no plan exists, 4 timed out, 5 the planner crashed (or ran out of memory), 130 interrupted."
 )
 
 
@@ -39,7 +39,7 @@ Task = Annotated[
 Problem = Annotated[
     Path | None, typer.Argument(metavar="[PROBLEM]", help="Your problem, after a domain file.")
 ]
-Domain = Annotated[Path | None, typer.Option(help="Your own domain.")]
+Domain = Annotated[Path | None, typer.Option(help="Your own domain, or a logic program (.lp).")]
 OwnProblem = Annotated[Path | None, typer.Option("--problem", help="Your own problem.")]
 PlannerName = Annotated[
     str | None,
@@ -119,6 +119,8 @@ def _spec(planner: str | None, *, optimal: bool) -> str:
     """The planner that is asked for."""
     from tpvqa.errors import TpvqaError
 
+    if planner is not None and not planner.strip():
+        raise TpvqaError("--planner must not be empty.")
     if not optimal:
         return planner or "fast-downward"
     if planner not in (None, OPTIMAL):
@@ -127,11 +129,13 @@ def _spec(planner: str | None, *, optimal: bool) -> str:
 
 
 def _exit_code(result: "PlanningResult") -> int:
-    from tpvqa.planning import Plan, TimedOut, Unsolvable
+    from tpvqa.planning import Plan, TimedOut, Unfit, Unsolvable
 
     match result:
         case Plan():
             return 0
+        case Unfit():
+            return 2
         case Unsolvable():
             return UNSOLVABLE
         case TimedOut():
@@ -141,7 +145,7 @@ def _exit_code(result: "PlanningResult") -> int:
 
 
 def _as_json(result: "PlanningResult") -> dict[str, Any]:
-    from tpvqa.planning import Plan, TimedOut, Unsolvable
+    from tpvqa.planning import Plan, TimedOut, Unfit, Unsolvable
 
     who = {"planner": result.planner, "seconds": round(result.seconds, 6)}
     match result:
@@ -153,12 +157,14 @@ def _as_json(result: "PlanningResult") -> dict[str, Any]:
             return {"plan": None, "result": "timed out", "limit": limit, **who}
         case Unsolvable(reason):
             return {"plan": None, "result": "unsolvable", "reason": reason, **who}
+        case Unfit(reason):
+            return {"plan": None, "result": "cannot be planned", "reason": reason, **who}
         case _:
             return {"plan": None, "result": "crashed", "reason": result.reason, **who}
 
 
 def _as_text(result: "PlanningResult") -> str:
-    from tpvqa.planning import Plan, TimedOut, Unsolvable
+    from tpvqa.planning import Plan, TimedOut, Unfit, Unsolvable
 
     match result:
         case Plan(actions, cost):
@@ -175,6 +181,8 @@ def _as_text(result: "PlanningResult") -> str:
             return f"Timed out after {limit:g} s. Give it more time with --timeout."
         case Unsolvable(reason):
             return f"There is no plan: {reason}."
+        case Unfit(reason):
+            return f"This task cannot be planned with {result.planner}: {reason}."
         case _:
             return f"The planner crashed: {result.reason}."
 

@@ -84,7 +84,7 @@ def questions(
     """Print every question of a task's plan, action by action, for each way of asking."""
     from tpvqa.cli.drafting import write_draft
     from tpvqa.errors import GroundingTimedOut
-    from tpvqa.planning import Crashed, Plan, TimedOut, Unsolvable
+    from tpvqa.planning import Crashed, Plan, TimedOut, Unfit, Unsolvable
     from tpvqa.planning.making import make_planner
 
     try:
@@ -111,6 +111,8 @@ def questions(
             _no_questions(
                 f"planning took more than {limit:g} s; give it more by --timeout", TIMED_OUT
             )
+        case Unfit(reason, by):
+            _no_questions(f"the task cannot be planned with {by}: {reason}", 2)
         case Crashed(reason):
             _no_questions(f"the planner crashed: {reason}", CRASHED)
     steps = list(_steps(loaded, book, actions))

@@ -134,10 +134,14 @@ def configuration(
 ) -> None:
     """Print the configuration of a trial, every setting with where it comes from.
 
-    What is printed can be kept in a file, changed there, and given to `tpvqa run --config FILE`.
+    The task's files are read, and refused as `tpvqa run` would. What is printed can be
+    kept in a file, changed there, and given to `tpvqa run --config FILE`.
     """
+    from tpvqa.assembly.named_files import see_files
+
     layers = trial_layers([*layers, *_optimal(optimal)], task, problem_file)
     config = trial_config(layers)
+    see_files(config)
     if as_json:
         print(config.model_dump_json(indent=1, by_alias=True))
     else:

@@ -52,7 +52,9 @@ def train(
         str | None,
         typer.Option(help="Learn from labelled pictures: 'shipped', or the folder of a set."),
     ] = None,
-    domain: Annotated[Path | None, typer.Option(help="With --pictures: your own domain.")] = None,
+    domain: Annotated[
+        Path | None, typer.Option(help="With --pictures: your own domain, or a logic program.")
+    ] = None,
     problem: Annotated[Path | None, typer.Option(help="With --domain: your own problem.")] = None,
     questions: Annotated[
         Path | None,
@@ -97,6 +99,7 @@ def train(
     from tpvqa.cli.progress import CountBar
     from tpvqa.config.layers import Key, Layer, combined
     from tpvqa.errors import TrainingError
+    from tpvqa.tasks import domain_and_problem
     from tpvqa.training.making import make_trainer
     from tpvqa.training.protocol import TrainingSettings
     from tpvqa.training.running import see_free
@@ -107,6 +110,7 @@ def train(
             "Give one source of labelled pictures: folders of recorded episodes, or --pictures "
             "shipped (or a folder of such a set)."
         )
+    domain, problem = domain_and_problem(domain, problem)
     own = (domain, problem, questions)
     if any(own) and (pictures is None or domain is None or problem is None):
         raise TrainingError("Give --domain and --problem (and --questions) beside --pictures.")

@@ -58,7 +58,9 @@ def compare(
             "(`tpvqa label`); may be given several times."
         ),
     ] = None,
-    domain: Annotated[Path | None, typer.Option(help="With --pictures: your own domain.")] = None,
+    domain: Annotated[
+        Path | None, typer.Option(help="With --pictures: your own domain, or a logic program.")
+    ] = None,
     problem: Annotated[Path | None, typer.Option(help="With --domain: your own problem.")] = None,
     questions: Annotated[
         list[Path] | None,
@@ -95,13 +97,14 @@ def compare(
     from tpvqa.cli.progress import CountBar
     from tpvqa.cli.vlm_tables import print_comparison
     from tpvqa.errors import TpvqaError
+    from tpvqa.tasks import domain_and_problem
 
     if (pictures is None) == (not episodes):
         raise TpvqaError("Give one labelled set: --pictures shipped (or a folder), or --episodes")
     config = combined(layers)
     prices = _prices(price or [], vlms)
     need_extras()
-    own = (domain, problem, questions or [])
+    own = (*domain_and_problem(domain, problem), questions or [])
     if pictures is not None:
         of, looks, task = _of_pictures(pictures, *own, hidden=hidden)
     else:

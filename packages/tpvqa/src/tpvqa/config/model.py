@@ -20,7 +20,9 @@ class TaskConfig(Part):
     """Which task: a shipped one, or files of one's own."""
 
     name: str | None = setting("TASK", "A shipped task (see `tpvqa tasks`).")
-    domain: str | None = setting("--domain", "Your own domain.", file=True)
+    domain: str | None = setting(
+        "--domain", "Your own domain, or a logic program (.lp).", file=True
+    )
     problem: str | None = setting("--problem", "Your own problem.", file=True)
     questions: str | None = setting(
         "--questions",

@@ -8,7 +8,7 @@ from tpvqa.pddl.arithmetic import expression
 from tpvqa.pddl.description import MEMORY, described, grounded_fields, unsure_fields
 from tpvqa.pddl.lasting import Lasting
 from tpvqa.pddl.numeric import Numeric, check_values
-from tpvqa.pddl.programs.loading import SUFFIX, pddl_of
+from tpvqa.pddl.programs.loading import pddl_of
 from tpvqa.pddl.schema import (
     ActionSchema,
     AxiomSchema,
@@ -23,6 +23,7 @@ from tpvqa.pddl.schema import (
     ground_condition,
 )
 from tpvqa.pddl.task import Task
+from tpvqa.tasks import is_program
 from tpvqa.text_files import read_bytes
 
 
@@ -54,10 +55,17 @@ def load_task(
         >>> load_task("clean_dishes").goal
         Literal(atom=Atom(predicate='clean', arguments=('plate',)), positive=True)
     """
-    if Path(name_or_domain).suffix.lower() == SUFFIX:
+    if is_program(name_or_domain):
         if problem is not None and Path(problem) != Path(name_or_domain):
-            raise PDDLError("a logic program needs no problem beside it", file=problem)
+            raise PDDLError(
+                "a logic program is domain and problem in one; name nothing beside it",
+                file=name_or_domain,
+            )
         return _program(Path(name_or_domain), timeout, memory)
+    if problem is not None and is_program(problem):
+        raise PDDLError(
+            "a logic program is domain and problem in one; name no domain beside it", file=problem
+        )
     if problem is None:
         from tpvqa.tasks import find_task
 

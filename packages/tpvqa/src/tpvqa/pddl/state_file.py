@@ -28,6 +28,9 @@ def read_state(path: Path, task: Task) -> State:
     as_json = text.lstrip()[:1] in ("[", "{")
     state: set[Atom] = set()
     for line, words in _json_atoms(text, path) if as_json else _lines(text):
+        if words.count("(") != words.count(")"):
+            bracket = ")" if words.count("(") > words.count(")") else "("
+            raise PDDLError(f"{shown(words)}: a {bracket!r} is missing", file=path, line=line)
         try:
             atom = Atom.parse(words)
             task.check_atom(atom)

@@ -6,7 +6,8 @@ from tpvqa.planning.protocol import (
     Planner,
     PlanningResult,
     TimedOut,
+    Unfit,
     Unsolvable,
 )
 
-__all__ = ["Crashed", "Plan", "Planner", "PlanningResult", "TimedOut", "Unsolvable"]
+__all__ = ["Crashed", "Plan", "Planner", "PlanningResult", "TimedOut", "Unfit", "Unsolvable"]

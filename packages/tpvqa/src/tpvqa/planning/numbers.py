@@ -7,7 +7,7 @@ from tpvqa.errors import PDDLError
 from tpvqa.pddl import Action, Atom, Condition, State, Task
 from tpvqa.pddl.arithmetic import ARITHMETIC, Expression, Words, number, sides, values_in, written
 from tpvqa.pddl.outside.engines import taken
-from tpvqa.planning.protocol import Crashed
+from tpvqa.planning.protocol import Crashed, Unfit
 
 
 def no_numbers(task: Task, planner: str) -> Crashed:
@@ -15,7 +15,7 @@ def no_numbers(task: Task, planner: str) -> Crashed:
     names = "" if task.numeric is None else ", ".join(sorted(task.numeric.changed))
     what = f"actions change numbers here ({names})" if names else "numbers are compared here"
     reason = f"{what}, which {planner} does not know; {taken('numbers')}"
-    return Crashed(reason, planner, 0.0)
+    return Unfit(reason, planner, 0.0)
 
 
 class Numbering:

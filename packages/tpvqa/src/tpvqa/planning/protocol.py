@@ -55,6 +55,11 @@ class Crashed:
     seconds: float
 
 
+@dataclass(frozen=True, slots=True)
+class Unfit(Crashed):
+    """Nothing broke: the planner does not know tasks of this kind."""
+
+
 PlanningResult = Plan | Unsolvable | TimedOut | Crashed
 
 

@@ -9,8 +9,9 @@ from typing import Any
 from tpvqa.errors import PDDLError, PlannerError
 from tpvqa.pddl import Action, Conjunction, Literal, State, Task, holds
 from tpvqa.pddl.lasting import Phase, Running, without
+from tpvqa.pddl.outside.engines import taken
 from tpvqa.planning.propositional import Propositional, propositional
-from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
+from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unfit, Unsolvable
 
 _MOST_AT_ONCE = 6
 _MOST_TRIED = 20
@@ -21,10 +22,8 @@ SOON = 0.01
 def no_time(task: Task, planner: str) -> Crashed:
     """Why a planner that knows no time does not plan a task whose actions last."""
     names = "" if task.lasting is None else ", ".join(sorted(task.lasting.variables))
-    reason = (
-        f"actions last here ({names}), which {planner} does not know; take up:aries or up:tamer"
-    )
-    return Crashed(reason, planner, 0.0)
+    reason = f"actions last here ({names}), which {planner} does not know; {taken('time')}"
+    return Unfit(reason, planner, 0.0)
 
 
 class Schedule:

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Any
 
-from tpvqa.errors import MissingExtraError, PDDLError
+from tpvqa.errors import MissingExtraError, PDDLError, PlannerError
 from tpvqa.pddl import Task, task_from_text
-from tpvqa.planning.protocol import Plan
+from tpvqa.planning.protocol import Plan, PlanningResult, TimedOut
 
 if TYPE_CHECKING:
     from unified_planning.model import Problem
@@ -30,7 +30,7 @@ def task_from_problem(problem: "Problem", *, timeout: float | None = 300.0) -> T
     return task_from_text(writer.get_domain(), writer.get_problem(), timeout=timeout)
 
 
-def sequential_plan(problem: "Problem", plan: Plan) -> "SequentialPlan":
+def sequential_plan(problem: "Problem", plan: PlanningResult) -> "SequentialPlan":
     """A plan in the terms of the problem of unified-planning that its task was made from.
 
     Args:
@@ -38,9 +38,17 @@ def sequential_plan(problem: "Problem", plan: Plan) -> "SequentialPlan":
         plan: A plan of `task_from_problem(problem)`.
 
     Raises:
+        PlannerError: There is no plan: the planner came to something else.
         MissingExtraError: unified-planning is not installed.
         PDDLError: The problem cannot be said in PDDL, or the plan is of another one.
     """
+    if not isinstance(plan, Plan):
+        limit = f"it took more than {plan.limit:g} s" if isinstance(plan, TimedOut) else ""
+        raise PlannerError(
+            f"there is no plan to hand over, {plan.planner} ended otherwise "
+            f"({type(plan).__name__}): {limit or getattr(plan, 'reason', '')}. Ask first whether "
+            "isinstance(result, tpvqa.planning.Plan)"
+        )
     writer = _written(problem)
     from unified_planning.exceptions import UPException
     from unified_planning.plans import ActionInstance, SequentialPlan
@@ -68,6 +76,11 @@ def _written(problem: "Problem") -> Any:
         from unified_planning.io import PDDLWriter
     except ImportError as error:
         raise MissingExtraError("unified-planning", "up", "Reading its problems") from error
+    if any(hasattr(action, "duration") for action in problem.actions):
+        raise PDDLError(
+            f"in the problem {problem.name!r} actions last, and a plan of such comes back as no "
+            "sequence: write it as PDDL files (unified_planning.io.PDDLWriter) and name those"
+        )
     try:
         writer: Any = PDDLWriter(problem)
         writer.get_domain()

@@ -13,7 +13,7 @@ from tpvqa.pddl.outside.engines import PACKAGES, is_there
 from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.propositional import propositional
-from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
+from tpvqa.planning.protocol import Crashed, PlanningResult, Unfit, Unsolvable
 from tpvqa.planning.temporal import Schedule
 from tpvqa.plugins import PlainArguments
 
@@ -97,7 +97,7 @@ class UnifiedEngine(PlainArguments):
                 f"({', '.join(sorted({rule.head.predicate for rule in ground.rules}))}); "
                 "fast-downward and clingo know them"
             )
-            return Crashed(reason, self.name, time.perf_counter() - start)
+            return Unfit(reason, self.name, time.perf_counter() - start)
         left = None if limit is None else max(0.0, limit - (time.perf_counter() - start))
         request = {"do": "plan", "engine": self.engine, "task": ground.numbered()}
         reply = ask_engine(_MODULE, request, seconds=left, memory=self.memory)
@@ -134,7 +134,7 @@ class UnifiedEngine(PlainArguments):
             return Unsolvable(reason, self.name, time.perf_counter() - start)
         if ground.rules:
             reason = "durative actions are not planned together with derived predicates"
-            return Crashed(reason, self.name, time.perf_counter() - start)
+            return Unfit(reason, self.name, time.perf_counter() - start)
         left = None if limit is None else max(0.0, limit - (time.perf_counter() - start))
         reply = ask_engine(_MODULE, request, seconds=left, memory=self.memory)
         return schedule.result(reply, limit, self.name, start)

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import TypeVar
 
 from tpvqa.distributions import remedy
 from tpvqa.errors import PluginError, TpvqaError, UnknownNameError
@@ -20,6 +21,9 @@ from tpvqa.plugins import Kind, load, names
 
 QUESTIONS, WORLD = "questions.yaml", "world.yaml"
 """What the files of a task are called that are found beside it."""
+PROGRAM = ".lp"
+"""How files of logic programs end."""
+F = TypeVar("F", Path, str)
 
 _LOG = logging.getLogger(__name__)
 
@@ -77,6 +81,20 @@ def tasks_in(
         for problem in sorted(folder.glob("*.pddl"))
         if problem != domain
     )
+
+
+def is_program(path: Path | str) -> bool:
+    """Whether a file is a logic program, which is domain and problem in one."""
+    return Path(path).suffix.lower() == PROGRAM
+
+
+def domain_and_problem(domain: F | None, problem: F | None) -> tuple[F | None, F | None]:
+    """The files of a task of one's own: a logic program that is named once stands for both."""
+    if problem is None and domain is not None and is_program(domain):
+        return domain, domain
+    if domain is None and problem is not None and is_program(problem):
+        return problem, problem
+    return domain, problem
 
 
 def beside(name: str, problem: Path, domain: Path) -> Path | None:

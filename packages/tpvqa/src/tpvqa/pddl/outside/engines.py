@@ -26,6 +26,7 @@ KNOWS: Mapping[str, tuple[str, ...]] = {
     "time": ("tamer", "aries"),
     "processes": ("enhsp",),
     "objects": ("tamer", "aries"),
+    "hierarchy": ("aries",),
 }
 """What Fast Downward does not know, by what the engines declare in unified-planning 1.3."""
 
@@ -51,4 +52,9 @@ def where_known(feature: str) -> str:
     if not names:
         return "No engine of unified-planning does"
     said = map(_named, names)
+    if feature == "hierarchy":
+        return (
+            f"Of unified-planning's engines {', '.join(said)} plans it; tpvqa's loop reads no task "
+            "networks"
+        )
     return f"Of unified-planning's engines {', '.join(said)} would plan it; tpvqa cannot yet"

@@ -8,9 +8,6 @@ from tpvqa.pddl.programs.lifting import PATTERNS, IrregularError
 from tpvqa.pddl.programs.reading import read_program
 from tpvqa.pddl.programs.writing import as_pddl
 
-SUFFIX = ".lp"
-"""How files of logic programs are called."""
-
 
 def pddl_of(
     text: str, *, path: Path | None = None, timeout: float | None = 60.0, memory: int | None = None
@@ -30,12 +27,17 @@ def pddl_of(
         PlannerError: clingo failed, or took too much memory.
     """
     program = read_program(text, path=path, timeout=timeout, memory=memory)
-    stem = re.sub(r"[^a-z0-9_-]", "_", path.stem.lower()) if path else "program"
     try:
-        return as_pddl(program, stem if stem[:1].isalpha() else f"p{stem}")
+        return as_pddl(program, task_name(path) if path else "program")
     except IrregularError:
         raise PDDLError(
             f"the instances of an action have more than {PATTERNS} conditions or effects that are "
             "not of one shape; let what they speak of be their arguments",
             file=path or "(program)",
         ) from None
+
+
+def task_name(path: Path) -> str:
+    """What the task of a logic program is called: its file's name, as PDDL can say it."""
+    stem = re.sub(r"[^a-z0-9_-]", "_", path.stem.lower())
+    return stem if stem[:1].isalpha() else f"p{stem}"

@@ -227,7 +227,7 @@ class _Reader:
             if atom.predicate not in known:
                 near = get_close_matches(atom.predicate, sorted(known), n=1)
                 raise self._wrong(
-                    f"nothing ever makes {atom} true"
+                    f"nothing ever makes {atom if atom.arguments else atom.predicate} true"
                     + (f". Did you mean {near[0]}?" if near else "; declare it: fluent(F)"),
                     None,
                     [atom.predicate, [], True],

@@ -1,15 +1,19 @@
 """Metrics of other things than the cost of a plan, which no planner here goes by."""
 
+from collections.abc import Collection
+
+from tpvqa.pddl.arithmetic import ARITHMETIC
 from tpvqa.pddl.worker.blocks import blocks, said, sections
 from tpvqa.pddl.worker.lisp import Block
 from tpvqa.pddl.worker.reading_error import ReadingError
 
 
-def passed_over(problem: Block) -> str | None:
+def passed_over(problem: Block, functions: Collection[str]) -> str | None:
     """Take a metric out that speaks of anything but the cost of a plan.
 
     Args:
         problem: The problem; changed.
+        functions: The names of the domain's functions.
 
     Returns:
         The metric as it is written; None where there is none, or one that is gone by.
@@ -28,6 +32,14 @@ def passed_over(problem: Block) -> str | None:
                 "problem",
                 section.line,
             )
+        for block in blocks(section[2]):
+            if not block or str(block[0]) not in {*functions, *ARITHMETIC, "total-time"}:
+                raise ReadingError(
+                    f"{said(section)}: {said(block)} is no number; expected a function of the "
+                    "domain, such as (total-cost)",
+                    "problem",
+                    section.line,
+                )
         problem[:] = [part for part in problem if part is not section]
         return said(section)
     return None

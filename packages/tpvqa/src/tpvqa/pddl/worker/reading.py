@@ -1,7 +1,6 @@
 """Two PDDL texts → the translator's task, and errors that say where and what was expected."""
 
 from collections.abc import Iterable
-from itertools import pairwise
 from types import TracebackType
 from typing import Any
 
@@ -10,12 +9,13 @@ from fast_downward.translate.pddl_parser import parsing_functions
 from fast_downward.translate.pddl_parser.parse_error import ParseError
 
 from tpvqa.errors import shown, suggestion_or_list
+from tpvqa.pddl.worker.blocks import sections
 from tpvqa.pddl.worker.durative import taken_apart
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
 from tpvqa.pddl.worker.metric import passed_over
 from tpvqa.pddl.worker.numeric import taken_out as numbers_taken_out
 from tpvqa.pddl.worker.reading_error import ReadingError
-from tpvqa.pddl.worker.requirements import beyond
+from tpvqa.pddl.worker.requirements import beyond, undeclared
 from tpvqa.pddl.worker.typing_check import ill_typed
 from tpvqa.pddl.worker.unsure import Unsure, UnsureError, taken_out
 
@@ -56,13 +56,15 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         except LispError as error:
             raise ReadingError(error.message, part, error.line) from None
         _check_kind(part, blocks[part])
+    needs = undeclared(blocks["domain"], blocks["problem"])
+    if needs is not None:
+        raise ReadingError(*needs)
     durative = taken_apart(blocks["domain"], blocks["problem"])
-    metric = passed_over(blocks["problem"])
+    metric = passed_over(blocks["problem"], _function_names(blocks["domain"]))
     numeric = numbers_taken_out(blocks["domain"], blocks["problem"], durative=durative is not None)
     found = beyond(blocks["domain"])
     if found is not None:
         raise ReadingError(found[0], "domain", found[1])
-    _check_functions(blocks["domain"])
     try:
         unsure = taken_out(blocks["problem"])
     except UnsureError as error:
@@ -117,19 +119,13 @@ def _check_kind(part: str, block: Block) -> None:
             )
 
 
-def _check_functions(domain: Block) -> None:
-    """The translator knows numbers only, and fails without a word at other functions."""
-    for section in domain:
-        if not isinstance(section, Block) or section[:1] != [":functions"]:
-            continue
-        for before, word in pairwise(section):
-            if before == "-" and word != "number":
-                raise ReadingError(
-                    f"the functions before this have the type {_shown(word)}; expected "
-                    "'- number', as the only functions are those of action costs",
-                    "domain",
-                    line_of(word),
-                )
+def _function_names(domain: Block) -> set[str]:
+    return {
+        str(each[0])
+        for section in sections(domain, ":functions")
+        for each in section
+        if isinstance(each, Block) and each
+    }
 
 
 def _not_understood(error: Exception) -> ReadingError:
