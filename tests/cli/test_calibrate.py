@@ -186,4 +186,4 @@ def test_a_set_without_pictures_says_so(tpvqa: Run, tmp_path: Path) -> None:
     (tmp_path / "set" / MANIFEST).write_text('{"domain": "household", "pictures": []}')
     code, _, err = tpvqa("calibrate", "--pictures", "set")
     assert code == 2
-    assert "it holds no pictures" in err
+    assert "the set has no pictures" in err
