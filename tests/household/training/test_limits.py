@@ -78,6 +78,37 @@ def test_a_photograph_is_held_back_with_its_whole_group(monkeypatch: pytest.Monk
     assert ((fit.held_back[:, 0] > 0) == (truth == 1)).mean() < 0.75
 
 
+def test_cut_outs_teach_only_where_they_help() -> None:
+    rng = np.random.default_rng(6)
+    truth, groups = rng.integers(0, 2, COUNT), np.array([f"home {i % 10}" for i in range(COUNT)])
+    truth[groups < "home 6"] = 0  # few homes have one
+    photographs = Taught(seen(rng, truth, by_classes=False), truth[:, None], groups)
+    kitchens = Taught(photographs.seen, truth[:, None])
+    more, nothing = rng.integers(0, 2, 4 * COUNT), np.full((4 * COUNT, 2), "")
+    like = Taught(seen(rng, more, by_classes=False), more[:, None], nothing)
+    lying = Taught(like.seen, 1 - more[:, None], nothing)
+    parts = [OPEN], [photographs], [kitchens]
+    assert taught(*parts, {"like": like, "lying": lying}).helped == ["like"]
+    assert taught(*parts, {"lying": lying}).helped == [""]
+
+
+def test_what_was_cut_out_of_a_photograph_is_held_back_with_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Pictures that give a home's secret away do not teach where that home is held back."""
+    monkeypatch.setattr(photo_heads, "KITCHENS", 0.0)
+    rng = np.random.default_rng(7)
+    homes = np.arange(COUNT) // 4
+    truth = rng.integers(0, 2, COUNT // 4)[homes]
+    look = rng.normal(size=(COUNT // 4, 300))[homes].astype(np.float32)
+    pictures = Seen(look, np.zeros((COUNT, 2 * len(CLASSES)), np.float32), look)
+    names = np.array([f"home {home}" for home in homes])
+    cut = Taught(pictures, truth[:, None], np.stack([np.full(COUNT, ""), names], 1))
+    plain = Taught(pictures, truth[:, None], names)
+    fit = taught([OPEN], [plain], [Taught(pictures, truth[:, None])], {"cut": cut})
+    assert ((fit.held_back[:, 0] > 0) == (truth == 1)).mean() < 0.9
+
+
 def test_of_pictures_of_the_kind_the_stated_share_lies_beyond_the_edge() -> None:
     rng = np.random.default_rng(3)
     mix = rng.normal(size=(10, 10))

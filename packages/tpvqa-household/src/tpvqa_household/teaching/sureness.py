@@ -8,6 +8,8 @@ from tpvqa_household.teaching.logistic import even
 _NEAR = 0.5
 """How far, as a logarithm, one head's slope is thought to lie from what suits all."""
 
+_GRID = np.exp(np.linspace(np.log(0.1), np.log(10.0), 120))
+
 
 def slopes(odds: NDArray[np.float64], labels: NDArray[np.int64]) -> NDArray[np.float64]:
     """What the log odds of each head are multiplied by, so that those held back are likeliest.
@@ -18,11 +20,22 @@ def slopes(odds: NDArray[np.float64], labels: NDArray[np.int64]) -> NDArray[np.f
         odds: n × heads, of pictures that did not teach them; nan where there are none.
         labels: n × heads: 1, 0, -1 for not known.
     """
-    grid = np.exp(np.linspace(np.log(0.1), np.log(10.0), 120))
-    losses = np.array([_losses(odds[:, i], labels[:, i], grid) for i in range(odds.shape[1])])
-    common = grid[losses.sum(0).argmin()]
-    away = (np.log(grid / common) / _NEAR) ** 2 / 2
-    return np.asarray(grid[(losses + away).argmin(1)], np.float64)
+    each = np.array([_losses(odds[:, i], labels[:, i], _GRID) for i in range(odds.shape[1])])
+    common = _GRID[each.sum(0).argmin()]
+    away = (np.log(_GRID / common) / _NEAR) ** 2 / 2
+    return np.asarray(_GRID[(each + away).argmin(1)], np.float64)
+
+
+def losses(odds: NDArray[np.float64], labels: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The loss of each head as sure as `slopes` makes it, yes and no weighing alike.
+
+    Args:
+        odds: n × heads, of pictures that did not teach them; nan where there are none.
+        labels: n × heads: 1, 0, -1 for not known.
+    """
+    slope = slopes(odds, labels)
+    each = [_losses(odds[:, i], labels[:, i], slope[[i]])[0] for i in range(len(slope))]
+    return np.array(each)
 
 
 def _losses(

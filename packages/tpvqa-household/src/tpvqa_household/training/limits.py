@@ -27,6 +27,7 @@ from tpvqa_household.embedded.weights import DESCRIPTION, FROZEN, LIMITS, SHIPPE
 from tpvqa_household.images.manifest import load_pictures
 from tpvqa_household.training.asking import Asking
 from tpvqa_household.training.augment import augmented
+from tpvqa_household.training.cutouts import Cutout, pasted, read_cutouts
 from tpvqa_household.training.data import Pictures
 from tpvqa_household.training.graphs import written
 from tpvqa_household.training.imagenet import ImageNetBranch, Seen
@@ -57,6 +58,8 @@ _DIRECTIONS, _TEXTURES = 64, 16
 _SHIPPED = 4
 """How often each shipped picture counts beside one of the training's renderer."""
 _VARIANTS = 4
+_PASTED = 1500
+"""Pictures with cut-outs of each kind."""
 _EVERY = 4
 _FOLDS = 5
 SUBJECTS = tuple(COLUMNS)
@@ -152,9 +155,21 @@ def natural_pictures(texture: Floats, groups: NDArray[np.str_]) -> Likeness:
 
 
 def heads(
-    branch: ImageNetBranch, photographs: Labelled, known: Pictures, seed: int
+    branch: ImageNetBranch,
+    photographs: Labelled,
+    known: Pictures,
+    cutouts: Sequence[Cutout],
+    seed: int,
 ) -> tuple[Heads, Seen]:
-    """The heads, and what the branch makes of the photographs."""
+    """The heads, and what the branch makes of the photographs.
+
+    Args:
+        branch: What sees for the heads.
+        photographs: Those that teach.
+        known: Kitchens of the training.
+        cutouts: Things of the photographs, pasted into kitchens and into other photographs.
+        seed: Decides how pictures are made worse, and what is pasted where.
+    """
     variants = [photographs.pixels]
     variants += [_worse(photographs.pixels, seed, f"variant {n}") for n in range(_VARIANTS)]
     real = [Taught(branch.see(p), photographs.labels, photographs.groups) for p in variants]
@@ -164,7 +179,21 @@ def heads(
     )
     rendered = _both(known.pixels(some), seed, "kitchens of the heads")
     kitchens = Taught(branch.see(rendered), np.concatenate([labels[some]] * 2))
-    return taught(SUBJECTS, real, [kitchens]), real[0].seen
+    with_cutouts = {}
+    if cutouts:
+        others = np.arange(1, len(known), _EVERY // 2)
+        nobody = np.full(len(others), "")
+        scenes = {
+            "kitchens": (known.pixels(others), labels[others], nobody),
+            "photographs": (photographs.pixels, photographs.labels, photographs.groups),
+        }
+        for kind, scene in scenes.items():
+            made = pasted(*scene, cutouts, count=_PASTED, seed=seed)
+            halves = [made.pixels[::2], _worse(made.pixels[1::2], seed, f"cut-outs in {kind}")]
+            order = np.argsort(np.r_[0:_PASTED:2, 1:_PASTED:2])
+            see = branch.see(np.concatenate(halves)[order])
+            with_cutouts[kind] = Taught(see, made.labels, made.groups)
+    return taught(SUBJECTS, real, [kitchens], with_cutouts), real[0].seen
 
 
 def _asked(subject: Subject, weights: Weights) -> list[tuple[str, bool]]:
@@ -199,7 +228,10 @@ def _write(
 
 def _report(fit: Heads, photographs: Labelled) -> str:
     """Of photographs held back: how many a head is sure of, and how often it is right then."""
-    lines = ["| fact | yes | no | sure | right where sure |", "|---|---|---|---|---|"]
+    lines = [
+        "| fact | yes | no | sure | right where sure | cut-outs in |",
+        "|---|---|---|---|---|---|",
+    ]
     edge = np.log(SURE / (1 - SURE))
     for column, subject in enumerate(SUBJECTS):
         odds, label = fit.held_back[:, column], photographs.labels[:, column]
@@ -210,7 +242,7 @@ def _report(fit: Heads, photographs: Labelled) -> str:
         rates = "– | –"
         if sure.any():
             rates = f"{sure.sum() / asked.sum():.2f} | {right[sure].mean():.2f}"
-        lines.append(f"| {subject} | {counts} | {rates} |")
+        lines.append(f"| {subject} | {counts} | {rates} | {fit.helped[column] or '–'} |")
     return "\n".join(lines)
 
 
@@ -244,7 +276,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(
             f"{len(known)} pictures of kitchens, {len(photographs.files)} photographs", flush=True
         )
-        fit, seen = heads(branch, photographs, known, chosen.seed)
+        cutouts = read_cutouts(chosen.photographs, photographs)
+        print(f"{len(cutouts)} cut-outs of them", flush=True)
+        fit, seen = heads(branch, photographs, known, cutouts, chosen.seed)
         print(_report(fit, photographs), flush=True)
         sessions = Sessions(weights, threads=chosen.threads)
         likeness, plane = known_pictures(sessions, known, other, photographs, chosen.seed)
@@ -263,6 +297,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         told["taught"] = {
             "seed": chosen.seed,
             "photographs": len(photographs.files),
+            "cutouts": len(cutouts),
             "kitchens": len(known),
             "held_out": len(other),
             "false_alarms": FALSE_ALARMS,

@@ -2,10 +2,11 @@
 
 Logistic regression, as photographs are few: on the branch's features, and on what ImageNet's own
 classes say of the thing. Photographs and rendered kitchens weigh together, yes and no alike, so
-that the odds are those of a thing that is there as often as not.
+that the odds are those of a thing that is there as often as not. Pictures with cut-outs pasted into
+them teach a head where they make the photographs held back likelier.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,12 +16,14 @@ from tpvqa.errors import MissingExtraError
 from tpvqa_household import DISTRIBUTION
 from tpvqa_household.embedded.likeness import Floats
 from tpvqa_household.teaching.logistic import even
-from tpvqa_household.teaching.sureness import slopes
+from tpvqa_household.teaching.sureness import losses, slopes
 from tpvqa_household.training.imagenet import CLASSES, Seen
 from tpvqa_household.training.subjects import Subject
 
 KITCHENS = 0.3
 """What the kitchens weigh, beside photographs that weigh 1."""
+PASTED = 0.3
+"""What pictures with cut-outs weigh."""
 _CLASSES = 0.3
 """How large ImageNet's classes stand beside the features."""
 _STRENGTH = 10.0
@@ -35,7 +38,7 @@ class Taught:
     Attributes:
         seen: By the frozen branch; of photographs several variants, one after the other.
         labels: n × heads: 1, 0, -1 for not known.
-        groups: Of n photographs; none for kitchens.
+        groups: Of n photographs; n × k where pictures show something of several; none for kitchens.
     """
 
     seen: Seen
@@ -53,12 +56,14 @@ class Heads:
         bias: Of each head.
         held_back: n × heads, log odds of every photograph by heads that its group did not teach;
             nan where it has no label.
+        helped: For each head the kind of pictures with cut-outs that teaches it, "" for none.
     """
 
     features: Floats
     classes: Floats
     bias: Floats
     held_back: NDArray[np.float64]
+    helped: Sequence[str]
 
 
 class _Space:
@@ -99,7 +104,10 @@ class _Space:
 
 
 def taught(
-    subjects: Sequence[Subject], photographs: Sequence[Taught], kitchens: Sequence[Taught]
+    subjects: Sequence[Subject],
+    photographs: Sequence[Taught],
+    kitchens: Sequence[Taught],
+    pasted: Mapping[str, Taught] | None = None,
 ) -> Heads:
     """Fit a head for every subject.
 
@@ -107,13 +115,25 @@ def taught(
         subjects: What the heads are about, the columns of all labels.
         photographs: The photographs as they are, then variants of the same ones, in order.
         kitchens: Rendered pictures.
+        pasted: Kinds of pictures with cut-outs; each head takes what helps it most, or none.
 
     Raises:
         MissingExtraError: scikit-learn is not installed.
     """
     space, plain = _Space(photographs[0].seen), photographs[0]
-    rows = [_Head(space, subject, i, photographs, kitchens) for i, subject in enumerate(subjects)]
-    held_back = np.stack([row.held_back() for row in rows], 1)
+    kinds = {"": None, **(pasted or {})}
+    heads = {
+        kind: [
+            _Head(space, subject, i, photographs, kitchens, taught_by)
+            for i, subject in enumerate(subjects)
+        ]
+        for kind, taught_by in kinds.items()
+    }
+    held = {kind: np.stack([head.held_back() for head in of], 1) for kind, of in heads.items()}
+    loss = np.stack([losses(of, plain.labels) for of in held.values()])
+    helped = [list(kinds)[best] for best in loss.argmin(0)]
+    rows = [heads[kind][i] for i, kind in enumerate(helped)]
+    held_back = np.stack([held[kind][:, i] for i, kind in enumerate(helped)], 1)
     slope = slopes(held_back, plain.labels)
     parts = [space.outputs(*row.fit(None), row.subject) for row in rows]
     features, classes, bias = (np.stack(each) for each in zip(*parts, strict=True))
@@ -122,6 +142,7 @@ def taught(
         (classes * slope[:, None]).astype(np.float32),
         (bias * slope).astype(np.float32),
         held_back * slope,
+        helped,
     )
 
 
@@ -133,6 +154,7 @@ class _Head:
         column: int,
         photographs: Sequence[Taught],
         kitchens: Sequence[Taught],
+        pasted: Taught | None,
     ):
         self.subject = subject
         self._photographs = [space.inputs(each.seen, subject) for each in photographs]
@@ -140,9 +162,13 @@ class _Head:
         self._groups = photographs[0].groups
         self._kitchens = np.concatenate([space.inputs(each.seen, subject) for each in kitchens])
         self._kitchen_labels = np.concatenate([each.labels[:, column] for each in kitchens])
+        self._pasted = None
+        if pasted is not None:
+            inputs = space.inputs(pasted.seen, subject)
+            self._pasted = (inputs, pasted.labels[:, column], pasted.groups)
 
-    def fit(self, left_out: NDArray[np.bool_] | None) -> tuple[NDArray[np.float64], float]:
-        """Weights and bias, without some of the photographs."""
+    def fit(self, left_out: NDArray[np.str_] | None) -> tuple[NDArray[np.float64], float]:
+        """Weights and bias, without some groups of photographs."""
         try:
             from sklearn.linear_model import LogisticRegression
         except ImportError as error:
@@ -151,17 +177,24 @@ class _Head:
             ) from error
         labelled = self._labels >= 0
         if left_out is not None:
-            labelled &= ~left_out
+            labelled &= ~np.isin(self._groups, left_out)
         rendered = self._kitchen_labels >= 0
-        x = np.concatenate(
-            [*(each[labelled] for each in self._photographs), self._kitchens[rendered]]
-        )
         of_photographs = np.tile(self._labels[labelled], len(self._photographs))
         of_kitchens = self._kitchen_labels[rendered]
-        count = int(labelled.sum())
-        weight = np.concatenate([even(of_photographs, count), even(of_kitchens, KITCHENS * count)])
-        y = np.concatenate([of_photographs, of_kitchens])
-        model = LogisticRegression(C=_STRENGTH, max_iter=3000).fit(x, y, sample_weight=weight)
+        x = [*(each[labelled] for each in self._photographs), self._kitchens[rendered]]
+        y, count = [of_photographs, of_kitchens], int(labelled.sum())
+        weight = [even(of_photographs, count), even(of_kitchens, KITCHENS * count)]
+        if self._pasted is not None:
+            inputs, labels, groups = self._pasted
+            told = labels >= 0
+            if left_out is not None:
+                told &= ~np.isin(groups, left_out).any(1)
+            x.append(inputs[told])
+            y.append(labels[told])
+            weight.append(even(labels[told], PASTED * count))
+        model = LogisticRegression(C=_STRENGTH, max_iter=3000).fit(
+            np.concatenate(x), np.concatenate(y), sample_weight=np.concatenate(weight)
+        )
         return model.coef_[0], float(model.intercept_[0])
 
     def held_back(self) -> NDArray[np.float64]:
@@ -169,10 +202,11 @@ class _Head:
         found = np.full(len(self._labels), np.nan)
         groups = np.unique(self._groups[self._labels >= 0])
         for fold in range(_FOLDS):
-            out = np.isin(self._groups, groups[fold::_FOLDS]) & (self._labels >= 0)
+            left_out = groups[fold::_FOLDS]
+            out = np.isin(self._groups, left_out) & (self._labels >= 0)
             left = self._labels[(self._labels >= 0) & ~out]
             if not out.any() or len(set(left.tolist())) < 2:
                 continue
-            weights, bias = self.fit(out)
+            weights, bias = self.fit(left_out)
             found[out] = self._photographs[0][out] @ weights + bias
         return found
