@@ -23,7 +23,7 @@ def domain(
     ("text", "line", "says"),
     [
         (domain(":timed-initial-literals"), 3, "tamer"),
-        (domain(":preferences"), 3, "No engine of unified-planning does"),
+        (domain(":preferences"), 3, "None of unified-planning's engines is known to"),
         (domain(":probabilistic-effects"), 3, "effects by chance"),
         (domain(":non-deterministic"), 3, "effects by chance"),
         (domain(":hierarchy"), 3, "tpvqa's loop reads no task networks"),

@@ -50,7 +50,7 @@ def where_known(feature: str) -> str:
     """Who could plan with a feature, as a sentence without its full stop."""
     names = KNOWS.get(feature, ())
     if not names:
-        return "No engine of unified-planning does"
+        return "None of unified-planning's engines is known to"
     said = map(_named, names)
     if feature == "hierarchy":
         return (
