@@ -23,8 +23,7 @@ from tpvqa.tasks import TaskFiles
 
 pytest.importorskip("up_aries")
 
-TIMED = Path(__file__).parents[1] / "examples/timed"
-LABORATORY, YARD = TIMED / "laboratory", TIMED / "yard"
+LABORATORY = Path(__file__).parents[1] / "examples/timed/laboratory"
 CONFIG = configured(
     domain=str(LABORATORY / "domain.pddl"),
     problem=str(LABORATORY / "problem.pddl"),
@@ -169,25 +168,6 @@ def test_an_end_without_its_effects_is_planned_anew(planner: Planner) -> None:
             assert ended(events).completed
             return
     pytest.fail("no action failed at its end")
-
-
-def test_what_was_cancelled_is_not_cancelled_again(planner: Planner) -> None:
-    """In the yard a crate falls back into the crane: what cancelling takes back is not there."""
-    pddl = {"domain": str(YARD / "domain.pddl"), "problem": str(YARD / "problem.pddl")}
-    config = configured(**pddl, planner="up:aries", monitor="tpvqa", vlm="oracle:1.0")
-    for seed in range(20):
-        events = run(config.but(seed=seed, simulation={"interruption": 0.7}), planner)
-        after = [
-            each
-            for each in events
-            if isinstance(each, Decided)
-            and each.when == "after"
-            and each.action.startswith("(cancel-")
-        ]
-        assert "repeat" not in {each.decision for each in after}
-        if any(each.decision == "replan" for each in after):
-            return
-    pytest.fail("all that was cancelled was as it was expected")
 
 
 def test_a_bench_runs_trials_of_what_lasts() -> None:

@@ -242,7 +242,7 @@ def test_a_state_file_gives_values(lines: str, task: Task, tmp_path: Path) -> No
         ("(= (way hill mud) 5)", "mud is a sample, but ?b of way must be a place"),
         ("(= (capacity) 5)", "no action changes capacity"),
         ("(= (battery) (load))", "is no value of a function"),
-        ("(= (battery 5", "not closed"),
+        ("(= (battery 5", "')' is missing"),
     ],
 )
 def test_a_state_file_whose_numbers_do_not_fit(

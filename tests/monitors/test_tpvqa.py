@@ -54,6 +54,52 @@ def test_a_strict_majority_goes_on_at_a_tie(at: Callable[..., Step]) -> None:
     assert verdict.decision is Decision.GO_ON
 
 
+@pytest.fixture(scope="module")
+def yard() -> Task:
+    """A crane can lift a crate, which takes a while."""
+    folder = Path(__file__).parents[2] / "examples/timed/yard"
+    return load_task(folder / "domain.pddl", folder / "problem.pddl")
+
+
+def cancelling(yard: Task, *, reported: bool = False) -> Step:
+    """Cancelling what carries a crate, after it began."""
+    state = yard.apply(yard.init, yard.action("start-carry", ("c1", "a", "s1", "t1")))
+    cancel = yard.action("cancel-carry", ("c1", "a", "s1", "t1"))
+    plan = Plan((cancel,), 1, "by hand", 0.0)
+    return Step(yard, QuestionBook.load(None, yard), plan, 0, state, reported=reported)
+
+
+@pytest.mark.parametrize(
+    ("truth", "where"),
+    [
+        (["(idle c1)", "(on a t2)", "(empty t1)", "(empty s1)"], "(on a t2)"),
+        (["(lifted a c1)", "(empty s1)"], "(lifted a c1)"),
+    ],
+    ids=["it fell elsewhere", "it still hangs there"],
+)
+def test_what_was_cancelled_runs_no_longer_and_is_looked_for(
+    yard: Task, truth: list[str], where: str
+) -> None:
+    verdict, _, _ = perform(TPVQA().after(cancelling(yard)), knowing(*truth))
+    assert verdict.decision is Decision.REPLAN
+    assert verdict.state is not None
+    assert not any(atom.predicate.startswith("running") for atom in verdict.state)
+    held = {atom.pddl() for atom in verdict.state if atom.predicate in ("on", "lifted")}
+    assert {fact for fact in held if " a" in fact} == {where}
+
+
+def test_what_was_cancelled_as_expected_goes_on(yard: Task) -> None:
+    verdict, _, _ = perform(TPVQA().after(cancelling(yard)), agree)
+    assert verdict.decision is Decision.GO_ON
+    assert verdict.state == yard.init
+
+
+def test_what_could_not_be_stopped_is_cancelled_again(yard: Task) -> None:
+    step = cancelling(yard, reported=True)
+    verdict, _, _ = perform(TPVQA().after(step), replies({}, Reply.NO))
+    assert verdict.decision is Decision.REPEAT
+
+
 @pytest.mark.parametrize(
     ("spec", "name", "looks", "decision"),
     [
