@@ -1,6 +1,6 @@
 """How often tasks with numbers get there: monitors and answers side by side.
 
-python -m benchmarks.numbers rover|aircraft [SEEDS [ENGINE]]
+python -m benchmarks.numeric rover|aircraft [SEEDS [ENGINE]]
 
 The rover has questions and world files of its own. For the aircraft nobody wrote any: it is tried
 without, and with questions as `tpvqa questions --draft` makes them.
