@@ -11,6 +11,8 @@ ROBOT_BIN := $(ROBOT_VENV)/bin
 ROBOT_DEMO := episodes/robot
 # Of the big libraries only what is imported is compiled, and then.
 QUICKLY := --quiet --disable-pip-version-check --no-compile
+# … and kept: where Python is told to keep nothing, each of the tests' processes compiles all anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo test lint types tests gl install install-dev clean robot robot-env test-robot
 
