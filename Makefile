@@ -11,6 +11,11 @@ ROBOT_BIN := $(ROBOT_VENV)/bin
 ROBOT_DEMO := episodes/robot
 # Of the big libraries only what is imported is compiled, and then.
 QUICKLY := --quiet --disable-pip-version-check --no-compile
+# … and kept: where Python is told to keep nothing, each of the tests' processes compiles all anew.
+unexport PYTHONDONTWRITEBYTECODE
+# Ours are built in the environment itself: pip would make another one for each.
+BUILD := hatchling editables
+OURS := $(QUICKLY) --no-deps --no-build-isolation
 
 .PHONY: demo test lint types tests gl install install-dev clean robot robot-env test-robot
 
@@ -56,6 +61,8 @@ $(VENV)/.installed: $(VENV)/bin/python $(PROJECTS)
 
 $(VENV)/.installed-dev: $(VENV)/bin/python $(PROJECTS) requirements-dev.txt
 	@echo "installing tpvqa, its household, the experiments and development tools into $(VENV) …"
+	@$(BIN)/python -m pip install $(QUICKLY) $(BUILD)
+	@$(BIN)/python -m pip install $(OURS) -e packages/tpvqa -e packages/tpvqa-household -e experiments
 	@$(BIN)/python -m pip install $(QUICKLY) -r requirements-dev.txt
 	@touch $(VENV)/.installed $@
 
@@ -90,8 +97,10 @@ $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/py
 	  echo "tpvqa needs Python 3.11 or newer as '$(PYTHON)'. Name one: make PYTHON=python3.12 …"; exit 1; }
 	@$(PYTHON) -m venv $(ROBOT_VENV)
 	@echo "installing tpvqa and its robots into $(ROBOT_VENV) …"
+	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) $(BUILD)
+	@$(ROBOT_BIN)/python -m pip install $(OURS) -e packages/tpvqa -e packages/tpvqa-robots
 	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) \
-	  -e packages/tpvqa -e 'packages/tpvqa-robots[grasps,gym,ros2,trees]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
+	  tpvqa 'tpvqa-robots[grasps,gym,ros2,trees]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
 	  'pytest>=8.2' 'pytest-xdist>=3.6' 'pytest-rerunfailures>=15' 'hypothesis>=6.100'
 	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) --no-deps robosuite==1.5.2
 	@touch $@

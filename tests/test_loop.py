@@ -168,15 +168,17 @@ def test_no_plan_from_the_corrected_state_is_said(planner: Planner, tmp_path: Pa
 # Resuming
 
 
-def long(monitor: str = "tpvqa") -> TrialConfig:
-    return symbolic(vlm="oracle:0.85:0.3", seed=11, episode=2, monitor=monitor)
+def long(monitor: str = "tpvqa", vlm: str = "oracle:0.85:0.3") -> TrialConfig:
+    return symbolic(vlm=vlm, seed=11, episode=2, monitor=monitor)
 
 
-@pytest.mark.parametrize("monitor", ["tpvqa", "belief"])
+@pytest.mark.parametrize(
+    ("monitor", "vlm"), [("tpvqa", "oracle:0.85:0.3"), ("belief", "oracle:0.95:0.3")]
+)
 def test_a_trial_killed_after_any_event_resumes_to_the_same_end(
-    tmp_path: Path, planner: Planner, monitor: str
+    tmp_path: Path, planner: Planner, monitor: str, vlm: str
 ) -> None:
-    whole = unbroken(tmp_path / "whole", long(monitor), planner)
+    whole = unbroken(tmp_path / "whole", long(monitor, vlm), planner)
     assert len(whole) > 40
     for number, cut in enumerate(moments([event.kind for event in whole], spread=12)):
         events = resumed(tmp_path / "whole", cut, planner, torn=bool(number % 2))

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from tpvqa.assembly import Trial
+from tpvqa.belief.faults import FaultModel
 from tpvqa.config import TrialConfig
 from tpvqa.drivers import Parts
 from tpvqa.episodes import EpisodeWriter, read_episode
@@ -92,8 +93,10 @@ def go_on(
 def test_killed_anywhere_it_goes_on_with_a_new_look_to_the_goal(
     kind: type[Monitor], task: Task, planner: Planner, tmp_path: Path
 ) -> None:
+    model = FaultModel(task)
+
     def monitor() -> Monitor:
-        return kind(task) if kind is BeliefMonitor else kind()
+        return BeliefMonitor(task, model=model) if kind is BeliefMonitor else kind()
 
     whole = go_on(tmp_path / "whole", Simulation(task, failure=0), planner, monitor(), kill_at=None)
     for cut in range(len(whole) - 1):

@@ -21,7 +21,7 @@ def run(*words: object) -> subprocess.CompletedProcess[str]:
 
 def test_the_appendix_is_filmed(tmp_path: Path) -> None:
     """One container slips and falls, the other is placed; one grasp goes wrong and is repeated."""
-    done = run("film", "--speed", 25, "--out", tmp_path / "made")
+    done = run("film", "--speed", 50, "--out", tmp_path / "made")
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     text = (tmp_path / "made" / "episode.jsonl").read_text()
     events = [json.loads(line) for line in text.splitlines()]

@@ -22,6 +22,7 @@ from tpvqa.episodes.log import LOG
 from tpvqa.episodes.report import render_report
 from tpvqa.errors import TpvqaError
 from tpvqa.events import Ended, Event, Started
+from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.planning.remembering import Remembering
@@ -73,6 +74,8 @@ def played_back(events: list[Event], folder: Path, told: Trial, planner: Planner
     known = told.started()
     if [getattr(started, name) for name in _TEXTS] == [getattr(known, name) for name in _TEXTS]:
         shared |= {"task": told.task, "book": told.book, "rules": told.rules}
+        if isinstance(told.monitor, BeliefMonitor):
+            shared["model"] = told.monitor.belief.model
     with trial_of(started, **shared) as trial:
         before = events[:-1] if isinstance(last, Ended) else events
         trial.stepping(MemoryWriter(), started=started, recorded=before, folder=folder).begin()

@@ -6,18 +6,26 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
+from tests.cli.conftest import Run
 from tests.pddl.feature_domains import EXHAUSTED
 from tests.planning.test_processes import HARD_DOMAIN, alive, children, eventually, hard_problem
 
 
-def tpvqa(*words: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "tpvqa", *words], cwd=cwd, capture_output=True, text=True
-    )
+class Done(NamedTuple):
+    """What came of a command."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+Typed = Callable[..., Done]
 
 
 @pytest.fixture
@@ -28,8 +36,16 @@ def folder(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.fixture
+def typed(tpvqa: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Typed:
+    """Run a command in that folder."""
+    monkeypatch.chdir(folder)
+    return lambda *words: Done(*tpvqa(*words))
+
+
 def test_a_shipped_task(folder: Path) -> None:
-    done = tpvqa("plan", "clean_dishes", cwd=folder)
+    words = [sys.executable, "-m", "tpvqa", "plan", "clean_dishes"]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0
     lines = done.stdout.splitlines()
     assert lines[0].strip() == "1. find(plate, tv)"
@@ -37,8 +53,8 @@ def test_a_shipped_task(folder: Path) -> None:
     assert os.listdir(folder) == []
 
 
-def test_json(folder: Path) -> None:
-    done = tpvqa("plan", "eat_apple", "--json", "--optimal", cwd=folder)
+def test_json(typed: Typed) -> None:
+    done = typed("plan", "eat_apple", "--json", "--optimal")
     assert done.returncode == 0
     result = json.loads(done.stdout)
     assert set(result) == {"plan", "cost", "planner", "seconds"}
@@ -48,8 +64,8 @@ def test_json(folder: Path) -> None:
     assert 0 < result["seconds"] < 60
 
 
-def test_the_planner_by_name(folder: Path) -> None:
-    done = tpvqa("plan", "clean_dishes", "--planner", "fast-downward:lama", cwd=folder)
+def test_the_planner_by_name(typed: Typed) -> None:
+    done = typed("plan", "clean_dishes", "--planner", "fast-downward:lama")
     assert done.returncode == 0
     assert done.stdout.splitlines()[-1].startswith("cost 4, fast-downward:lama, ")
     for words, says in (
@@ -57,58 +73,58 @@ def test_the_planner_by_name(folder: Path) -> None:
         (["--planner", "fast-forward"], "Did you mean 'fast-downward'?"),
         (["--planner", "fast-downward:lama", "--optimal"], "--optimal is short for"),
     ):
-        done = tpvqa("plan", "clean_dishes", *words, cwd=folder)
+        done = typed("plan", "clean_dishes", *words)
         assert (done.returncode, done.stdout) == (2, "")
         assert says in done.stderr
 
 
-def test_own_files_and_another_state(folder: Path) -> None:
+def test_own_files_and_another_state(typed: Typed, folder: Path) -> None:
     (folder / "my domain.pddl").write_text(EXHAUSTED.domain)
     (folder / "my problem.pddl").write_text(EXHAUSTED.problem)
     files = ("my domain.pddl", "my problem.pddl")
-    done = tpvqa("plan", *files, cwd=folder)
+    done = typed("plan", *files)
     assert done.returncode == 3
     assert "There is no plan: " in done.stderr
     assert done.stdout == ""
     (folder / "state.txt").write_text("(fresh m)\n(fresh d)\n")
-    done = tpvqa("plan", *files, "--from-state", "state.txt", "--json", cwd=folder)
+    done = typed("plan", *files, "--from-state", "state.txt", "--json")
     assert done.returncode == 0
     assert {step["name"] for step in json.loads(done.stdout)["plan"]} == {"light"}
     (folder / "state.txt").write_text("(fresh m)\n(fresh z)\n")
-    done = tpvqa("plan", *files, "--from-state", "state.txt", cwd=folder)
+    done = typed("plan", *files, "--from-state", "state.txt")
     assert done.returncode == 2
     assert done.stderr.startswith("error: state.txt:2: (fresh z): there is no object 'z'")
 
 
 @pytest.mark.parametrize("limit", ["inf", "1e300", "10000000"])
 @pytest.mark.parametrize("command", ["plan", "questions"])
-def test_no_time_limit(folder: Path, command: str, limit: str) -> None:
-    done = tpvqa(command, "clean_dishes", "--timeout", limit, cwd=folder)
+def test_no_time_limit(typed: Typed, command: str, limit: str) -> None:
+    done = typed(command, "clean_dishes", "--timeout", limit)
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_unsolvable_as_json(folder: Path) -> None:
+def test_unsolvable_as_json(typed: Typed, folder: Path) -> None:
     (folder / "state.json").write_text('["(near tv)", "(free left)"]')
-    done = tpvqa("plan", "eat_apple", "--from-state", "state.json", "--json", cwd=folder)
+    done = typed("plan", "eat_apple", "--from-state", "state.json", "--json")
     assert done.returncode == 3
     result = json.loads(done.stdout)
     assert (result["plan"], result["result"]) == (None, "unsolvable")
     assert result["reason"]
 
 
-def test_a_goal_that_holds(folder: Path) -> None:
+def test_a_goal_that_holds(typed: Typed, folder: Path) -> None:
     (folder / "state.txt").write_text("(halved apple)")
-    done = tpvqa("plan", "eat_apple", "--from-state", "state.txt", cwd=folder)
+    done = typed("plan", "eat_apple", "--from-state", "state.txt")
     assert done.returncode == 0
     assert "already holds" in done.stdout
 
 
 @pytest.mark.parametrize("extra", [(), ("--json",)])
-def test_the_time_limit(folder: Path, extra: tuple[str, ...]) -> None:
+def test_the_time_limit(typed: Typed, folder: Path, extra: tuple[str, ...]) -> None:
     (folder / "domain.pddl").write_text(HARD_DOMAIN)
     (folder / "problem.pddl").write_text(hard_problem())
     words = ("plan", "domain.pddl", "problem.pddl", "--optimal", "--timeout", "4", *extra)
-    done = tpvqa(*words, cwd=folder)
+    done = typed(*words)
     assert done.returncode == 4
     if extra:
         assert json.loads(done.stdout)["result"] == "timed out"
@@ -169,26 +185,26 @@ def test_ctrl_c_leaves_nothing_behind(folder: Path) -> None:
         ),
     ],
 )
-def test_bad_input(folder: Path, words: tuple[str, ...], message: str) -> None:
+def test_bad_input(typed: Typed, folder: Path, words: tuple[str, ...], message: str) -> None:
     (folder / "ill.txt").write_text("(near left)")
-    done = tpvqa("plan", *words, cwd=folder)
+    done = typed("plan", *words)
     assert done.returncode == 2
     assert message in done.stderr
     assert "Traceback" not in done.stderr
 
 
-def test_help_names_the_exit_codes(folder: Path) -> None:
-    text = " ".join(tpvqa("plan", "--help", cwd=folder).stdout.split())
+def test_help_names_the_exit_codes(typed: Typed) -> None:
+    text = " ".join(typed("plan", "--help").stdout.split())
     assert "Exit codes: 0 a plan was found, 2 bad input, or a task that is not for" in text
 
 
-def test_tasks(folder: Path) -> None:
-    done = tpvqa("tasks", cwd=folder)
+def test_tasks(typed: Typed) -> None:
+    done = typed("tasks")
     assert done.returncode == 0
     assert "serve_breakfast  (household)" in done.stdout
     assert "on(bread, plate), turned_on(tv)" in done.stdout
     assert "(on(blue_container, goal_area), on(toy_eggplant, blue_container)) or (" in done.stdout
-    listed = json.loads(tpvqa("tasks", "--json", cwd=folder).stdout)
+    listed = json.loads(typed("tasks", "--json").stdout)
     names = [entry["name"] for entry in listed]
     assert names == ["build_tower", "clean_dishes", "collect_toys", "eat_apple", "serve_breakfast"]
     assert listed[3]["goal"] == ["halved(apple)"]
@@ -196,19 +212,19 @@ def test_tasks(folder: Path) -> None:
     assert Path(listed[3]["problem"]).is_file()
 
 
-def test_a_task_that_is_not_for_a_planner_is_no_crash(folder: Path) -> None:
+def test_a_task_that_is_not_for_a_planner_is_no_crash(typed: Typed) -> None:
     yard = Path(__file__).parents[2] / "examples" / "timed" / "yard"
-    done = tpvqa("plan", yard / "domain.pddl", yard / "problem.pddl", cwd=folder)
+    done = typed("plan", yard / "domain.pddl", yard / "problem.pddl")
     assert done.returncode == 2
     assert "This task cannot be planned with fast-downward: actions last here" in done.stderr
     assert "crashed" not in done.stderr
 
 
-def test_no_name_of_a_planner_and_half_an_atom(folder: Path) -> None:
-    done = tpvqa("plan", "clean_dishes", "--planner", "", cwd=folder)
+def test_no_name_of_a_planner_and_half_an_atom(typed: Typed, folder: Path) -> None:
+    done = typed("plan", "clean_dishes", "--planner", "")
     assert done.returncode == 2
     assert "--planner must not be empty" in done.stderr
     (folder / "state").write_text("(free left")
-    done = tpvqa("plan", "clean_dishes", "--from-state", "state", cwd=folder)
+    done = typed("plan", "clean_dishes", "--from-state", "state")
     assert done.returncode == 2
     assert "a ')' is missing" in done.stderr

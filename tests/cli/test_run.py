@@ -113,7 +113,7 @@ def test_without_standard_input(tmp_path: Path) -> None:
 
 def test_experience_is_kept_for_one_vlm_and_by_whoever_goes_on(tpvqa: Run) -> None:
     words = ["--world", "symbolic", "--experience", "known.json", "--seed", 3]
-    assert tpvqa("run", "serve_breakfast", *words, "--vlm", "oracle:0.7", "--out", "one")[0] == 0
+    assert tpvqa("run", "clean_dishes", *words, "--vlm", "oracle:0.7", "--out", "one")[0] == 0
     one = Experience.load(Path("known.json"))
     assert one is not None
     assert (one.vlm, one.trials) == ("oracle:0.7", 1)
@@ -134,7 +134,7 @@ def test_experience_is_kept_for_one_vlm_and_by_whoever_goes_on(tpvqa: Run) -> No
     assert "was written by other trials" in err
     assert Experience.load(Path("known.json")) == one
 
-    code, _, err = tpvqa("run", "serve_breakfast", *words, "--vlm", "oracle:0.9", "--out", "two")
+    code, _, err = tpvqa("run", "clean_dishes", *words, "--vlm", "oracle:0.9", "--out", "two")
     assert code == 0
     assert "how far to trust oracle:0.7" in err
     two = Experience.load(Path("known.json"))

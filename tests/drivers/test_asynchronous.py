@@ -58,11 +58,13 @@ def test_it_is_the_trial_that_the_live_driver_runs(planner: Planner) -> None:
         assert story(run(trial, MemoryWriter())) == story(writer.events)
 
 
-@pytest.mark.parametrize("monitor", ["tpvqa", "belief"])
+@pytest.mark.parametrize(
+    ("monitor", "vlm"), [("tpvqa", "oracle:0.85:0.3"), ("belief", "oracle:0.95:0.3")]
+)
 def test_killed_after_any_event_it_is_gone_on_with_to_the_same_end(
-    tmp_path: Path, planner: Planner, monitor: str
+    tmp_path: Path, planner: Planner, monitor: str, vlm: str
 ) -> None:
-    config = CONFIG.but(monitor={"spec": monitor}, seed=1)
+    config = CONFIG.but(monitor={"spec": monitor}, vlm={"spec": vlm}, seed=1)
     writer = EpisodeWriter(tmp_path / "whole", durable=False)
     with Trial(config, planner=planner) as trial:
         whole = run(trial, writer, folder=tmp_path / "whole")
@@ -206,7 +208,8 @@ def test_a_look_that_is_given_up_is_still_one_look(planner: Planner) -> None:
 
 
 def test_trials_run_beside_each_other_as_they_do_alone(planner: Planner) -> None:
-    configs = [CONFIG.but(monitor={"spec": "belief"}, episode=n) for n in range(3)]
+    config = CONFIG.but(monitor={"spec": "belief"}, vlm={"spec": "oracle:0.95:0.3"})
+    configs = [config.but(episode=n) for n in range(3)]
 
     async def one(config: TrialConfig) -> list[dict[str, object]]:
         with Trial(config, planner=planner) as trial:

@@ -132,12 +132,12 @@ class Counting:
 
 def test_a_plan_that_a_verdict_rests_on_is_not_made_again(planner: Planner) -> None:
     carried = 0
-    for episode in range(12):
+    for episode in range(5):
         counting, writer = Counting(planner), MemoryWriter()
         config = configured(
             task="eat_apple",
             world="symbolic",
-            vlm="oracle:0.8",
+            vlm="oracle:0.9",
             monitor="belief",
             disturbance=0.6,
             episode=episode,

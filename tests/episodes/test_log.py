@@ -3,6 +3,7 @@
 import json
 import os
 import resource
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,10 +16,11 @@ from tpvqa.assembly import Trial
 from tpvqa.belief.experience import Experience
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.episodes.log import LOG
-from tpvqa.episodes.report import write_report
+from tpvqa.episodes.report import render_report, write_report
 from tpvqa.errors import EpisodeError, WriteError
 from tpvqa.events import Resumed
 from tpvqa.observation import Frame
+from tpvqa.pddl.processes import WORKERS
 from tpvqa.resuming import resume
 
 
@@ -94,11 +96,15 @@ def test_who_comes_too_late_to_an_empty_folder_does_not_write_into_it(tmp_path: 
 def file_size(most: int) -> Iterator[None]:
     """No file may grow beyond this, as on a full disk."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (most, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "dont_write_bytecode", True)  # it would be kept torn
+        patch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most, before[1]))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+            WORKERS.close()  # one that was started meanwhile is held to it, too
 
 
 def test_where_the_disk_is_full_the_log_stays_whole_and_is_gone_on_with(tmp_path: Path) -> None:
@@ -130,6 +136,7 @@ def test_a_picture_a_report_or_experience_that_cannot_be_written_leaves_nothing(
     known = tmp_path / "known.json"
     experience = Experience(failure=(1, 2), disturbance=(1, 2))
     experience.save(known)
+    render_report(read_episode(tmp_path), tmp_path)  # now the task is known and needs no room
     before = sorted(tmp_path.rglob("*"))
     for do in (
         lambda: writer.save_frame(Frame("0000-front", "front", bytes(5000))),

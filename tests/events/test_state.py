@@ -27,7 +27,7 @@ def planner() -> Iterator[Planner]:
 
 def trial(planner: Planner, monitor: str, seed: int) -> tuple[list[Event], TrialState]:
     config = configured(
-        task="build_tower", world="symbolic", vlm="oracle:0.7", monitor=monitor, seed=seed
+        task="build_tower", world="symbolic", vlm="oracle:0.8", monitor=monitor, seed=seed
     )
     writer = MemoryWriter()
     with Trial(config, planner=planner) as made:

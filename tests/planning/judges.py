@@ -1,8 +1,11 @@
 """Independent judges: VAL for plans, and a Fast Downward that is called afresh for solvability."""
 
+import json
 import re
 import subprocess
 import sys
+import threading
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -49,11 +52,8 @@ def _searched(
     domain, problem, sas = folder / "domain.pddl", folder / "problem.pddl", folder / "task.sas"
     domain.write_text(task.domain_text)
     problem.write_text(with_state(task, state))
-    subprocess.run(
-        [sys.executable, "-m", "fast_downward.translate", domain, problem, "--sas-file", sas],
-        check=True,
-        capture_output=True,
-    )
+    code = _translator().translate(domain, problem, sas)
+    assert code == 0, f"the translator ended with exit code {code}"
     with sas.open() as file:
         return subprocess.run(
             [find_downward(), "--search", search, "--internal-plan-file", "/dev/null"],
@@ -64,14 +64,41 @@ def _searched(
         )
 
 
+class _Translator:
+    """Fast Downward's own translator, one translation at a time (see `fresh_translator`)."""
+
+    def __init__(self) -> None:
+        self._turn = threading.Lock()
+        self._process = subprocess.Popen(
+            [sys.executable, Path(__file__).with_name("fresh_translator.py")],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def translate(self, *files: Path) -> int:
+        """Translate domain and problem to a SAS file; the exit code."""
+        requests, replies = self._process.stdin, self._process.stdout
+        assert requests is not None
+        assert replies is not None
+        with self._turn:
+            print(json.dumps([str(file) for file in files]), file=requests, flush=True)
+            return int(replies.readline())
+
+
+_translator = cache(_Translator)
+
+
 def val_accepts(task: Task, state: State, actions: tuple[Action, ...], folder: Path) -> bool:
     """Whether VAL finds a plan valid."""
     return "Plan valid" in _vals_report(task, state, actions, folder)
 
 
 def val_value(task: Task, state: State, actions: tuple[Action, ...], folder: Path) -> int:
-    """What a valid plan costs, by VAL: its number of actions where the problem has no metric."""
-    found = re.search(r"Final value: (\d+)", _vals_report(task, state, actions, folder))
+    """What a plan costs, by VAL, which must find it valid: its length where there is no metric."""
+    report = _vals_report(task, state, actions, folder)
+    assert "Plan valid" in report, actions
+    found = re.search(r"Final value: (\d+)", report)
     assert found is not None
     return int(found[1])
 

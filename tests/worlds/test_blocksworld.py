@@ -8,16 +8,17 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.pddl import Task, load_task
-from tpvqa.planning import Plan
+from tpvqa.planning import Plan, Planner
 from tpvqa.planning.fast_downward import FastDownward
+from tpvqa.planning.remembering import Remembering
 from tpvqa.tasks import find_task
 from tpvqa.worlds.simulation import Simulation
 from tpvqa.worlds.world_file import load_world_file
 
 
 @pytest.fixture(scope="module")
-def planner() -> Iterator[FastDownward]:
-    planner = FastDownward()
+def planner() -> Iterator[Planner]:
+    planner = Remembering(FastDownward())
     yield planner
     planner.close()
 
@@ -28,7 +29,7 @@ def task() -> Task:
 
 
 def test_every_block_is_in_one_place_and_one_column_whatever_happens(
-    task: Task, planner: FastDownward
+    task: Task, planner: Planner
 ) -> None:
     rules = load_world_file(find_task("build_tower").world, task)
     undone = 0
