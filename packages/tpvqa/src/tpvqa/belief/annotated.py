@@ -5,7 +5,11 @@ its latest step whose needs hold, however the state came about. Needs are regres
 rest of the plan (Fritz and McIlraith 2007).
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from bisect import bisect
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import accumulate, islice, pairwise
+from operator import xor
+from typing import overload
 
 from tpvqa.pddl import Action, Atom, Literal, State, Task, literals
 
@@ -23,7 +27,7 @@ class AnnotatedPlan:
     """
 
     def __init__(self, task: Task, actions: Sequence[Action], needs: Sequence[Needs]):
-        self.task, self.actions, self.needs = task, tuple(actions), tuple(needs)
+        self.task, self.actions, self.needs = task, tuple(actions), _Needs(needs)
         self._atoms = frozenset(each.atom for need in needs for each in need)
 
     def wanted(self, bits: Callable[[Iterable[Atom]], int]) -> "Wanted":
@@ -38,9 +42,9 @@ class AnnotatedPlan:
         if self.task.goal_holds(state):
             return len(self.actions)
         full = self.task.extend(state)
-        for index in range(len(self.needs) - 1, -1, -1):
-            if all((each.atom in full) is each.positive for each in self.needs[index]):
-                return index
+        for left, need in enumerate(reversed(self.needs)):
+            if all((each.atom in full) is each.positive for each in need):
+                return len(self.actions) - left
         return None
 
     def remaining(self, state: State) -> int | None:
@@ -52,7 +56,8 @@ class AnnotatedPlan:
         """The facts that the plan needs from a step on, goal included."""
         if not first:
             return self._atoms
-        return frozenset(each.atom for need in self.needs[first:] for each in need)
+        rest = islice(self.needs, first, None)
+        return frozenset(each.atom for need in rest for each in need)
 
     def needing(self, atom: Atom, first: int = 0) -> int | None:
         """The first step from a given one whose action itself rests on a fact.
@@ -69,6 +74,43 @@ class AnnotatedPlan:
         return None
 
 
+class _Needs(Sequence[Needs]):
+    """What the steps of a plan and the goal need, kept as what changes from each to the next: a
+    long plan needs much the same at all its steps, and many plans are kept.
+
+    Args:
+        needs: Of every step and the goal.
+    """
+
+    def __init__(self, needs: Sequence[Needs]):
+        self._first, self._last = needs[0], needs[-1]
+        # made of tuples, as the difference of two large sets keeps a large set's room
+        self._changes = tuple(Needs(tuple(one ^ other)) for one, other in pairwise(needs))
+
+    def __len__(self) -> int:
+        return len(self._changes) + 1
+
+    def __iter__(self) -> Iterator[Needs]:
+        return accumulate(self._changes, xor, initial=self._first)
+
+    def __reversed__(self) -> Iterator[Needs]:
+        return accumulate(reversed(self._changes), xor, initial=self._last)
+
+    @overload
+    def __getitem__(self, index: int) -> Needs: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Needs]: ...
+
+    def __getitem__(self, index: int | slice) -> Needs | Sequence[Needs]:
+        if isinstance(index, slice):
+            return list(self)[index]
+        if index == -1:
+            return self._last
+        place = range(len(self))[index]
+        return next(islice(self, place, None))
+
+
 class Wanted:
     """What the steps of a plan and the goal need, as bits of facts, to find a place in it fast.
 
@@ -81,24 +123,33 @@ class Wanted:
     """
 
     def __init__(self, needs: Sequence[Needs], bits: Callable[[Iterable[Atom]], int]):
-        self._steps: list[tuple[int, int, dict[int, int], dict[int, int]]] = []
-        since: dict[Literal, int] = {}
+        self._steps: list[tuple[int, int]] = []
+        self._needed: dict[int, list[int]] = {}
+        self._barred: dict[int, list[int]] = {}
+        before, needed, barred = Needs(), 0, 0
         for index, need in enumerate(needs):
-            since = {each: since.get(each, index) for each in need}
-            needed, barred = dict[int, int](), dict[int, int]()
-            for each, first in since.items():
-                (needed if each.positive else barred)[bits((each.atom,))] = first
-            self._steps.append((sum(needed), sum(barred), needed, barred))
+            for each in need ^ before:
+                bit = bits((each.atom,))
+                if each.positive:
+                    needed ^= bit
+                else:
+                    barred ^= bit
+                if each in need:
+                    since = self._needed if each.positive else self._barred
+                    since.setdefault(bit, []).append(index)
+            self._steps.append((needed, barred))
+            before = need
 
     def latest(self, holding: int) -> int | None:
         """The latest step whose needs are met where some facts hold; None where none is."""
         lacking, index = ~holding, len(self._steps) - 1
         while index >= 0:
-            needed, barred, needed_since, barred_since = self._steps[index]
+            needed, barred = self._steps[index]
             if missing := needed & lacking:  # the lowest bit is that of what is needed first
-                index = needed_since[missing & -missing] - 1
+                begun = self._needed[missing & -missing]
             elif wrong := barred & holding:
-                index = barred_since[wrong & -wrong] - 1
+                begun = self._barred[wrong & -wrong]
             else:
                 return index
+            index = begun[bisect(begun, index) - 1] - 1
         return None

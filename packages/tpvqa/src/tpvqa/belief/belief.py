@@ -12,16 +12,17 @@ from numpy.typing import NDArray
 
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
-from tpvqa.belief.led import Led
-from tpvqa.belief.outcome_weights import Came, OutcomeWeights, carried
+from tpvqa.belief.led import Led, Places
+from tpvqa.belief.noise import NEVER, JointNoise
+from tpvqa.belief.outcome_weights import Earlier, OutcomeWeights, aligned, carried
+from tpvqa.belief.packed import Facts
+from tpvqa.belief.told_apart import ToldApart
 from tpvqa.pddl import Action, Atom, State
 
 SMALLEST = 1e-5
 """Joint states under this probability are dropped."""
 MOST = 300
 """Joint states that are kept; the most probable ones."""
-NEVER = 1e-12
-"""Nothing that is told apart of a VLM's noise is less probable, so that it can be learnt of."""
 LOOKED_BACK = 4
 """Actions before the last one of which it is still known how they came out."""
 
@@ -38,6 +39,10 @@ class Belief:
         state: The initial state, believed for certain (see `open`).
         smallest: Joint states under this probability are dropped.
         most: Joint states that are kept.
+
+    Attributes:
+        led: Where the last action has led; None before the first.
+        outcome_weights: How it came out.
     """
 
     def __init__(
@@ -53,15 +58,15 @@ class Belief:
         first = model.task.init if state is None else state
         model.begin(model.task.init)
         self.weights: dict[int, float] = {model.number(JointState(first)): 1.0}
-        self._noise: dict[int, Floats] = {}
+        self._noise = JointNoise()
         self._summed: Floats | None = None
         self._masses: tuple[tuple[int, ...], Floats] | None = None
-        self._unaware: Floats = np.ones(1)
         self.led: Led | None = None
         self.outcome_weights: OutcomeWeights | None = None
         self._predicted: dict[int, float] = {}
-        self._earlier: list[dict[int, Came]] = []
-        self._marginals: dict[tuple[Atom, ...], float] = {}
+        self._earlier: Earlier = (), np.zeros((0, 3, 0))
+        self._likely: list[float] | None = None
+        self._held: tuple[tuple[int, ...], Facts] | None = None
         self._ranked: list[tuple[int, float]] | None = None
 
     def renew(self) -> dict[int, int]:
@@ -72,18 +77,14 @@ class Belief:
         """
         old, self.model = self.model, self.model.renewed()
         numbers = {number: self.model.number(old.joint_states[number]) for number in self.weights}
-        self._earlier = [
-            {numbers[number]: each for number, each in came.items() if number in numbers}
-            for came in self._remembered()
-        ]
+        known, came = self._remembered()
+        kept = [place for place, number in enumerate(known) if number in numbers]
+        self._earlier = tuple(numbers[known[place]] for place in kept), came[:, :, kept]
         self.weights = {numbers[number]: weight for number, weight in self.weights.items()}
-        self._noise = {
-            numbers[number]: self._noise[number] for number in numbers if number in self._noise
-        }
+        self._noise.renumbered(numbers)
         self.outcome_weights = None
         self._predicted = {}
-        self._marginals.clear()
-        self._ranked = self._summed = self._masses = None
+        self._ranked = self._summed = self._masses = self._likely = self._held = None
         return numbers
 
     def begin(self, states: Sequence[tuple[State, float]]) -> None:
@@ -94,7 +95,7 @@ class Belief:
         self.model.begin(max(states, key=lambda each: each[1])[0])
         self.suppose(self.noise)
         self.outcome_weights = self.led = None
-        self._earlier = []
+        self._earlier = (), np.zeros((0, 3, 0))
         self._become({self.model.number(JointState(state)): weight for state, weight in states})
 
     def suppose(self, noise: Floats) -> None:
@@ -103,26 +104,38 @@ class Belief:
         Args:
             noise: Probabilities of what is told apart.
         """
-        self._unaware = noise
-        self._noise, self._summed, self._masses = {}, None, None
+        self._noise.suppose(noise)
+        self._summed = self._masses = None
+
+    def tell_apart(self, apart: ToldApart) -> None:
+        """Go on with other columns of all that is told apart of the noise."""
+        self._noise.tell_apart(apart, self.masses()[1])
+        self._summed = self._masses = None
+
+    @property
+    def told(self) -> Places:
+        """Columns of all that is told apart of the noise, those that are kept in joint states."""
+        return self._noise.told
+
+    @property
+    def apart(self) -> ToldApart | None:
+        """How these stand for the others; None where there are none."""
+        return self._noise.apart
 
     @property
     def noise(self) -> Floats:
         """What is believed of the VLM's noise: probabilities of what is told apart."""
         if self._summed is None:
-            self._summed = self.masses()[1].sum(axis=0)
+            self._summed = self._noise.whole(self.masses()[1])
         return self._summed
 
     def masses(self) -> tuple[tuple[int, ...], Floats]:
         """The numbers of the joint states; and their probabilities (rows), each with everything
-        that is told apart of the noise."""
+        that is told apart of the noise and not left out (`told`)."""
         if self._masses is None:
-            rows = np.stack([w * self._noise_in(number) for number, w in self.weights.items()])
-            self._masses = tuple(self.weights), rows
+            numbers, weights = tuple(self.weights), np.array(list(self.weights.values()))
+            self._masses = numbers, weights[:, None] * self._noise.rows(numbers)
         return self._masses
-
-    def _noise_in(self, number: int) -> Floats:
-        return self._noise.get(number, self._unaware)
 
     def states(self) -> list[tuple[State, float]]:
         """The joint states with their probabilities, the most probable first."""
@@ -142,12 +155,29 @@ class Belief:
     def probability(self, atom: Atom, alike: Iterable[Atom] = ()) -> float:
         """The probability of a fact, or of it or any fact alike."""
         atoms = (atom, *alike)
-        known = self._marginals.get(atoms)
-        if known is None:
+        if not self.model.packs(atoms):
             truth = self.model.truth(atoms)
-            total = sum(weight for number, weight in self.weights.items() if truth[number])
-            known = self._marginals[atoms] = min(total, 1.0)
-        return known
+            return min(1.0, sum(weight for n, weight in self.weights.items() if truth[n]))
+        weights = self.weights.values()
+        if self._likely is None:
+            self._likely = self._facts().probabilities(np.array(list(weights)))
+        if len(atoms) == 1:
+            place = self.model.bit(atom)
+            return self._likely[place] if place < len(self._likely) else 0.0
+        return min(1.0, float(self.holds(atoms) @ np.array(list(weights))))
+
+    def holds(self, atoms: tuple[Atom, ...]) -> NDArray[np.bool_]:
+        """Where any of some facts holds, of the joint states as `masses` has them."""
+        if not self.model.packs(atoms):
+            truth = self.model.truth(atoms)
+            return np.array([truth[number] for number in self.weights], bool)
+        return self._facts().holds([self.model.bit(atom) for atom in atoms])
+
+    def _facts(self) -> Facts:
+        numbers = tuple(self.weights)
+        if self._held is None or self._held[0] != numbers:
+            self._held = numbers, Facts(self.model.rows(numbers))
+        return self._held[1]
 
     def probabilities(self, atoms: Sequence[Atom]) -> dict[Atom, float]:
         """The probabilities of many facts."""
@@ -204,14 +234,16 @@ class Belief:
                 add(other, mass, came.failure if possible else None)
                 came.disturbed[other] = came.disturbed.get(other, 0.0) + mass
         self.outcome_weights = came
-        self._earlier = [carried(each, led, after) for each in remembered]
-        noise = {begun: self._noise_in(begun) for begun in self.weights}
+        numbers = tuple(self.weights)
+        noise = dict(zip(numbers, self._noise.rows(numbers), strict=True))
         scenes = {n: self.model.kind(n) for n in (*self.weights, *after)}
         self._predicted = dict(after)
         self._become(after)
-        self.led = Led.of(led, self.weights, noise, scenes)
-        self._noise = dict(zip(self.led.after, self.led.mixed, strict=True))
+        self.led = Led.of(led, self.weights, noise, scenes, self.told)
+        self._noise.take(self.led.after, self.led.mixed)
+        self._noise.keep(tuple(self.weights))
         self._summed = self._masses = None
+        self._earlier = carried(remembered, led, after)
 
     def weigh(self, likelihood: Callable[[int], float]) -> float:
         """Weigh every joint state by how probable what was seen is in it (Bayes' rule).
@@ -245,20 +277,23 @@ class Belief:
             {n: weight * (if_true if truth[n] else if_false) for n, weight in self.weights.items()}
         )
 
-    def hear(self, likely: Floats) -> None:
+    def hear(self, likely: Floats, left_out: Floats | None = None) -> None:
         """Weigh by an answer.
 
         Args:
             likely: Its probability in every joint state (rows, as of `masses`), with everything
                 that is told apart of the VLM's noise.
+            left_out: The same with each of what is left out of them; as before where not given.
         """
         numbers, masses = self.masses()
         masses = masses * likely
         weights = masses.sum(axis=1)
+        if left_out is not None:
+            self._noise.answered(left_out, float(weights.sum()))
         noise = np.maximum(masses / np.maximum(weights, 1e-300)[:, None], NEVER)
         if self._weighed(dict(zip(numbers, weights.tolist(), strict=True))):
-            rows = dict(zip(numbers, noise, strict=True))
-            self._noise = {number: rows[number] for number in self.weights}
+            self._noise.take(numbers, noise)
+            self._noise.keep(tuple(self.weights))
             self._summed = self._masses = None
 
     def weigh_outcome(self, *, succeeded: float, failed: float, achieved: float) -> None:
@@ -300,9 +335,7 @@ class Belief:
                 there = self.model.become(number, other)
                 new += there not in grown
                 share = chance * weight / len(others)
-                self._noise[there] = (
-                    grown.get(there, 0.0) * self._noise_in(there) + share * self._noise_in(number)
-                ) / (grown.get(there, 0.0) + share)
+                self._noise.mix(there, grown.get(there, 0.0), number, share)
                 grown[there] = grown.get(there, 0.0) + share
         self._become(grown, self._smallest / most)
         return new
@@ -314,7 +347,9 @@ class Belief:
             part: Which, of all that is told apart of it.
         """
         numbers, masses = self.masses()
-        weights = masses[:, part].sum(axis=1)
+        weights = masses[:, part[self.told]].sum(axis=1)
+        if not weights.any():  # left out: it says nothing of joint states
+            weights = masses.sum(axis=1)
         weights = weights / max(float(weights.sum()), 1e-300)
         return dict(zip(numbers, weights.tolist(), strict=True))
 
@@ -339,28 +374,19 @@ class Belief:
     ) -> list[Mapping[str, float]]:
         """How the actions before the last one came out, after all that was seen since; the latest
         first, as `outcome_shares`."""
-        now = self.weights if weights is None else weights
-        return [
-            {
-                kind: sum(w * came[n][place] for n, w in now.items() if n in came)
-                for place, kind in enumerate(("success", "failure", "achieved"))
-            }
-            for came in self._earlier
-        ]
+        now, (numbers, came) = self.weights if weights is None else weights, self._earlier
+        likely = np.array([now.get(number, 0.0) for number in numbers])
+        kinds = "success", "failure", "achieved"
+        return [dict(zip(kinds, each, strict=True)) for each in (came @ likely).tolist()]
 
-    def _remembered(self) -> list[dict[int, Came]]:
+    def _remembered(self) -> Earlier:
         """How the last actions came out where a joint state is the true one, the latest first."""
-        came = self.outcome_weights
-        if came is None:
-            return self._earlier[:LOOKED_BACK]
-        kinds = (came.success, came.failure, came.achieved)
-        last: dict[int, Came] = {}
-        for number in self.weights:
-            whole = self._predicted.get(number, 0.0)
-            if whole > 0:
-                success, failure, idle = (kind.get(number, 0.0) / whole for kind in kinds)
-                last[number] = success, failure, idle
-        return [last, *self._earlier][:LOOKED_BACK]
+        if self.outcome_weights is None:
+            return self._earlier[0], self._earlier[1][:LOOKED_BACK]
+        numbers = tuple(self.weights)
+        came = self.outcome_weights.came(numbers, self._predicted)
+        earlier = aligned(self._earlier[1], self._earlier[0], numbers)
+        return numbers, np.concatenate([came[None], earlier])[:LOOKED_BACK]
 
     def _become(self, weights: dict[int, float], smallest: float | None = None) -> None:
         total = sum(weights.values())
@@ -370,7 +396,4 @@ class Belief:
             kept = dict(self.model.ranked(kept)[: self._most])
         share = sum(kept.values())
         self.weights = {n: w / share for n, w in kept.items()}
-        if len(self._noise) > len(kept):
-            self._noise = {n: self._noise[n] for n in kept if n in self._noise}
-        self._marginals.clear()
-        self._ranked = self._summed = self._masses = None
+        self._ranked = self._summed = self._masses = self._likely = None

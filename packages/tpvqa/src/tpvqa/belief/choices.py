@@ -1,15 +1,17 @@
 """What can be done next, and what each is expected to cost."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.by_kind import ByKind, Kinds
+from tpvqa.belief.by_kind import Kinds
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.falls import fallen
+from tpvqa.belief.far_off import FarOff
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
@@ -76,11 +78,10 @@ class Chooser:
         self._going: dict[tuple[int, bool], float] = {}
         self._led: dict[Action, dict[tuple[int, bool], list[tuple[float, int, float]]]] = {}
         self._near: dict[Action, dict[int, float]] = {}
-        self._far: dict[Action, ByKind] = {}
-        self._does: dict[Action, ByKind] = {}
-        self._worked_out_for: tuple[int, Rates] | None = None
         checks = CHECKS * (costs.question + costs.look)
         self._step = costs.action + min(checks, 0.1 * costs.action)
+        self._far = FarOff(model, self.ahead, self._step)
+        self._worked_out_for: tuple[int, Rates] | None = None
         self._sought: set[State] = set()
         self._unlikely = self._ends = 0
         self.rounds = Rounds(costs.action)
@@ -104,8 +105,8 @@ class Chooser:
         self.ahead.renumbered(model)
         self._commitments.renumbered(model)
         self._unseen.renumbered(model)
-        for known in (self._near, self._far, self._does):
-            known.clear()
+        self._near.clear()
+        self._far.renumbered(model)
         self.rounds.renumbered(numbers)
 
     def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
@@ -174,8 +175,9 @@ class Chooser:
         self.ahead.may_be_blind(self.settles < SETTLED)
         if (self.ahead.version, rates) != self._worked_out_for:
             self._worked_out_for = self.ahead.version, rates
-            for known in (self._going, self._led, self._near, self._far):
+            for known in (self._going, self._led, self._near):
                 known.clear()
+            self._far.forget()
         ranked = belief.ranked()
         kinds = np.array([self._model.kind(number) for number, _ in ranked], np.intp)
         self._commitments.unplanned.clear()
@@ -237,17 +239,17 @@ class Chooser:
         if together:
             return np.array([self._paid(action, *each, rates, together) for each in ranked])
 
-        def far(place: int) -> tuple[float]:  # only what holds counts then
-            return (self._paid(action, self._model.first(ranked[place][0]), 0.0, rates, {}),)
-
         near, column = self._near.setdefault(action, {}), np.empty(len(ranked))
         many = sum(weight >= DISTURBED for _, weight in ranked)  # the first ones
         for place, (number, _) in enumerate(ranked[:many]):
             if number not in near:
                 near[number] = self._paid(action, number, 1.0, rates, {})
             column[place] = near[number]
-        known = self._far.setdefault(action, ByKind(1))
-        column[many:] = known.of(kinds[many:], lambda place: far(place + many))[:, 0]
+        if many < len(ranked):
+            far, failure = ranked[many:], self.ahead.skill(action).failure
+            idle = partial(self._idling, rates=rates, near=False)
+            left = self._far.costs(action, far, kinds[many:], failure, rates.disturbance, idle)
+            column[many:] = self._step + left
         return column
 
     def _together(
@@ -389,10 +391,4 @@ class Chooser:
     def _done_by(self, action: Action, ranked: Sequence[tuple[int, float]], kinds: Kinds) -> Floats:
         """Where something is left to do for an action, and where it can be done; shape (2,
         states)."""
-        leads_to, first = self._model.outcomes(action), self._model.first
-
-        def done(place: int) -> tuple[float, float]:
-            outcomes = leads_to[first(ranked[place][0])]
-            return float(not outcomes.achieved), float(outcomes.intended is not None)
-
-        return self._does.setdefault(action, ByKind(2)).of(kinds, done).T
+        return self._far.does(action, ranked, kinds).T[:2]

@@ -13,6 +13,7 @@ import numpy as np
 from tpvqa.belief.compiled import Compiled, compiled, met
 from tpvqa.belief.information import Floats
 from tpvqa.belief.memory import Past, Undoing, memory_of
+from tpvqa.belief.packed import Bytes, Packed, held
 from tpvqa.pddl import Action, Atom, State, Task
 
 
@@ -166,6 +167,7 @@ class FaultModel:
         self._keys: dict[int, bytes] = {}
         self._bits: dict[Atom, int] = {}
         self._holding: dict[int, int] = {}
+        self._packed = Packed(self.holding)
         self._kinds: list[int] = []
         self._kind_of: dict[State, int] = {}
         self._states: list[State] = []
@@ -278,22 +280,31 @@ class FaultModel:
 
     def truths(self, facts: Sequence[tuple[Atom, ...]], numbers: Sequence[int]) -> Floats:
         """Where any of some facts holds: ones and zeros, shape (facts, joint states)."""
-        bits = [self.bits(atoms) for atoms in facts]
-        width = len(self._bits) // 8 + 1
-        packed = b"".join(self.holding(number).to_bytes(width, "little") for number in numbers)
-        rows = np.frombuffer(packed, np.uint8).reshape(len(numbers), width)
-        holding = np.unpackbits(rows, axis=1, bitorder="little").T
-        found = np.empty((len(facts), len(numbers)))
-        for place, (atoms, bit) in enumerate(zip(facts, bits, strict=True)):
-            if any(atom.predicate not in self.task.fluents for atom in atoms):
+        rows = self.rows(numbers)
+        bits = np.array([self.bit(atoms[0]) for atoms in facts], np.intp)
+        found = held(rows, bits).T.astype(float)
+        for place, atoms in enumerate(facts):
+            if not self.packs(atoms):
                 truth = self.truth(atoms)
                 found[place] = [truth[number] for number in numbers]
-            elif len(atoms) == 1:
-                found[place] = holding[bit.bit_length() - 1]
-            else:
-                places = [self.bits((atom,)).bit_length() - 1 for atom in atoms]
-                found[place] = holding[places].any(axis=0)
+            elif len(atoms) > 1:
+                places = np.array([self.bit(atom) for atom in atoms])
+                found[place] = held(rows, places).any(axis=1)
         return found
+
+    def rows(self, numbers: Sequence[int]) -> Bytes:
+        """What holds in joint states, as rows of bits."""
+        return self._packed.rows(np.array(numbers, np.intp))
+
+    def packs(self, atoms: Iterable[Atom]) -> bool:
+        """Whether rows of bits tell all of some facts: they do what actions change."""
+        fluents = self.task.fluents
+        return all(atom.predicate in fluents for atom in atoms)
+
+    def bit(self, atom: Atom) -> int:
+        """The place of a fact's bit."""
+        known = self._bits.get(atom)
+        return (self.bits((atom,)) if known is None else known).bit_length() - 1
 
     def outcomes(self, action: Action) -> Mapping[int, Outcomes]:
         """What an action can lead to, by the number of the joint state."""

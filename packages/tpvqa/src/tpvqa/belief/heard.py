@@ -13,11 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.belief.information import Floats
-from tpvqa.belief.lasting import SHARES, STAYS
-from tpvqa.belief.led import Led
-
-Columns = NDArray[np.intp] | slice
-EVERY = slice(None)
+from tpvqa.belief.lasting import EVERY, Columns, shares_of, stays_of
+from tpvqa.belief.led import Led, Places
 
 
 class Drawn(NamedTuple):
@@ -85,10 +82,14 @@ class Heard:
             size: How much is told apart of the noise.
             columns: Of which of that.
         """
-        first = (self.by_truth or _never(size)).only(columns)
+        first = _never(size) if self.by_truth is None else self.by_truth
+        if not isinstance(columns, slice):
+            first = first.only(columns)
         if not numbers:
             return first
-        rows = None if self.rows is None else self.rows.only(columns)
+        rows = self.rows
+        if rows is not None and not isinstance(columns, slice):
+            rows = rows.only(columns)
         if rows is not None and numbers == self.numbers:
             return rows
         unknown = np.where(truth, 0, 1)
@@ -105,10 +106,14 @@ class Heard:
         else:
             self.by_truth = drawn
 
-    def elsewhere(self) -> "Heard":
-        """What that says of another view."""
+    def elsewhere(self, columns: Columns = EVERY) -> "Heard":
+        """What that says of another view.
+
+        Args:
+            columns: Of which of all that is told apart of the noise it is.
+        """
         first, rows = (
-            each and each.elsewhere(_stays(each.yes.shape[-1]))
+            each and each.elsewhere(stays_of(each.yes.shape[-1], columns))
             for each in (self.by_truth, self.rows)
         )
         return Heard(first, self.numbers, rows, self.true, self.believed)
@@ -129,13 +134,19 @@ class Heard:
         was, now = (np.array([truth[n] for n in each]) for each in (led.before, led.after))
         known = Drawn(*(k[led.begun] for k in self.drawn(led.before, was, led.mixed.shape[1])))
         turns = (was[led.begun] != now[led.came])[:, None]
-        stays = np.where(led.same[:, None], 1.0, _stays(led.mixed.shape[1]))
+        stays = np.where(led.same[:, None], 1.0, stays_of(led.mixed.shape[1], led.columns))
         yes = stays * np.where(turns, np.maximum(1 - known.yes - known.new, 0.0), known.yes)
         new = 1 - stays * (1 - known.new)
         kept = np.where(turns[:, 0], 1 - known.kept, known.kept)
         once = np.stack([kept, led.same * known.answers, led.same * known.yeses])
         drawn = Drawn(led.carried(yes), led.carried(new), *led.averaged(once))
         self.told(led.after, drawn)
+
+    def tell_apart(self, taken: Places) -> None:
+        """Go on with other columns, each with what is known of one until now."""
+        self.by_truth, self.rows = (
+            each and each.only(taken) for each in (self.by_truth, self.rows)
+        )
 
     def renumbered(self, numbers: Mapping[int, int]) -> None:
         """Go on with other numbers of the joint states."""
@@ -159,7 +170,9 @@ def own(drawn: Drawn, rate: Floats) -> Floats:
     return found
 
 
-def after_answer(yes: bool, own_yes: Floats, rate: Floats, repeated: Floats) -> Floats:
+def after_answer(
+    yes: bool, own_yes: Floats, rate: Floats, repeated: Floats, columns: Columns = EVERY
+) -> Floats:
     """P(the scene's own answer is a yes) after an answer.
 
     Args:
@@ -167,8 +180,9 @@ def after_answer(yes: bool, own_yes: Floats, rate: Floats, repeated: Floats) -> 
         own_yes: The same before.
         rate: P(yes) of one drawn afresh.
         repeated: Probability that it is the answer before once more.
+        columns: Of which of all that is told apart of the noise.
     """
-    shares = np.tile(SHARES, own_yes.shape[-1] // len(SHARES))
+    shares = shares_of(own_yes.shape[-1], columns)
     this, fresh = (own_yes, rate) if yes else (1 - own_yes, 1 - rate)
     agrees = this * (shares + (1 - shares) * fresh)
     agrees = agrees / np.maximum(shares * this + (1 - shares) * fresh, 1e-12)
@@ -176,10 +190,7 @@ def after_answer(yes: bool, own_yes: Floats, rate: Floats, repeated: Floats) -> 
     return found
 
 
-def _stays(size: int) -> Floats:
-    return np.tile(STAYS, size // len(STAYS))
-
-
+@lru_cache(maxsize=128)
 def _never(size: int) -> Drawn:
     nothing, none = np.zeros((2, size)), np.zeros(2)
     return Drawn(nothing, nothing + 1, none + 1, none, none)

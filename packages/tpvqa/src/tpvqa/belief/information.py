@@ -82,6 +82,7 @@ def answers_to_know(likely: float, doubt: float, each: Reliability) -> float:
     return max(1.0, way / _drift(right) / (1 - each.abstains))
 
 
+@lru_cache(maxsize=4096)
 def settled(each: Reliability) -> float:
     """How far many answers tell a fact from its contrary, both as probable before: 1 less twice the
     probability that the likelier one is not true in the end."""

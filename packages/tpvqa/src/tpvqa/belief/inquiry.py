@@ -1,8 +1,7 @@
 """What to ask next, if anything: the questions whose answers save more than they cost."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
 from itertools import islice
 from operator import mul
 
@@ -30,6 +29,8 @@ TOGETHER = 4
 """Questions that are thought to be asked together, at most."""
 SAYING = 0.02
 """A question whose further answers settle less of a doubt is exhausted in this scene."""
+AT_ONCE = 8
+"""Questions of which it is worked out at once what is expected of their answers."""
 EQUAL = 1e-9
 """Savings that differ by less are equal: the last bits of a sum are the processor's."""
 
@@ -138,39 +139,26 @@ class Inquirer:
                 place,
                 question,
                 likely[place],
-                partial(self._evidence.expect, question, open_views[0]),
+                open_views[0],
+                self._evidence,
             )
             doubted.append(doubt)
             if most[place] > asking:  # else even the truth would not be worth a question
                 worth.append(doubt)
         if worth:
-            places = [each.place for each in worth]
-            reliabilities = [each.reliability for each in worth]
-            saved = gains(
-                if_true[places],
-                if_false[places],
-                work_if_true[:, places],
-                work_if_false[:, places],
-                reliabilities,
-                TIMES,
-            ).tolist()
-            most_saved, asked = 0.0 if found is None else found.saving, None
-            for each, own in zip(worth, saved, strict=True):
-                text = each.question.text
-                seen = picture is not None and not self._evidence.asked_of(text, picture)
-                for times, gain in zip(TIMES, own, strict=True):
-                    looks = times - 1 if seen else times
-                    if times > budget.questions or looks > budget.looks:
-                        break
-                    saving = gain - times * asking - looks * looking
-                    if saving > most_saved + EQUAL:
-                        most_saved, asked = saving, (each.question, times)
-            if asked is not None:
-                found = Inquiry(asked[0], max(1, asked[1] // 4), most_saved)
+            found = self._alone(
+                worth,
+                (if_true, if_false, work_if_true, work_if_false),
+                (now - if_true.min(axis=1) - if_false.min(axis=1)).tolist(),
+                budget,
+                picture,
+                (asking, looking),
+                found,
+            )
         doubted = _once(doubted)
         if now > asking:
             doubted.sort(key=lambda each: each.urgent)
-        first = list(islice((each for each in doubted if _says(each.reliability)), TOGETHER))
+        first = list(islice(self._saying(doubted), TOGETHER))
         if len(first) > 1 and now > asking:
             own_truths = truths[[each.place for each in first]]
             found = self._together(
@@ -179,6 +167,7 @@ class Inquirer:
         ending, action = table.best.action is None, self._costs.action
         asks = person and self._costs.person is not None
         if len(doubted) > 1 and (ending or table.mistaken(action / 2) > 0.5):
+            _expect(doubted)
             doubted.sort(key=lambda each: not _says(each.reliability))
             if not asks:
                 doubted = [each for each in doubted if _says(each.reliability)]
@@ -198,6 +187,69 @@ class Inquirer:
                 found,
             )
         return found
+
+    def _alone(
+        self,
+        worth: "Sequence[_Doubted]",
+        costs: tuple[Floats, Floats, Floats, Floats],
+        most: Sequence[float],
+        budget: Budget,
+        picture: Picture | None,
+        prices: tuple[float, float],
+        found: Inquiry | None,
+    ) -> Inquiry | None:
+        """The question whose answers save most by themselves.
+
+        What is expected of answers is worked out for those first that may save most, and for no
+        others than may still save more than what was found.
+
+        Args:
+            worth: The questions.
+            costs: Of every question the first four arguments of `gains`.
+            most: Of every question, what its answers may save at most, whatever they are worth.
+            budget: What may still be asked.
+            picture: The latest one.
+            prices: Of a question, and of a look.
+            found: What is asked otherwise.
+        """
+        asking, looking = prices
+        best = 0.0 if found is None else found.saving
+        order = sorted(range(len(worth)), key=lambda place: -most[worth[place].place])
+        saved: dict[int, list[float]] = {}
+        for begins in range(0, len(order), AT_ONCE):
+            left = [
+                place
+                for place in order[begins : begins + AT_ONCE]
+                if most[worth[place].place] - asking > best - 4 * EQUAL
+            ]
+            if not left:
+                break
+            asked = [worth[place] for place in left]
+            for place, gained in zip(left, _gains(asked, costs), strict=True):
+                text = worth[place].question.text
+                seen = picture is not None and not self._evidence.asked_of(text, picture)
+                saved[place] = []
+                for times, gain in zip(TIMES, gained, strict=True):
+                    looks = times - 1 if seen else times
+                    if times > budget.questions or looks > budget.looks:
+                        break
+                    saved[place].append(gain - times * asking - looks * looking)
+                best = max(best, *saved[place]) if saved[place] else best
+        most_saved, chosen = 0.0 if found is None else found.saving, None
+        for place, each in enumerate(worth):
+            if place not in saved:
+                self._evidence.keep(each.question, each.view)
+            for times, saving in zip(TIMES, saved.get(place, ()), strict=False):
+                if saving > most_saved + EQUAL:
+                    most_saved, chosen = saving, (each.question, times)
+        return found if chosen is None else Inquiry(chosen[0], max(1, chosen[1] // 4), most_saved)
+
+    def _saying(self, doubted: "Sequence[_Doubted]") -> "Iterator[_Doubted]":
+        """Those whose answers say anything."""
+        for begins in range(0, len(doubted), TOGETHER):
+            several = doubted[begins : begins + TOGETHER]
+            _expect(several)
+            yield from (each for each in several if _says(each.reliability))
 
     def _all(
         self,
@@ -258,19 +310,51 @@ class _Doubted:
         urgent: Orders them: what matters most first, then what is least known.
         place: Among all questions.
         likely: The probability that yes is right.
-        expect: Works out `reliability`.
+        view: From where it is asked next.
+        evidence: Says what is expected of answers.
+        expected: That, once it was worked out.
     """
 
     urgent: tuple[float, float]
     place: int
     question: FactQuestion
     likely: float
-    expect: Callable[[], Reliability]
+    view: str | None
+    evidence: Evidence
+    expected: Reliability | None = None
 
-    @cached_property
+    @property
     def reliability(self) -> Reliability:
         """What is expected of the answers."""
-        return self.expect()
+        if self.expected is None:
+            self.expected = self.evidence.expect(self.question, self.view)
+        return self.expected
+
+
+def _expect(doubted: "Sequence[_Doubted]") -> None:
+    """Work out what is expected of the answers to several questions."""
+    left = [each for each in doubted if each.expected is None]
+    if left:
+        told = left[0].evidence.expect_all([(each.question, each.view) for each in left])
+        for each, expected in zip(left, told, strict=True):
+            each.expected = expected
+
+
+def _gains(
+    asked: "Sequence[_Doubted]", costs: tuple[Floats, Floats, Floats, Floats]
+) -> list[list[float]]:
+    """`gains` of some questions."""
+    _expect(asked)
+    places, (if_true, if_false, work_if_true, work_if_false) = [each.place for each in asked], costs
+    told: list[list[float]] = gains(
+        if_true[places],
+        if_false[places],
+        work_if_true[:, places],
+        work_if_false[:, places],
+        [each.reliability for each in asked],
+        TIMES,
+    ).tolist()
+    return told
 
 
 def _once(doubted: "Sequence[_Doubted]") -> "list[_Doubted]":

@@ -4,6 +4,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass, field
 
 from tpvqa.belief.heard import Heard
+from tpvqa.belief.lasting import Columns
 from tpvqa.pddl import Atom
 from tpvqa.vlm import Reply
 
@@ -30,9 +31,14 @@ class LastAnswer:
     acted: int
     heard: dict[str | None, Heard] = field(default_factory=dict)
 
-    def heard_from(self, view: str | None) -> Heard:
-        """What was heard of it, as it counts from a view."""
+    def heard_from(self, view: str | None, columns: Columns) -> Heard:
+        """What was heard of it, as it counts from a view.
+
+        Args:
+            view: The view.
+            columns: Of which of all that is told apart of the noise that is known.
+        """
         known = self.heard.get(view)
         if known is None:
-            known = self.heard[view] = self.heard[self.view].elsewhere()
+            known = self.heard[view] = self.heard[self.view].elsewhere(columns)
         return known

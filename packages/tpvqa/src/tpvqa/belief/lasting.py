@@ -12,8 +12,13 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tpvqa.belief.information import Floats
+
+Columns = NDArray[np.intp] | slice
+"""Which of all that is told apart of the noise; in `KINDS` along it, once or several times over."""
+EVERY = slice(None)
 
 
 class Kind(NamedTuple):
@@ -68,26 +73,53 @@ def _over(size: int) -> tuple[Floats, Floats, Floats]:
     return np.tile(_COINS, times), np.tile(_LASTS, times), np.tile(SHARES, times)
 
 
-def own_rate(rate: Floats) -> Floats:
+def _kinds(size: int, columns: Columns) -> tuple[Floats, Floats, Floats]:
+    if isinstance(columns, slice):
+        return _over(size)
+    kinds = columns % len(KINDS)
+    return _COINS[kinds], _LASTS[kinds], SHARES[kinds]
+
+
+def shares_of(size: int, columns: Columns) -> Floats:
+    """The lasting shares of some columns.
+
+    Args:
+        size: How many.
+        columns: Which.
+    """
+    return _kinds(size, columns)[2]
+
+
+def stays_of(size: int, columns: Columns) -> Floats:
+    """`Kind.stays` of some columns; arguments as those of `shares_of`."""
+    if isinstance(columns, slice):
+        return np.tile(STAYS, size // len(KINDS))
+    found: Floats = STAYS[columns % len(KINDS)]
+    return found
+
+
+def own_rate(rate: Floats, columns: Columns = EVERY) -> Floats:
     """P(yes) of the scene's own answer before it is drawn.
 
     Args:
         rate: P(yes) of an answer of which nothing is known, by `KINDS` along the last axis, once or
             several times over.
+        columns: Which of these they are.
     """
-    coins, _, shares = _over(rate.shape[-1])
+    coins, _, shares = _kinds(rate.shape[-1], columns)
     own = np.clip((rate - (1 - shares) / 2) / np.maximum(shares, 0.5), SUREST, 1 - SUREST)
     return np.where(coins, own, rate)
 
 
-def fresh_rate(rate: Floats, answers: Floats, yeses: Floats) -> Floats:
+def fresh_rate(rate: Floats, answers: Floats, yeses: Floats, columns: Columns = EVERY) -> Floats:
     """P(yes) of an answer drawn afresh, after some answers in the same scene.
 
     Args:
         rate: As that of `own_rate`.
         answers: How many there were.
         yeses: How many of them were yeses.
+        columns: As that of `own_rate`.
     """
-    coins, lasts, _ = _over(rate.shape[-1])
+    coins, lasts, _ = _kinds(rate.shape[-1], columns)
     known = (DISPERSED * rate + yeses) / (DISPERSED + answers)
     return np.where(coins, 0.5, np.where(lasts, known, rate))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.faults import Rates
+from tpvqa.belief.information import Floats
 from tpvqa.belief.lasting import KINDS
 from tpvqa.belief.skills import SkillState
 from tpvqa.belief.trust import GRID
@@ -41,10 +42,16 @@ class Learned:
         ]
         self._parts = [part for part in self._parts if part.any()]
         self._chances = [deepcopy(chances) for _ in self._parts]
+        self._known: tuple[Floats | None, list[tuple[float, Chances]]] = None, []
 
     def _weighed(self) -> list[tuple[float, Chances]]:
         """How probable each range is, the most probable first."""
         noise = self._belief.noise
+        if self._known[0] is not noise:
+            self._known = noise, self._ranges(noise)
+        return self._known[1]
+
+    def _ranges(self, noise: Floats) -> list[tuple[float, Chances]]:
         weights = (
             [float(noise[part].sum()) for part in self._parts] if len(self._parts) > 1 else [1.0]
         )

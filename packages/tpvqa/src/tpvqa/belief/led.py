@@ -1,12 +1,13 @@
 """Where joint states have led: what is known along the way goes with them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.belief.information import Floats
+from tpvqa.belief.lasting import EVERY, Columns
 
 Places = NDArray[np.intp]
 
@@ -25,6 +26,7 @@ class Led:
         weights: How probable it is to have come each way.
         shares: How probable it is to have come each way (rows), for everything told apart.
         mixed: What is believed of the noise in the joint states after it (rows).
+        columns: Which of all that is told apart they are.
     """
 
     before: tuple[int, ...]
@@ -36,6 +38,7 @@ class Led:
     shares: Floats
     mixed: Floats
     _first: Places
+    columns: Columns = field(default_factory=lambda: EVERY)
 
     @staticmethod
     def of(
@@ -43,6 +46,7 @@ class Led:
         after: Mapping[int, float],
         noise: Mapping[int, Floats],
         scenes: Mapping[int, int],
+        columns: Columns = EVERY,
     ) -> "Led":
         """Of single ways.
 
@@ -51,14 +55,15 @@ class Led:
             after: All weight of each joint state after the action; ways to others are left out.
             noise: What was believed of the noise in each before it.
             scenes: What tells scenes apart, of each.
+            columns: Which of all that is told apart of the noise these are.
         """
         ways = [way for way in led if way[2] > 0 and way[1] in after]
         before = tuple(dict.fromkeys(old for old, _, _ in ways))
         reached = tuple(dict.fromkeys(new for _, new, _ in ways))
-        columns = {number: place for place, number in enumerate(before)}
+        places = {number: place for place, number in enumerate(before)}
         rows = {number: place for place, number in enumerate(reached)}
         ways.sort(key=lambda way: rows[way[1]])
-        begun = np.array([columns[old] for old, _, _ in ways])
+        begun = np.array([places[old] for old, _, _ in ways])
         came = np.array([rows[new] for _, new, _ in ways])
         same = np.array([scenes[old] == scenes[new] for old, new, _ in ways])
         first = np.flatnonzero(np.diff(came, prepend=-1))
@@ -67,7 +72,17 @@ class Led:
         masses = weights[:, None] * np.stack([noise[number] for number in before])[begun]
         mixed = np.add.reduceat(masses, first)
         shares = masses / np.maximum(mixed, 1e-300)[came]
-        return Led(before, reached, begun, came, same, weights, shares, mixed, first)
+        return Led(before, reached, begun, came, same, weights, shares, mixed, first, columns)
+
+    def told_apart(self, columns: Columns, taken: Places) -> "Led":
+        """The same by other columns.
+
+        Args:
+            columns: They.
+            taken: Of each the place of the one whose part it takes.
+        """
+        shares, mixed = self.shares[:, taken], self.mixed[:, taken]
+        return replace(self, shares=shares, mixed=mixed, columns=columns)
 
     def carried(self, known: Floats) -> Floats:
         """What is known after it of something that is known of each way (rows)."""

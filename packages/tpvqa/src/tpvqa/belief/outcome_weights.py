@@ -3,8 +3,13 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-Came = tuple[float, float, float]
-"""Shares of success, of failure, and of nothing left to do."""
+import numpy as np
+
+from tpvqa.belief.information import Floats
+
+Earlier = tuple[tuple[int, ...], Floats]
+"""Numbers of joint states; and how earlier actions came out where each is the true one, the latest
+first: shares of success, of failure, and of nothing left to do; shape (actions, 3, states)."""
 
 
 @dataclass(slots=True)
@@ -39,21 +44,57 @@ class OutcomeWeights:
             )
         }
 
+    def came(self, numbers: tuple[int, ...], predicted: Mapping[int, float]) -> Floats:
+        """How the action came out where each of some joint states is the true one: shares of
+        success, of failure, and of nothing left to do, shape (3, joint states).
 
-def carried(
-    came: Mapping[int, Came], led: Sequence[tuple[int, int, float]], after: Mapping[int, float]
-) -> dict[int, Came]:
-    """How an earlier action came out, by the joint states that a later one has led to.
+        Args:
+            numbers: The joint states.
+            predicted: Their weights before anything was seen.
+        """
+        whole = np.array([predicted.get(number, 0.0) for number in numbers])
+        kinds = self.success, self.failure, self.achieved
+        came = np.array([[kind.get(number, 0.0) for number in numbers] for kind in kinds])
+        return np.where(whole > 0, came / np.where(whole > 0, whole, 1.0), 0.0)
+
+
+def aligned(came: Floats, known: tuple[int, ...], numbers: tuple[int, ...]) -> Floats:
+    """How earlier actions came out, by other joint states: of those that are not known, nothing.
 
     Args:
-        came: By the joint states before it.
+        came: Shares of each of some actions, of each kind; shape (actions, kinds, joint states).
+        known: The numbers of these joint states.
+        numbers: Those of the others.
+    """
+    if known == numbers:
+        return came
+    places = {number: place for place, number in enumerate(known)}
+    taken = [places.get(number, -1) for number in numbers]
+    found: Floats = np.pad(came, ((0, 0), (0, 0), (0, 1)))[..., taken]
+    return found
+
+
+def carried(
+    earlier: Earlier, led: Sequence[tuple[int, int, float]], after: Mapping[int, float]
+) -> Earlier:
+    """How earlier actions came out, by the joint states that a later one has led to.
+
+    Args:
+        earlier: By those before it.
         led: What it led from where to where, with which weight.
         after: All weight of each joint state.
     """
-    found: dict[int, Came] = {}
-    for begun, number, weight in led:
-        if begun in came and after[number] > 0:
-            share, (a, b, c) = weight / after[number], came[begun]
-            x, y, z = found.get(number, (0.0, 0.0, 0.0))
-            found[number] = x + share * a, y + share * b, z + share * c
-    return found
+    known, came = earlier
+    places = {number: place for place, number in enumerate(known)}
+    numbers = {number: place for place, number in enumerate(after)}
+    ways = [
+        (places[old], numbers[new], weight / after[new])
+        for old, new, weight in led
+        if old in places and after[new] > 0
+    ]
+    found = np.zeros((len(after), *came.shape[:2]))
+    if ways:
+        begun, there, shares = zip(*ways, strict=True)
+        gone = came[..., list(begun)] * np.array(shares)
+        np.add.at(found, np.array(there), gone.transpose(2, 0, 1))
+    return tuple(after), found.transpose(1, 2, 0)

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Sequence
 from math import inf
 
+import numpy as np
+
 from tpvqa.belief.annotated import AnnotatedPlan, Wanted
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
@@ -265,19 +267,22 @@ class Outlook:
 
     def _rests_of(self, actions: Sequence[Action]) -> list[float]:
         """What a plan costs from each of its places: repeated where checks say so, or unchecked."""
-        rests, checked, unchecked, works, dead = [0.0], 0.0, 0.0, 1.0, 0.0
-        for action in reversed(actions):
-            known = self._priced.get(id(action))  # of a plan, which keeps it
-            if known is None:
-                priced = self.step(action), self.skill(action).failure, self.dead(action)
-                known = self._priced[id(action)] = priced
-            checked += known[0]
-            unchecked += self._costs.action
-            works *= 1 - known[1]
-            dead = max(dead, known[2])  # steps of a plan are dead together, or none
-            rest = min(checked, unchecked + (1 - works) * self.failure)
-            rests.append((1 - dead) * rest + dead * self.failure)
-        return rests[::-1]
+        if not actions:
+            return [0.0]
+        steps, fails, dead = np.array([self._price(action) for action in reversed(actions)]).T
+        unchecked = np.cumsum(np.full(len(actions), self._costs.action))
+        unchecked += (1 - np.cumprod(1 - fails)) * self.failure
+        rests, dead = np.minimum(np.cumsum(steps), unchecked), np.maximum.accumulate(dead)
+        rests = (1 - dead) * rests + dead * self.failure  # steps are dead together, or none
+        return [*rests[::-1].tolist(), 0.0]
+
+    def _price(self, action: Action) -> tuple[float, float, float]:
+        """What a step of a plan costs, how often it fails, and how probable it is to be dead."""
+        known = self._priced.get(id(action))  # of a plan, which keeps it
+        if known is None:
+            priced = self.step(action), self.skill(action).failure, self.dead(action)
+            known = self._priced[id(action)] = priced
+        return known
 
     @property
     def failure(self) -> float:

@@ -6,7 +6,9 @@ try adds a likelihood over rates, not a count.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from operator import is_not
 
 import numpy as np
 
@@ -117,6 +119,8 @@ class Tried:
     """
 
     runs: list[_Run]
+    _told: list[Floats] = field(default_factory=list)
+    _likelihood: Floats = field(default_factory=lambda: np.ones_like(_RATES))
 
     @property
     def times(self) -> float:
@@ -131,11 +135,13 @@ class Tried:
     @property
     def likelihood(self) -> Floats:
         """Of what was seen, for every rate, shape (rates,)."""
-        found: Floats = np.ones_like(_RATES)
-        for run in self.runs:
-            found = found * run.likelihood
-        found /= found.max()
-        return found
+        told = [run.likelihood for run in self.runs]  # another array after every judgement
+        if len(told) != len(self._told) or any(map(is_not, told, self._told)):
+            found: Floats = np.ones_like(_RATES)
+            for each in told:
+                found = found * each
+            self._told, self._likelihood = told, found / found.max()
+        return self._likelihood
 
     def as_if_failed(self) -> "Tried":
         """The same if all tries of the last run have failed."""
@@ -156,7 +162,7 @@ class Skills:
         self.learned = 0
         self._tried: dict[str, dict[Action, Tried]] = {}
         self._known: dict[tuple[Action | str, float, float], SkillState] = {}
-        self._causes: dict[tuple[str, float, float], dict[Cause, float]] = {}
+        self._shared: dict[tuple[str, float, float], _Shared] = {}
         self._run: _Run | None = None
         self._latest: list[_Run | None] = []
 
@@ -172,15 +178,14 @@ class Skills:
         key = (action if own else action.name, round(mean, 3), round(strength, 1))
         found = self._known.get(key)
         if found is None:
-            causes = self._causes.get((action.name, mean, strength))
-            if causes is None:
-                causes = self._causes[action.name, mean, strength] = _causes(own, mean, strength)
-            found = _worked_out(action, own, causes, mean, strength)
+            shared = self._shared.get((action.name, mean, strength))
+            if shared is None:
+                shared = self._shared[action.name, mean, strength] = _Shared(own, mean, strength)
+            found = shared.of(action)
             if self._run is not None and self._run.action == action:
                 # Where there still is something to do, all tries of the run have failed.
                 own = {**own, action: own[action].as_if_failed()}
-                causes = _causes(own, mean, strength)
-                worst = _worked_out(action, own, causes, mean, strength)
+                worst = _Shared(own, mean, strength).of(action)
                 found = replace(found, failure=worst.failure, at_worst=worst.dead)
             self._known[key] = found
         return found
@@ -236,7 +241,7 @@ class Skills:
         self._latest = [self._run, *self._latest][:LOOKED_BACK]
         self.learned += 1
         self._known.clear()
-        self._causes.clear()
+        self._shared.clear()
 
 
 Cause = tuple[object, ...]
@@ -248,35 +253,51 @@ def _covering(action: Action) -> list[Cause]:
     return [(), *single, *([action.arguments] if len(single) > 1 else [])]
 
 
-def _worked_out(
-    action: Action,
-    own: "Mapping[Action, Tried]",
-    causes: "Mapping[Cause, float]",
-    mean: float,
-    strength: float,
-) -> SkillState:
-    dead = DEAD
-    if own:
-        dead = min(sum(causes.get(each, 0.0) for each in _covering(action)), 1.0)
-    others = [tried for other, tried in own.items() if other != action]
-    weights = _prior(mean, strength)
-    for tried in others:
-        weights *= tried.likelihood[:-1]
-    weights /= max(weights.sum(), _EDGE)
-    if action in own:
-        # Alike as skills are, with other objects it may be easier or harder.
-        known = 1 / (1 / ALIKE + 1 / (strength + sum(tried.times for tried in others)))
-        weights = _prior(float(weights @ _RATES[:-1]), known) * own[action].likelihood[:-1]
-        weights /= max(weights.sum(), _EDGE)
-    failure = float(weights @ _RATES[:-1])
-    tries = float((weights / (1 - _RATES[:-1])).sum())
-    shown = 0.0
-    if action in own:
-        likelihood = own[action].likelihood
-        works = (1 - SUSPECT) * float(_prior(mean, strength) @ likelihood[:-1])
-        shown = SUSPECT * likelihood[-1] / (SUSPECT * likelihood[-1] + works)
-    vain = sum(tried.failed for tried in own.values())
-    return SkillState(dead + (1 - dead) * failure, dead, tries, min(dead, shown), dead, vain)
+class _Shared:
+    """What the tries of a skill, with whatever objects, say of each of them.
+
+    Args:
+        own: Those tries.
+        mean: The common rate of failure.
+        strength: How many cases that is known from.
+    """
+
+    def __init__(self, own: "Mapping[Action, Tried]", mean: float, strength: float):
+        self._own, self._prior = own, _prior(mean, strength)
+        self._causes = _causes(own, self._prior) if own else {}
+        self._strength, self._times = strength, sum(tried.times for tried in own.values())
+        self._vain = sum(tried.failed for tried in own.values())
+        told = [tried.likelihood[:-1] for tried in own.values()]
+        before, after = [self._prior], [np.ones_like(self._prior)]
+        for each, last in zip(told, reversed(told), strict=True):
+            before.append(before[-1] * each)
+            after.append(after[-1] * last)
+        self._all = before[-1]
+        others = (a * b for a, b in zip(before, after[-2::-1], strict=False))
+        self._others: dict[Action, Floats] = dict(zip(own, others, strict=True))
+
+    def of(self, action: Action) -> SkillState:
+        """What is known of the skill with its objects."""
+        dead, own = DEAD, self._own
+        if own:
+            dead = min(sum(self._causes.get(each, 0.0) for each in _covering(action)), 1.0)
+        weights = self._others.get(action, self._all)
+        weights = weights / max(weights.sum(), _EDGE)
+        if action in own:
+            # Alike as skills are, with other objects it may be easier or harder.
+            others = self._times - own[action].times
+            known = 1 / (1 / ALIKE + 1 / (self._strength + others))
+            common = _prior(float(weights @ _RATES[:-1]), known)
+            weights = common * own[action].likelihood[:-1]
+            weights /= max(weights.sum(), _EDGE)
+        failure, tries = float(weights @ _RATES[:-1]), float((weights / (1 - _RATES[:-1])).sum())
+        shown = 0.0
+        if action in own:
+            likelihood = own[action].likelihood
+            works = (1 - SUSPECT) * float(self._prior @ likelihood[:-1])
+            shown = SUSPECT * likelihood[-1] / (SUSPECT * likelihood[-1] + works)
+        failed = dead + (1 - dead) * failure
+        return SkillState(failed, dead, tries, min(dead, shown), dead, self._vain)
 
 
 def _chance(cause: Cause, action: Action) -> float:
@@ -284,28 +305,37 @@ def _chance(cause: Cause, action: Action) -> float:
     return DEAD_WITH / (len(_covering(action)) - 1) if cause else DEAD
 
 
-def _causes(own: "Mapping[Action, Tried]", mean: float, strength: float) -> dict[Cause, float]:
+def _causes(own: "Mapping[Action, Tried]", prior: Floats) -> dict[Cause, float]:
     """How probable each cause is, one at most of a skill, by what its tries came to."""
-    logs = {action: np.log(np.maximum(tried.likelihood, 1e-300)) for action, tried in own.items()}
-    total = sum(logs.values(), np.zeros_like(_RATES))
-    prior = np.log(np.maximum(_prior(mean, strength), 1e-300))
-    of: dict[Cause, list[Action]] = {}
-    for action in own:
+    logs = np.log(np.maximum([tried.likelihood for tried in own.values()], 1e-300))
+    total, prior = logs.sum(axis=0), np.log(np.maximum(prior, 1e-300))
+    of: dict[Cause, list[int]] = {}
+    chances: dict[Cause, float] = {}
+    for place, action in enumerate(own):
         for cause in _covering(action):
-            of.setdefault(cause, []).append(action)
-    chances = {cause: _chance(cause, actions[0]) for cause, actions in of.items()}
-    none = np.log(max(1 - sum(chances.values()), 0.5)) + np.logaddexp.reduce(prior + total[:-1])
-    found = {}
-    for cause, actions in of.items():
-        dead = sum((logs[action] for action in actions), np.zeros_like(_RATES))
-        alive = np.logaddexp.reduce(prior + (total - dead)[:-1])
-        found[cause] = float(np.log(chances[cause]) + dead[-1] + alive)
-    most = max(float(none), *found.values()) if found else 0.0
-    weights = {cause: float(np.exp(value - most)) for cause, value in found.items()}
-    whole = sum(weights.values()) + float(np.exp(none - most))
-    return {cause: weight / whole for cause, weight in weights.items()}
+            of.setdefault(cause, []).append(place)
+            chances.setdefault(cause, _chance(cause, action))
+    covered = np.zeros((len(of), len(own)))
+    for row, places in enumerate(of.values()):
+        covered[row, places] = 1.0
+    dead = covered @ logs
+    alive = _summed(prior + (total - dead)[:, :-1])
+    none = np.log(max(1 - sum(chances.values()), 0.5)) + _summed(prior + total[:-1])
+    found = np.log(list(chances.values())) + dead[:, -1] + alive
+    most = max(float(none), float(found.max()))
+    weights = np.exp(found - most)
+    weights /= weights.sum() + np.exp(none - most)
+    return dict(zip(of, weights.tolist(), strict=True))
 
 
+def _summed(logs: Floats) -> Floats:
+    """The logarithm of a sum along the last axis, of logarithms."""
+    most = logs.max(axis=-1)
+    found: Floats = most + np.log(np.exp(logs - most[..., None]).sum(axis=-1))
+    return found
+
+
+@lru_cache(maxsize=1024)
 def _prior(mean: float, strength: float) -> Floats:
     """Of a skill's rate, if it works: as far from the common one as skills are from each other
     and as the common one is unsure; shape (rates - 1,)."""

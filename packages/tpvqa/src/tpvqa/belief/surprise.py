@@ -12,6 +12,8 @@ from tpvqa.belief.places import further_places
 from tpvqa.errors import BeliefError, PlannerError
 from tpvqa.pddl import Atom, State, Task
 
+KNOWN = 64
+"""Answers to which it is kept what else could be true."""
 FARTHER = 2
 """Facts by which a state may differ more than the nearest does."""
 
@@ -55,6 +57,8 @@ class Surprise:
         """
         key = (state, atoms)
         if key not in self._known:
+            if len(self._known) >= KNOWN:
+                self._known.clear()
             self._known[key] = tuple(self._nearest(state, atoms))
         return self._known[key]
 

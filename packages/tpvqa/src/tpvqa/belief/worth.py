@@ -6,18 +6,21 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.belief.heard import EVERY, Columns, Drawn, after_answer, own
+from tpvqa.belief.heard import Drawn, after_answer, own
 from tpvqa.belief.information import Floats, Mixture, Reliability
 from tpvqa.belief.lasting import (
     DISPERSED,
+    EVERY,
     KINDS,
     RECORDED,
     SHARES,
     STAYS,
     SUREST,
+    Columns,
     fresh_rate,
     own_rate,
 )
+from tpvqa.belief.led import Places
 from tpvqa.belief.trust import GRID, Trust
 
 SURE = 1e-9
@@ -52,10 +55,24 @@ class Cases:
         """What may be the case when it is asked in another scene; see `Drawn.elsewhere`."""
         return replace(self, drawn=self.drawn.elsewhere(stays[self.columns]))
 
-    def where(self, known: Floats, *, true: bool) -> float:
-        """The expectation of something, one number for each case, where yes is right or not."""
-        weights = self.mass.sum(axis=1) * (self.truth == true)
-        return float(weights @ known / max(weights.sum(), 1e-300))
+    def standing_for(self, places: Places, columns: Columns) -> "Cases":
+        """The two cases that yes is right and that no is, for what is left out of these.
+
+        Args:
+            places: Which of the columns here stand for it.
+            columns: What is left out.
+        """
+        where, drawn = np.stack([self.truth, ~self.truth]).astype(float), self.drawn
+        kinds, index = np.unique(places, return_inverse=True)
+        mass = self.mass[:, kinds]
+        weights = np.maximum(where @ mass, 1e-300)
+        yes, new = (where @ (mass * each[:, kinds]) / weights for each in (drawn.yes, drawn.new))
+        rows = where * self.mass.sum(axis=1)
+        once = rows @ np.stack([drawn.kept, drawn.answers, drawn.yeses], axis=1)
+        once /= np.maximum(rows.sum(axis=1, keepdims=True), 1e-300)
+        known = Drawn(yes[:, index], new[:, index], *once.T)
+        weights = weights / weights.sum(axis=0)
+        return Cases(weights[:, index], np.array([True, False]), known, columns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +137,7 @@ class Worth:
         self._counts = np.array([share > 0 and not coin for share, coin in told])
         self._weights: Floats = np.outer(first, last).ravel()
         self._new: dict[Pair, Reliability] = {}
+        self._told: dict[Pair, tuple[Floats, Floats, Floats]] = {}
         self._by_words = self._by_answers = np.full_like(self._grid, ANSWERS)
         self._as_said = int(np.argmin(abs(self._grid - 1.0)))
 
@@ -131,16 +149,11 @@ class Worth:
 
     def believe(self, weights: Floats) -> None:
         """Take over what is believed of the noise."""
-        if self.trust is not None:
+        if self.trust is not None and weights is not self._weights:
             self._weights = weights
             by_trust = weights.reshape(-1, len(KINDS)).sum(axis=1)
             self.trust.weights = tuple(by_trust.tolist())
             self._new.clear()
-
-    @property
-    def columns(self) -> Columns:
-        """Those of all that is told apart which are not next to impossible."""
-        return np.flatnonzero(self._weights > SLIGHT)
 
     @property
     def lasting(self) -> tuple[float, ...]:
@@ -165,56 +178,64 @@ class Worth:
             cases: What may be the case; None where the question was never asked.
         """
         if cases is not None:
-            return self._expected(rates, cases)
+            return self.expect_all([(rates, cases)])[0]
         known = self._new.get(rates)
         if known is None:
-            known = self._new[rates] = self._expected(rates, None)
+            told = tuple(each[None] for each in self._rates_of(rates))
+            known = self._new[rates] = self._expected(told, None, EVERY)[0]
         return known
 
-    def _expected(self, rates: Pair, cases: Cases | None) -> Reliability:
-        mixtures: list[Mixture] = []
-        known = self._aggregated(cases) if cases is not None else None
-        columns = EVERY if cases is None else cases.columns
+    def expect_all(self, asked: Sequence[tuple[Pair, Cases]]) -> list[Reliability]:
+        """What further answers to several questions will be; their cases are told apart alike.
+
+        Args:
+            asked: For each the arguments of `expect`.
+        """
+        if not asked:
+            return []
+        columns = asked[0][1].columns
+        rates = zip(*(self._rates_of(each) for each, _ in asked), strict=True)
+        told = tuple(np.stack(each)[..., columns] for each in rates)
+        return self._expected(told, np.stack([_aggregated(cases) for _, cases in asked]), columns)
+
+    def _expected(
+        self, told: Sequence[Floats], known: Floats | None, columns: Columns
+    ) -> list[Reliability]:
+        """What is expected of answers to several questions.
+
+        Args:
+            told: `_rates_of` each, shape (questions, 2, columns).
+            known: `_aggregated` of each, shape (questions, 5, 2, columns); None where none was
+                asked.
+            columns: Those that are told apart.
+        """
         believed, counts, groups = (
             each[columns] for each in (self._weights, self._counts, self._groups)
         )
-        for place, every in enumerate(self._rates(rates)):
-            weights, rate = believed, every[columns]
-            yes, fresh = own_rate(every)[columns], fresh_rate(every, *_NONE)[columns]
-            if known is not None:
-                mass, drawn, new, prior, seen = (each[place] for each in known)
-                weights = mass + SURE * believed
-                whole = np.maximum(weights, 1e-300)
-                yes = (drawn + new * yes + SURE * yes * believed) / whole
-                lasts = (prior * rate + seen + SURE * fresh * believed) / whole
-                fresh = np.where(counts, lasts, fresh)
-            weights = weights / weights.sum()
-            together, low, said = (
-                each @ groups for each in (weights, weights * fresh, weights * yes)
-            )
-            low = (1 - self._distinct) * low / np.maximum(together, 1e-12)
-            mixture: list[Pair] = []
-            parts = np.stack([self._distinct, together, low, said], axis=1).tolist()
-            for share, weight, afresh, own_yes in parts:
-                if share == 0.0:
-                    mixture.append((weight, afresh))
-                else:
-                    mixture += [(own_yes, share + afresh), (weight - own_yes, afresh)]
-            mixtures.append(tuple(mixture))
-        return Reliability.mixed(mixtures[0], mixtures[1], 0.0)
+        rate, yes, fresh = told
+        weights = np.broadcast_to(believed, rate.shape)
+        if known is not None:
+            mass, drawn, new, prior, seen = known.swapaxes(0, 1)
+            slight = SURE * believed
+            weights = mass + slight
+            whole = np.maximum(weights, 1e-300)
+            yes = (drawn + new * yes + slight * yes) / whole
+            fresh = np.where(counts, (prior * rate + seen + slight * fresh) / whole, fresh)
+        weights = weights / weights.sum(axis=-1, keepdims=True)
+        together, low, said = (each @ groups for each in (weights, weights * fresh, weights * yes))
+        low = (1 - self._distinct) * low / np.maximum(together, 1e-12)
+        shares = np.broadcast_to(self._distinct, together.shape)
+        parts = np.stack([shares, together, low, said], axis=-1).tolist()
+        return [Reliability.mixed(_mixture(true), _mixture(false), 0.0) for true, false in parts]
 
-    @staticmethod
-    def _aggregated(cases: Cases) -> tuple[Floats, ...]:
-        """Sums over the cases in which yes is right and in which no is (rows), for everything told
-        apart: of their mass; of it where the scene's own answer is a yes, and not drawn yet; of the
-        shares by which the rate of those drawn afresh is known beforehand, and from answers."""
-        truth, drawn = cases.truth, cases.drawn
-        where = np.stack([truth, ~truth]).astype(float)
-        prior = DISPERSED / (DISPERSED + drawn.answers)
-        seen = drawn.yeses / (DISPERSED + drawn.answers)
-        once = np.concatenate([where, where * prior, where * seen]) @ cases.mass
-        own_yes, new = where @ (cases.mass * drawn.yes), where @ (cases.mass * drawn.new)
-        return once[:2], own_yes, new, once[2:4], once[4:]
+    def _rates_of(self, rates: Pair) -> tuple[Floats, Floats, Floats]:
+        """P(yes) of an answer, of the scene's own one, and of one drawn afresh, as long as none
+        has come: where yes is right, and where no is."""
+        known = self._told.get(rates)
+        if known is None:
+            every = np.stack(self._rates(rates))
+            known = self._told[rates] = every, own_rate(every), fresh_rate(every, *_NONE)
+        return known
 
     def _rates(self, rates: Pair) -> tuple[Floats, Floats]:
         """P(yes) of an answer drawn afresh: drawn towards one half as far as it cannot be
@@ -237,19 +258,20 @@ class Worth:
             cases: What may be the case.
             rates: As those of `expect`.
         """
-        right = 1 / (1 + np.exp(-self._grid * said.ratio))
-        of_yes = np.where(
-            cases.truth[:, None], *((right, 1 - right) if said.yes else (1 - right, right))
-        )
-        first, drawn = own_rate(of_yes), cases.drawn
+        columns, drawn = cases.columns, cases.drawn
+        shares = self.shares[columns]
+        right = 1 / (1 + np.exp(-self._grid[columns] * said.ratio))
+        of_yes = np.stack([right, 1 - right] if said.yes else [1 - right, right])
+        where = np.where(cases.truth, 0, 1)
+        first, of_yes = own_rate(of_yes, columns)[where], of_yes[where]
         own_yes = own(drawn, first)
-        of_yes = fresh_rate(of_yes, drawn.answers[:, None], drawn.yeses[:, None])
+        of_yes = fresh_rate(of_yes, drawn.answers[:, None], drawn.yeses[:, None], columns)
         this, fresh = (own_yes, of_yes) if said.yes else (1 - own_yes, 1 - of_yes)
-        repeats = said.repeats * cases.drawn.kept[:, None]
+        repeats = said.repeats * drawn.kept[:, None]
         again = repeats * said.same
-        likely = again + (1 - repeats) * (self.shares * this + (1 - self.shares) * fresh)
+        likely = again + (1 - repeats) * (shares * this + (1 - shares) * fresh)
         repeated = again / np.maximum(likely, 1e-12)
-        told = after_answer(said.yes, own_yes, of_yes, repeated)
+        told = after_answer(said.yes, own_yes, of_yes, repeated, columns)
         probable = (cases.mass * likely).sum(axis=1)
         whole = []
         for true in (True, False):
@@ -268,6 +290,39 @@ class Worth:
         self._by_words = self._by_words + _says(self._grid, abs(np.log(yes / no)))
         self._by_answers = self._by_answers + _says(self._grid, abs(said.ratio))
         self._new.clear()
+        self._told.clear()
+
+
+def _aggregated(cases: Cases) -> Floats:
+    """Sums over the cases in which yes is right and in which no is, for everything told apart: of
+    their mass; of it where the scene's own answer is a yes, and not drawn yet; of the shares by
+    which the rate of those drawn afresh is known beforehand, and from answers; shape (5, 2,
+    columns)."""
+    truth, drawn, mass = cases.truth, cases.drawn, cases.mass
+    size = mass.shape[1]
+    where = np.stack([truth, ~truth]).astype(float)
+    prior = DISPERSED / (DISPERSED + drawn.answers)
+    seen = prior * drawn.yeses / DISPERSED
+    once = np.concatenate([where, where * prior, where * seen])
+    found = once @ np.concatenate([mass, mass * drawn.yes, mass * drawn.new], axis=1)
+    told = found.reshape(3, 2, 3, size)
+    return np.stack([told[0, :, 0], told[0, :, 1], told[0, :, 2], told[1, :, 0], told[2, :, 0]])
+
+
+def _mixture(parts: Sequence[Sequence[float]]) -> Mixture:
+    """What several answers come to.
+
+    Args:
+        parts: Of each lasting share: it, how probable it is, P(yes) of its answers drawn afresh
+            times what does not last, and how probable it is with an own answer that is a yes.
+    """
+    found: list[Pair] = []
+    for share, weight, afresh, own_yes in parts:
+        if share == 0.0:
+            found.append((weight, afresh))
+        elif weight > 0.0:
+            found += [(own_yes, share + afresh), (weight - own_yes, afresh)]
+    return tuple(found)
 
 
 def by_truth(weights: Floats, true: float | Floats, drawn: Drawn) -> Cases:

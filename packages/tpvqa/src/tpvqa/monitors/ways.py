@@ -8,6 +8,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.choices import LIKELY, Chooser
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.learned import Learned
+from tpvqa.belief.outlook import KNOWN
 from tpvqa.belief.skills import CLOSELY, NAMED, SUSPECT
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.inspection import Inspection
@@ -177,3 +178,6 @@ class Ways:
                 return
             known = self._annotated[state] = AnnotatedPlan(self._task, plan.actions, needs)
         self.chooser.ahead.add(known)
+        for old in list(self._annotated)[: len(self._annotated) - KNOWN]:  # worked out anew if need
+            if self._annotated[old] not in self.chooser.plans:
+                del self._annotated[old]

@@ -1,0 +1,199 @@
+"""What is expected of further answers, by all that was heard until now."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.calibration import Apart, Calibration
+from tpvqa.belief.chances import Beta
+from tpvqa.belief.heard import Heard
+from tpvqa.belief.hearing import Hearing
+from tpvqa.belief.information import Floats, Reliability, answers_to_be_sure, settled
+from tpvqa.belief.last_answer import LastAnswer
+from tpvqa.belief.lasting import EVERY, Columns
+from tpvqa.belief.led import Places
+from tpvqa.belief.other_words import OtherWords
+from tpvqa.belief.settling import Settling, in_doubt
+from tpvqa.belief.trust import Trust
+from tpvqa.belief.weighed import Weighed
+from tpvqa.belief.worth import SLIGHT, Cases, Worth, by_truth, moved
+from tpvqa.questions.question import FactQuestion
+from tpvqa.vlm import Reply
+
+PAIRS = 4.0
+"""Pairs of answers that ρ counts for without any data."""
+
+Pair = tuple[float, float]
+_NONE = np.zeros(0, bool)
+
+
+class Expected:
+    """What is expected of answers.
+
+    Args:
+        belief: What is believed.
+        calibration: What answers are worth.
+        trust: Whether they are worth that; None to take the calibration at its word.
+        words: How far the wordings of a question err alike.
+
+    Attributes:
+        worth: What answers are worth, as far as they have shown it.
+    """
+
+    def __init__(
+        self,
+        belief: Belief,
+        calibration: Calibration,
+        trust: Trust | None,
+        words: OtherWords | None,
+    ):
+        self._belief, self._calibration, self._trust = belief, calibration, trust
+        self._weighed: Weighed = belief
+        self._repeats = {
+            apart: _cases(calibration.repeat(apart), PAIRS + calibration.pairs(apart))
+            for apart in Apart
+        }
+        self._words = words or OtherWords()
+        self._hearing = Hearing(self._words)
+        self.worth = Worth(trust, calibration.lasting)
+        belief.suppose(self.worth.weights)
+        self._likeliest: tuple[Floats, tuple[Floats, Columns, Places]] | None = None
+
+    def answers_to_be_sure(self) -> float:
+        """How many answers of this VLM it takes to notice a mistake."""
+        rates = self._calibration.whole.rates
+        expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false))
+        right = (expected.yes_if_true + 1 - expected.yes_if_false) / 2
+        sure = answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
+        return 1 + (sure - 1) * max(0.0, 5 * self.settling().share - 4)
+
+    def settling(self, questions: Iterable[FactQuestion] = ()) -> Settling:
+        """How far the answers in another scene would settle what is in doubt.
+
+        Args:
+            questions: About what may be in doubt; none for a fact that was never asked about.
+        """
+        whole = self._calibration.whole.rates
+        new = self.worth.expect((whole.yes_if_true, whole.yes_if_false))
+        told: list[tuple[str, float, Reliability | None]] = []
+        asked: list[tuple[Pair, Cases]] = []
+        for question in questions:
+            true = self._weighed.probability(question.atom, question.alike)
+            expected: Reliability | None = new
+            if in_doubt(true):
+                nearest = self._words.nearest(question)
+                last = self._hearing.last.get(question.text if nearest is None else nearest.text)
+                if last is not None:
+                    rates = self._rates(question)
+                    heard = self._heard_of(question, last.view) if self.worth.lasts else None
+                    expected = self.worth.expect(rates) if heard is None else None
+                    if heard is not None:
+                        cases = self._cases(question, heard, likely=True)
+                        asked.append((rates, cases.elsewhere(self.worth.stays)))
+            told.append((question.family, true, expected))
+        further = iter(self.worth.expect_all(asked))
+        doubts: dict[str, tuple[float, Reliability]] = {}
+        for family, true, expected in told:
+            each, known = expected or next(further), doubts.get(family)
+            if known is None or settled(each) > settled(known[1]):
+                doubts[family] = true, each
+        return Settling.of(doubts.values(), new)
+
+    def _rates(self, question: FactQuestion) -> Pair:
+        rates = self._calibration.group(question).rates
+        return rates.yes_if_true, rates.yes_if_false
+
+    def expect(self, question: FactQuestion, view: str | None) -> Reliability:
+        """What the next answers to a question, at new looks from a view, are worth."""
+        return self.expect_all([(question, view)])[0]
+
+    def expect_all(self, questions: Iterable[tuple[FactQuestion, str | None]]) -> list[Reliability]:
+        """The same of several questions, each with a view."""
+        found: list[Reliability | None] = []
+        asked: list[tuple[Pair, Cases]] = []
+        answered: list[tuple[FactQuestion, str | None]] = []
+        for question, view in questions:
+            heard, rates = self._heard_of(question, view), self._rates(question)
+            if heard is None:
+                found.append(self._abstaining(question, self.worth.expect(rates)))
+                continue
+            found.append(None)
+            asked.append((rates, self._cases(question, heard, likely=True)))
+            answered.append((question, view))
+        told = zip(answered, asked, self.worth.expect_all(asked), strict=True)
+        further = (self._repeating(*each, cases, new) for each, (_, cases), new in told)
+        return [each or next(further) for each in found]
+
+    def keep(self, question: FactQuestion, view: str | None) -> None:
+        """Note that a question matters still: what was heard of it is not forgotten."""
+        self._heard_of(question, view)
+
+    def _abstaining(self, question: FactQuestion, expected: Reliability) -> Reliability:
+        rates = self._calibration.group(question).rates
+        abstains = min((rates.abstain_if_true + rates.abstain_if_false) / 2, 0.95)
+        return replace(expected, abstains=abstains)
+
+    def _repeating(
+        self, question: FactQuestion, view: str | None, cases: Cases, found: Reliability
+    ) -> Reliability:
+        """What is expected of answers that may repeat the last one."""
+        last = self._hearing.last.get(question.text)
+        if last is not None:
+            rho = self._repeats[answered_apart(last, view)].mean
+            before = 1.0 if last.reply is Reply.YES else 0.0
+            if_true, if_false = (
+                tuple((share, again * before + (1 - again) * each) for share, each in mixture)
+                for again, mixture in zip(
+                    (rho * same for same in unchanged(cases)), found.mixtures, strict=True
+                )
+            )
+            found = Reliability.mixed(if_true, if_false, 0.0)
+        return self._abstaining(question, found)
+
+    def _heard_of(self, question: FactQuestion, view: str | None) -> Heard | None:
+        """What was heard of a question, in other words if not in these; None for nothing."""
+        return self._hearing.of(question, view, self._belief.model)
+
+    def _cases(self, question: FactQuestion, heard: Heard, *, likely: bool = False) -> Cases:
+        """What may be the case when a question is asked; where only what is likely counts, without
+        what is next to impossible of the noise."""
+        if self._weighed is not self._belief:
+            now = self._weighed.probability(question.atom, question.alike)
+            size = len(self.worth.weights)
+            true, drawn = moved(heard.true, heard.believed, now), heard.drawn((), _NONE, size)
+            return by_truth(self.worth.weights, true, drawn)
+        numbers, mass = self._belief.masses()
+        self.worth.believe(self._belief.noise)
+        right, columns = self._belief.holds(question.atoms), self._belief.told
+        places: Columns = EVERY
+        if likely:
+            mass, places, columns = self._likely(mass, columns)
+        return Cases(
+            mass, right, heard.drawn(numbers, right, len(self._belief.told), places), columns
+        )
+
+    def _likely(self, mass: Floats, columns: Places) -> tuple[Floats, Columns, Places]:
+        """The columns that are not next to impossible: masses, places, and which they are."""
+        known = self._likeliest
+        if known is None or known[0] is not mass:
+            places = np.flatnonzero(self.worth.weights[columns] > SLIGHT)
+            known = self._likeliest = mass, (mass[:, places], places, columns[places])
+        return known[1]
+
+
+def unchanged(cases: Cases) -> Pair:
+    """Probability that yes (no) was right at the last answer already, where it is right now."""
+    weights = cases.mass.sum(axis=1)
+    where = np.stack([weights * cases.truth, weights * ~cases.truth])
+    true, false = ((where @ cases.drawn.kept) / np.maximum(where.sum(axis=1), 1e-300)).tolist()
+    return true, false
+
+
+def _cases(mean: float, cases: float) -> Beta:
+    return Beta(cases * mean, cases * (1 - mean))
+
+
+def answered_apart(last: LastAnswer, view: str | None) -> Apart:
+    return Apart.SAME_VIEW if last.view == view else Apart.OTHER_VIEW
