@@ -1,14 +1,15 @@
 """Which ways to the goal a belief monitor knows, and where it has others planned."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from typing import Any
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.choices import LIKELY, Chooser
+from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.learned import Learned
 from tpvqa.belief.outlook import KNOWN
+from tpvqa.belief.seeking import LIKELY
 from tpvqa.belief.skills import CLOSELY, NAMED, SUSPECT
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.inspection import Inspection
@@ -83,12 +84,11 @@ class Ways:
         if way is None:
             return None
         place, plan = way
-        actions = plan.actions[place:]
-        return Plan(actions, sum(each.cost for each in actions), "a known plan", 0.0)
+        return known_plan(plan.actions[place:])
 
     def seek(self, belief: Belief) -> Generator[Request, Any, None]:
         """Have plans made for what is likely, and without what does not work."""
-        while (state := self.chooser.unplanned(belief)) is not None:
+        while (state := self.chooser.seeking.unplanned(belief)) is not None:
             if state in self._plans:  # other plans have taken its place meanwhile
                 self._annotate(self._plans[state], state)
                 continue
@@ -181,3 +181,8 @@ class Ways:
         for old in list(self._annotated)[: len(self._annotated) - KNOWN]:  # worked out anew if need
             if self._annotated[old] not in self.chooser.plans:
                 del self._annotated[old]
+
+
+def known_plan(actions: Sequence[Action]) -> Plan:
+    """What is known already, as a plan."""
+    return Plan(tuple(actions), sum(each.cost for each in actions), "a known plan", 0.0)
