@@ -8,7 +8,7 @@ from tpvqa.pddl import Action, State, Task
 from tpvqa_robots.grasps.antipodal import antipodal
 from tpvqa_robots.grasps.methods import Method, said
 from tpvqa_robots.mishaps import Mishaps
-from tpvqa_robots.physical import PhysicalWorld
+from tpvqa_robots.physical import PhysicalWorld, Pixels
 from tpvqa_robots.skills.simulated import SimulatedRobot
 from tpvqa_robots.toys.cameras import Cameras
 from tpvqa_robots.toys.machine import Machine
@@ -82,9 +82,9 @@ class ToysWorld(PhysicalWorld):
         """The robot, which knows the things' colours."""
         return SimulatedRobot(machine, cameras, bad_grasp=self.drawn.is_bad, grasps=self.grasps)
 
-    def true(self, machine: Machine, pixels: Mapping[str, int]) -> State:
+    def true(self, machine: Machine, pixels: Pixels) -> State:
         """See `toys.truth`."""
-        return true_state(machine.model, machine.data, pixels, self._atoms)
+        return true_state(machine.model, machine.data, pixels(), self._atoms)
 
     def beginning(self, action: Action) -> None:
         """A container may slip while the base turns with it."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tpvqa.errors import UnknownNameError
-from tpvqa.observation import Depth, Frame, Observation, SensedFact
+from tpvqa.observation import Depth, LateDepth, LateFrame, Observation, SensedFact
 from tpvqa.pddl import Action, Atom
 from tpvqa.worlds import Execution, Report
 from tpvqa_robots.grasps.antipodal import antipodal
@@ -149,14 +149,14 @@ class SimulatedRobot:
             raise UnknownNameError("view", view, tuple(CAMERAS))
         with self.machine.lock:
             shot, now, facts = self._shot(view), self.machine.time, self.sensed()
-        frame = Frame(
+        frame = LateFrame(
             id=view,
             view=view,
-            data=_jpeg(shot.rgb),
+            data=lambda: _jpeg(shot.rgb),
             source="toys",
             stamp=now,
             intrinsics=shot.intrinsics,
-            depth=Depth.from_metres(shot.depth),
+            depth=LateDepth(lambda: Depth.from_metres(shot.depth).data),
         )
         return Observation(time=now, frames={view: frame}, facts=facts)
 
