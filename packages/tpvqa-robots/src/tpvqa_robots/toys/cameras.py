@@ -192,9 +192,14 @@ class Cameras:
             found[name] = found.get(name, 0) + int(count)
         return found
 
-    def mask_of(self, data: Any, view: str, body: str) -> NDArray[np.bool_]:
-        """Which pixels truly show a body: a recogniser without errors, where one stands in."""
-        own = np.nonzero(self._model.geom_bodyid == self._model.body(body).id)[0]
+    def mask_of(self, data: Any, view: str, name: str) -> NDArray[np.bool_]:
+        """Which pixels truly show a body, or else a geom: a recogniser without errors, where one
+        stands in."""
+        bodies = [self._model.body(i).name for i in range(self._model.nbody)]
+        if name in bodies:
+            own = np.nonzero(self._model.geom_bodyid == bodies.index(name))[0]
+        else:
+            own = np.array([self._model.geom(name).id])
         found: NDArray[np.bool_] = np.isin(self._geoms(data, view), own)
         return found
 

@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -57,12 +58,32 @@ _TABLE = """
 _MAST = """<mujoco><worldbody><body name="mast">
   <geom type="capsule" fromto="-.42 0 .35 -.42 0 1.78" size=".018" rgba=".25 .26 .28 1" group="1"
     contype="0" conaffinity="0" mass="1"/>
-  <geom type="capsule" fromto="-.42 0 1.78 .40 0 1.78" size=".014" rgba=".25 .26 .28 1" group="1"
+  <geom type="capsule" fromto="-.42 0 1.78 {end}" size=".014" rgba=".25 .26 .28 1" group="1"
     contype="0" conaffinity="0" mass=".4"/>
-  <geom type="box" pos=".42 0 1.775" size=".02 .05 .015" rgba=".12 .12 .13 1" group="1"
+  <geom type="box" pos="{head}" size=".02 .05 .015" rgba=".12 .12 .13 1" group="1"
     contype="0" conaffinity="0" mass=".1"/>
-  <camera name="overhead" pos=".42 0 1.74" xyaxes="0 -1 0 .984 0 .177" fovy="50"/>
+  <camera name="overhead" pos="{eye}" xyaxes="{axes}" fovy="50"/>
 </body></worldbody></mujoco>"""
+
+
+@dataclass(frozen=True, slots=True)
+class Mast:
+    """Where the camera above the robot is, in MJCF, metres from the arm's foot.
+
+    Attributes:
+        end: Of the boom that carries it.
+        head: Of its case.
+        eye: Of its lens.
+        axes: How it looks: its right and its upward axis.
+    """
+
+    end: str = ".40 0 1.78"
+    head: str = ".42 0 1.775"
+    eye: str = ".42 0 1.74"
+    axes: str = "0 -1 0 .984 0 .177"
+
+
+OVER_THE_TABLE = Mast()
 
 
 def _materials() -> str:
@@ -177,12 +198,13 @@ def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
     return with_robot(_room(spots))
 
 
-def with_robot(room: Any) -> Any:
+def with_robot(room: Any, camera: Mast = OVER_THE_TABLE) -> Any:
     """The compiled model: UR5e and Robotiq 85 on an Omron base that turns, as robosuite has them.
 
     Args:
         room: A spec in which the arm's foot is to stand over the origin; what the arm has to keep
             off is its body `table`.
+        camera: Where the camera above it is.
 
     Raises:
         MissingExtraError: MuJoCo or robosuite is not installed.
@@ -194,7 +216,9 @@ def with_robot(room: Any) -> Any:
         base.delete(base.actuator(f"actuator_{name}"))
         base.delete(base.joint(f"joint_{name}"))
     base.joint("joint_mobile_yaw").frictionloss = 20
-    mast = mj.MjSpec.from_string(_MAST)
+    mast = mj.MjSpec.from_string(
+        _MAST.format(end=camera.end, head=camera.head, eye=camera.eye, axes=camera.axes)
+    )
     base.body("base").add_frame().attach_body(mast.body("mast"), "", "")
     arm = part_of_robosuite(assets / "robots" / "ur5e" / "robot.xml")
     hand = gripper()
