@@ -79,7 +79,13 @@ class BinsWorld(PhysicalWorld):
 
     def robot_of(self, machine: Machine, cameras: Cameras) -> BinsRobot:
         """The robot, which knows where the bins are."""
-        return BinsRobot(machine, cameras, bad_grasp=self.drawn.is_bad, grasps=self.grasps)
+        return BinsRobot(
+            machine,
+            cameras,
+            things=THINGS,
+            bad_grasp=self.drawn.is_bad,
+            grasps=self.grasps,
+        )
 
     def true(self, machine: Machine, pixels: Pixels) -> State:
         """See `bins.truth`."""

@@ -204,11 +204,15 @@ class SimulatedRobot:
 
     def _seen(self, shot: Shot, thing: str) -> Seen | None:
         """Where a thing is in a picture."""
-        return None if thing not in HUES else see(shot, thing, table=TABLE)
+        return see(shot, thing, table=TABLE) if self._knows(thing) else None
+
+    def _knows(self, thing: str) -> bool:
+        """Whether it is known how a thing looks."""
+        return thing in HUES
 
     def _find(self, args: tuple[str, ...], guard: Guard, feedback: Told) -> str:
         thing = args[0]
-        if thing not in HUES:
+        if not self._knows(thing):
             raise SkillError(f"what {thing} looks like is not known")
         self._retreat(guard)
         for yaw in (self.machine.yaw, *SCAN):
@@ -290,7 +294,7 @@ class SimulatedRobot:
         seen = self._see(where)
         if seen is None:
             raise SkillError(f"{where} is not in sight, or nothing can be put there")
-        inside = where not in ("goal_area", "toy_eggplant")
+        inside = where != "goal_area" and not where.startswith("toy")
         return seen.x, seen.y, (seen.top + INTO - 0.02) if inside else TABLE + HIGH
 
     def _reachable(self, shot: Shot, seen: Seen, guard: Guard) -> Grasp:

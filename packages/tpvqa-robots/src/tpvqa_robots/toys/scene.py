@@ -9,6 +9,7 @@ from typing import Any
 
 from tpvqa_robots.toys.mujoco import load_mujoco, robosuite_models
 from tpvqa_robots.toys.room import TABLE, furnished
+from tpvqa_robots.toys.scans import SCANS, add_scan, half_height
 from tpvqa_robots.toys.things import (
     COLOURS,
     GOAL_SIZE,
@@ -34,6 +35,8 @@ SPOTS: Mapping[str, Spot] = {
     "cyan_container": Spot(0.60, -0.28, -0.35),
     "toy_eggplant": Spot(0.55, -0.56, 0.5),
 }
+ELSEWHERE = Spot(0.56, 0.70, -0.4)
+"""Where a second toy stands."""
 
 _ASSETS = """
   <texture name="grain" type="2d" builtin="flat" rgb1=".66 .54 .40" width="200" height="200"
@@ -95,8 +98,9 @@ def _materials() -> str:
 
 def _things(spots: Mapping[str, Spot]) -> str:
     found = []
-    for name in MOVABLE:
-        spot = spots[name]
+    for name, spot in spots.items():
+        if name not in MOVABLE:
+            continue
         shape = eggplant(name) if name == "toy_eggplant" else container(name)
         found.append(
             f'<body name="{name}" pos="{spot.x} {spot.y} {TABLE + 0.002}" '
@@ -115,7 +119,11 @@ def _room(spots: Mapping[str, Spot]) -> Any:
         legs=legs, gx=GOAL[0], gy=GOAL[1], ga=GOAL_SIZE[0] / 2, gb=GOAL_SIZE[1] / 2
     )
     things = _things(spots) + bystanders()
-    return furnished("toys", assets=_ASSETS + _materials(), table=table, things=things)
+    room = furnished("toys", assets=_ASSETS + _materials(), table=table, things=things)
+    for name, spot in spots.items():
+        if name in SCANS:
+            add_scan(room, name, (spot.x, spot.y, TABLE + half_height(name) + 0.002), spot.yaw)
+    return room
 
 
 def part_of_robosuite(file: Path) -> Any:
@@ -190,7 +198,7 @@ def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
     """The compiled model of the toys' table with the robot before it.
 
     Args:
-        spots: Where the things stand.
+        spots: Where the things stand: those of `things.MOVABLE` and `scans.SCANS` that are there.
 
     Raises:
         MissingExtraError: MuJoCo or robosuite is not installed.
