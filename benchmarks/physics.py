@@ -7,6 +7,7 @@ Every cell meets the same tables, slips and bad grasps by its seeds; a seed is r
 before the next. No limit but five times the actions of the plan.
 """
 
+import gc
 import json
 import sys
 from collections import Counter, defaultdict
@@ -182,6 +183,7 @@ def main(bench: Bench, file: Path, trials: int) -> None:
             for monitor, vlm in bench.cells:
                 if (monitor, vlm, seed) not in done:
                     row = trial(bench, monitor, vlm, seed)
+                    gc.collect()  # Python does not see how much MuJoCo's models take
                     out.write(json.dumps(row) + "\n")
                     out.flush()
                     print(
