@@ -1,12 +1,13 @@
 """How many trials are completed where physics decides: monitors and answers side by side.
 
-.venv-robot/bin/python -m benchmarks.physics toys|bins FILE [TRIALS]    runs, writes rows, goes on
-.venv/bin/python -m benchmarks.physics toys|bins FILE --table  prints what is in the file
+.venv-robot/bin/python -m benchmarks.physics toys|bins|door FILE [TRIALS]  runs, writes rows
+.venv/bin/python -m benchmarks.physics toys|bins|door FILE --table  prints what is in the file
 
 Every cell meets the same tables, slips and bad grasps by its seeds; a seed is run in all cells
 before the next. No limit but five times the actions of the plan.
 """
 
+import gc
 import json
 import sys
 from collections import Counter, defaultdict
@@ -60,6 +61,15 @@ BENCHES = {
             *((monitor, ANSWERS[0]) for monitor in ("tpvqa", "belief")),
         ),
         40,
+    ),
+    "door": Bench(
+        "open_door",
+        "door:slip=0.25:bad=0.25",
+        (
+            *((monitor, "oracle") for monitor in ("none", "blind:2", "tpvqa")),
+            *((monitor, vlm) for vlm in ANSWERS for monitor in ("tpvqa", "belief")),
+        ),
+        20,
     ),
 }
 
@@ -173,6 +183,7 @@ def main(bench: Bench, file: Path, trials: int) -> None:
             for monitor, vlm in bench.cells:
                 if (monitor, vlm, seed) not in done:
                     row = trial(bench, monitor, vlm, seed)
+                    gc.collect()  # Python does not see how much MuJoCo's models take
                     out.write(json.dumps(row) + "\n")
                     out.flush()
                     print(

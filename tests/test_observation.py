@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
@@ -19,7 +20,7 @@ from tpvqa.drivers import Parts, Performer
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.events.events import Observed
 from tpvqa.events.records import observation_from
-from tpvqa.observation import NPY, PNG, Depth, Frame, Intrinsics, Observation
+from tpvqa.observation import NPY, PNG, Depth, Frame, Intrinsics, LateDepth, LateFrame, Observation
 
 DISTANCES = arrays.arrays(
     np.float32,
@@ -130,3 +131,26 @@ def test_looks_are_numbered_frames_named_and_all_of_it_is_read_back(tmp_path: Pa
     assert seen.frames["hand"].stamp == 2.5
     again = observation_from(Observed.model_validate_json(last.model_dump_json()), tmp_path)
     assert again == seen
+
+
+def test_a_late_frame_is_drawn_when_it_is_looked_at_and_once() -> None:
+    drawn: list[str] = []
+
+    def draw() -> bytes:
+        drawn.append("picture")
+        return b"a picture"
+
+    def measure() -> bytes:
+        drawn.append("depth")
+        return b"distances"
+
+    frame = LateFrame("now", "front", draw, stamp=2.5, depth=LateDepth(measure))
+    named = frame.named("0000-front")
+    assert frame.depth is not None
+    assert (named.id, named.suffix, frame.depth.suffix, drawn) == ("0000-front", ".jpg", ".png", [])
+    assert (frame.data, named.data, drawn) == (b"a picture", b"a picture", ["picture"])
+    assert replace(named, data=b"smaller").data == b"smaller"
+    assert (frame.depth.data, frame.depth.data) == (b"distances", b"distances")
+    assert drawn == ["picture", "depth"]
+    with pytest.raises(ValueError, match="a depth image is"):
+        LateDepth(measure, "image/jpeg")

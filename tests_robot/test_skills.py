@@ -1,6 +1,7 @@
 """What the robot's skills do to the table, and how they end."""
 
 from threading import Event, Thread
+from time import sleep
 
 import numpy as np
 import pytest
@@ -128,7 +129,10 @@ def test_another_thread_looks_meanwhile_and_stops_it(
     thread = Thread(target=perform)
     thread.start()
     assert moving.wait(60)
-    looks = [robot.look("overhead") for _ in range(2)]
+    looks = [robot.look("overhead")]
+    while robot.machine.time < looks[0].time + 3 * TICK:
+        sleep(0.005)
+    looks.append(robot.look("overhead"))
     robot.stop()
     thread.join(10)
     assert looks[0].time < looks[1].time  # it went on while it was looked at

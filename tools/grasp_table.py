@@ -2,12 +2,15 @@
 
 `python tools/grasp_table.py ROWS --tries 50 THING …`, from the folder of a clone; without names all
 of `THINGS`. Every try puts the thing somewhere else before the robot, as it lies after a fall, by a
-seed; the robot looks, and picks it up. Both ways meet the same tables. A row is written for each
-thing, way and noise; what is in the file already is not tried again. `--show` prints the table.
+seed; the robot looks, and picks it up. Both ways meet the same tables. A row is written for each 50
+tries of a thing, way and noise, those of all things before the next 50; a try depends on its number
+alone, and what is in the file already is not tried again. `--show` prints the table.
 """
 
 import argparse
 import json
+from functools import cache
+from itertools import product
 from pathlib import Path
 from threading import Event
 
@@ -34,6 +37,8 @@ from tpvqa_robots.truth import touched_by_both
 from tpvqa_robots.world import ToysWorld
 
 SEED = 900
+BLOCK = 50
+"""Tries in a row."""
 THINGS = (
     *("box", "superquadric", "mug", "teddy-manitislate", "toy-wood", "milk"),
     *("rubik-farcgs", "biplane-toy", "train-toy", "bread", "lemon", "horseshoe"),
@@ -61,9 +66,9 @@ def where(name: str, number: int) -> tuple[float, float, float]:
     return drawn.uniform(0.54, 0.68), drawn.uniform(-0.06, 0.14), yaw
 
 
-def of_a_thing(name: str, method: str, count: int, noise: float) -> dict[str, object]:
-    """Try one thing of the catalogue so often."""
-    thing = named(name, chance_array(SEED, 0, "thing", name))
+def of_a_thing(name: str, method: str, numbers: range, noise: float) -> dict[str, object]:
+    """Make these tries of one thing of the catalogue."""
+    thing = of_catalogue(name)
     room = furnished("one thing", assets="", table=_TABLE)
     add(load_mujoco(), room, thing, NAME, (0.6, 0.0, TABLE + 0.05), (1, 0, 0, 0))
     model = with_robot(room)
@@ -76,16 +81,17 @@ def of_a_thing(name: str, method: str, count: int, noise: float) -> dict[str, ob
     robot.begin()
     arm, data = machine.arm, machine.data
     held, why = 0, {}
-    for number in range(count):
+    for number in numbers:
         x, y, yaw = where(name, number)
-        z, quat = lying(thing, number)
+        z, quat = lying(name, number)
         load_mujoco().mj_resetData(model, data)
         turned = np.empty(4)
         load_mujoco().mju_mulQuat(turned, np.array([np.cos(yaw / 2), 0, 0, np.sin(yaw / 2)]), quat)
         data.qpos[at : at + 7] = x, y, z, *turned
-        robot.held, robot.shut, machine.closing = None, False, 0.0
+        machine.closing = 0.0
         machine.velocity[:] = 0
         cameras.draw(SEED, number)
+        robot.restore({"held": None, "shut": False, "shots": number})
         machine.begin(arm)
         for _ in range(15):
             machine.tick()
@@ -100,11 +106,19 @@ def of_a_thing(name: str, method: str, count: int, noise: float) -> dict[str, ob
             why[said] = why.get(said, 0) + 1
     cameras.close()
     taught = "never seen" if name in HELD_OUT else "taught it"
-    return _row(name, taught, method, noise, count, held, why)
+    return _row(name, taught, method, noise, numbers, held, why)
 
 
-def lying(thing: Thing, number: int) -> tuple[float, np.ndarray]:
+@cache
+def of_catalogue(name: str) -> Thing:
+    """A thing of the catalogue, of one size."""
+    return named(name, chance_array(SEED, 0, "thing", name))
+
+
+@cache
+def lying(name: str, number: int) -> tuple[float, np.ndarray]:
     """How a thing lies after the fall of a try: its height above the floor, and a quaternion."""
+    thing = of_catalogue(name)
     for again in range(20):
         bench = Bench([thing], chance_array(SEED, number, "fall", thing.name, again))
         if bench.settled:
@@ -113,8 +127,8 @@ def lying(thing: Thing, number: int) -> tuple[float, np.ndarray]:
     return float(pose[2]) + 0.002, pose[3:7].copy()
 
 
-def of_a_toy(name: str, method: str, count: int, noise: float) -> dict[str, object]:
-    """Try one thing of the toys' table so often."""
+def of_a_toy(name: str, method: str, numbers: range, noise: float) -> dict[str, object]:
+    """Make these tries of one thing of the toys' table."""
     files = find_task("collect_toys")
     task = load_task(files.domain, files.problem)
     world = ToysWorld(task, mishaps=Mishaps(noise=noise), grasps=METHODS[method], seed=SEED)
@@ -122,7 +136,7 @@ def of_a_toy(name: str, method: str, count: int, noise: float) -> dict[str, obje
     clean, why = world.snapshot(), {}
     joint = machine.model.body(name).jntadr[0]
     at = machine.model.jnt_qposadr[joint]
-    for number in range(count):
+    for number in numbers:
         world.restore(clean)
         x, y, yaw = where(name, number)
         turned = [np.cos(yaw / 2), 0, 0, np.sin(yaw / 2)]
@@ -138,17 +152,18 @@ def of_a_toy(name: str, method: str, count: int, noise: float) -> dict[str, obje
             said = done.message.partition(":")[0] if done.report != "done" else "lost or missed"
             why[said] = why.get(said, 0) + 1
     world.close()
-    return _row(name, "never seen", method, noise, count, held, why)
+    return _row(name, "never seen", method, noise, numbers, held, why)
 
 
-def _row(name, taught, method, noise, count, held, why) -> dict[str, object]:
+def _row(name, taught, method, noise, numbers, held, why) -> dict[str, object]:
     return {
         "thing": name,
         "network": taught,
         "grasps": method,
         "noise": noise,
         "seed": SEED,
-        "tries": count,
+        "first": numbers.start,
+        "tries": len(numbers),
         "held": held,
         "why not": why,
     }
@@ -167,16 +182,15 @@ def main() -> None:
     if said.show:
         show(said.rows)
         return
-    for thing in said.things:
-        for method in said.grasps:
-            key = (thing, method, said.noise, said.tries)
-            if key in _known(said.rows):
-                continue
-            tried = of_a_toy if thing in MOVABLE else of_a_thing
-            row = tried(thing, method, said.tries, said.noise)
-            with said.rows.open("a") as rows:
-                print(json.dumps(row), file=rows, flush=True)
-            print(json.dumps(row), flush=True)
+    blocks = [range(i, min(i + BLOCK, said.tries)) for i in range(0, said.tries, BLOCK)]
+    for numbers, thing, method in product(blocks, said.things, said.grasps):
+        if (thing, method, said.noise, numbers.start) in _known(said.rows):
+            continue
+        tried = of_a_toy if thing in MOVABLE else of_a_thing
+        row = tried(thing, method, numbers, said.noise)
+        with said.rows.open("a") as rows:
+            print(json.dumps(row), file=rows, flush=True)
+        print(json.dumps(row), flush=True)
 
 
 def show(file: Path) -> None:
@@ -189,7 +203,8 @@ def show(file: Path) -> None:
         print(f"| {key[0]} | {key[1]} | {key[2]:g} | {' | '.join(_cells(own))} |")
     for taught in ("taught it", "never seen"):
         own = [row for row in rows if row["network"] == taught and row["noise"] == 1]
-        own = [row for row in own if sum(row["thing"] == r["thing"] for r in own) == len(METHODS)]
+        both = {m: {row["thing"] for row in own if row["grasps"] == m} for m in METHODS}
+        own = [row for row in own if all(row["thing"] in things for things in both.values())]
         print(f"| all | {taught} | 1 | {' | '.join(_cells(own))} |")
 
 
@@ -218,7 +233,7 @@ def _known(file: Path) -> set[tuple[object, ...]]:
     if not file.exists():
         return set()
     rows = map(json.loads, file.read_text().splitlines())
-    return {(row["thing"], row["grasps"], row["noise"], row["tries"]) for row in rows}
+    return {(row["thing"], row["grasps"], row["noise"], row.get("first", 0)) for row in rows}
 
 
 if __name__ == "__main__":

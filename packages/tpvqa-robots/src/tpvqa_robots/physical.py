@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from threading import Event
 from typing import Any
 
@@ -24,6 +24,7 @@ from tpvqa_robots.toys.machine import Machine, Slip
 from tpvqa_robots.toys.mujoco import load_mujoco
 from tpvqa_robots.truth import PhysicalTruth
 
+Pixels = Callable[[], Mapping[str, int]]
 DEADLINE = 60.0
 """Seconds of simulated time that a skill has where nobody says."""
 
@@ -81,12 +82,12 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         """The robot with what it knows of this room."""
 
     @abstractmethod
-    def true(self, machine: Machine, pixels: Mapping[str, int]) -> State:
+    def true(self, machine: Machine, pixels: Pixels) -> State:
         """Those of the world's atoms that hold, by contacts and poses.
 
         Args:
             machine: The robot in its room.
-            pixels: How many pixels of the robot's camera show each body.
+            pixels: Tells how many pixels of the robot's camera show each body; that takes a while.
         """
 
     def beginning(self, action: Action) -> None:
@@ -204,7 +205,7 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
     def _state(self) -> State:
         machine, cameras = self.robot.machine, self.robot.cameras
         if self._known is None or self._known[0] != machine.time:
-            pixels = cameras.pixels_of(machine.data, OVERHEAD)
+            pixels = partial(cameras.pixels_of, machine.data, OVERHEAD)
             self._known = machine.time, self.true(machine, pixels)
         return self._known[1]
 

@@ -1,12 +1,13 @@
-"""What a robot sees and senses. Pictures stay encoded until somebody looks at their pixels."""
+"""What a robot sees and senses. Pictures stay encoded until somebody looks at their pixels, and
+those of a simulation may stay undrawn until somebody asks for them."""
 
 import mimetypes
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
 from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from tpvqa.pddl import Atom
 from tpvqa.pictures import decoded
@@ -147,6 +148,88 @@ class Frame:
         import numpy as np
 
         return np.asarray(decoded(self.data).convert("RGB"))
+
+    def named(self, name: str) -> "Frame":
+        """The same frame under another id."""
+        return replace(self, id=name)
+
+
+class LateDepth(Depth):
+    """Distances that are measured and encoded when they are first asked for.
+
+    Args:
+        make: Gives the encoded distances; called once at most.
+        media_type: As `Depth` has it.
+    """
+
+    def __init__(self, make: Callable[[], bytes], media_type: str = PNG):
+        super().__init__(cast(bytes, make), media_type)
+
+    @property
+    def data(self) -> bytes:
+        """The encoded distances."""
+        return _made(self)
+
+    @data.setter
+    def data(self, data: bytes) -> None:
+        _keep(self, data)
+
+
+class LateFrame(Frame):
+    """A picture that is drawn when it is first asked for: of a simulation's, most never are.
+
+    Whoever saves it, or shows it to a VLM, has it drawn. A noise model looks at none.
+
+    Args:
+        id: As `Frame` has it, and so the others.
+        view: From where.
+        data: Gives the encoded picture as it was when the frame was made; called once at most.
+    """
+
+    def __init__(
+        self,
+        id: str,
+        view: str,
+        data: Callable[[], bytes] | bytes,
+        media_type: str = "image/jpeg",
+        source: str = "",
+        stamp: float | None = None,
+        intrinsics: Intrinsics | None = None,
+        depth: Depth | None = None,
+    ):
+        made = cast(bytes, data)  # `_keep` tells them apart
+        super().__init__(id, view, made, media_type, source, stamp, intrinsics, depth)
+
+    @property
+    def data(self) -> bytes:
+        """The encoded picture."""
+        return _made(self)
+
+    @data.setter
+    def data(self, data: bytes) -> None:
+        _keep(self, data)
+
+    def named(self, name: str) -> Frame:
+        """The same frame under another id, still not drawn."""
+        return LateFrame(
+            name,
+            self.view,
+            self.__dict__["_made"],
+            self.media_type,
+            self.source,
+            self.stamp,
+            self.intrinsics,
+            self.depth,
+        )
+
+
+def _keep(late: Depth | Frame, data: Callable[[], bytes] | bytes) -> None:
+    late.__dict__["_made"] = cache(data) if callable(data) else data
+
+
+def _made(late: Depth | Frame) -> bytes:
+    made: Callable[[], bytes] | bytes = late.__dict__["_made"]
+    return made() if callable(made) else made
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,23 +2,18 @@
 
 import numpy as np
 
-from tpvqa_robots.bins.scene import RIM, SOURCE, TARGETS, THINGS
+from tpvqa_robots.bins.scene import RIM, SOURCE, TARGETS
 from tpvqa_robots.bins.truth import middle_of
 from tpvqa_robots.skills.motions import Guard, Told
-from tpvqa_robots.skills.seeing import Seen, seen_as
-from tpvqa_robots.skills.simulated import AXIS, SimulatedRobot, SkillError
-from tpvqa_robots.toys.cameras import OVERHEAD, Shot
+from tpvqa_robots.skills.recognising import RecognisingRobot
+from tpvqa_robots.skills.simulated import AXIS, SkillError
 from tpvqa_robots.toys.room import TABLE
 
 BINS = (SOURCE, *TARGETS)
 
 
-class BinsRobot(SimulatedRobot):
-    """It knows where the bins are; where things are it sees.
-
-    Colours do not tell these things apart. A recogniser without errors stands in for one: which
-    pixels show a thing is taken from the simulation; how far away they are from the camera.
-    """
+class BinsRobot(RecognisingRobot):
+    """It knows where the bins are; where things are it sees. Colours do not tell them apart."""
 
     def _pick_up(self, args: tuple[str, ...], guard: Guard, feedback: Told) -> str:
         thing, where = args
@@ -37,12 +32,6 @@ class BinsRobot(SimulatedRobot):
         self._retreat(guard)
         x, y = middle_of(where)
         self._motions.turn(float(np.arctan2(y, x - AXIS)), guard)
-
-    def _seen(self, shot: Shot, thing: str) -> Seen | None:
-        if thing not in THINGS:
-            return None
-        mask = self.cameras.mask_of(self.machine.data, OVERHEAD, thing)
-        return seen_as(shot, mask, table=TABLE)
 
     def _target(self, where: str) -> tuple[float, float, float]:
         x, y = middle_of(where)

@@ -14,7 +14,7 @@ from tpvqa_robots.bins.truth import KNOWN, true_state
 from tpvqa_robots.grasps.antipodal import antipodal
 from tpvqa_robots.grasps.methods import Method, said
 from tpvqa_robots.mishaps import Mishaps
-from tpvqa_robots.physical import PhysicalWorld
+from tpvqa_robots.physical import PhysicalWorld, Pixels
 from tpvqa_robots.toys.cameras import Cameras
 from tpvqa_robots.toys.machine import Machine
 from tpvqa_robots.toys.things import Spot
@@ -79,9 +79,15 @@ class BinsWorld(PhysicalWorld):
 
     def robot_of(self, machine: Machine, cameras: Cameras) -> BinsRobot:
         """The robot, which knows where the bins are."""
-        return BinsRobot(machine, cameras, bad_grasp=self.drawn.is_bad, grasps=self.grasps)
+        return BinsRobot(
+            machine,
+            cameras,
+            things=THINGS,
+            bad_grasp=self.drawn.is_bad,
+            grasps=self.grasps,
+        )
 
-    def true(self, machine: Machine, pixels: Mapping[str, int]) -> State:
+    def true(self, machine: Machine, pixels: Pixels) -> State:
         """See `bins.truth`."""
         return true_state(machine.model, machine.data, self._atoms)
 

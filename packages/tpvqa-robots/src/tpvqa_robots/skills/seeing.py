@@ -48,19 +48,22 @@ class Seen:
 
 def hue_mask(rgb: NDArray[np.uint8], low: float, high: float) -> NDArray[np.bool_]:
     """Which pixels have a colour between two hues, degrees."""
-    values = rgb.astype(np.float64) / 255
+    red, green, blue = (rgb[..., i] for i in range(3))
+    brightest = np.maximum(np.maximum(red, green), blue) / 255
+    darkest = np.minimum(np.minimum(red, green), blue) / 255
+    grey = (brightest - darkest) / np.maximum(brightest, 1e-6) < GREY
+    found: NDArray[np.bool_] = ~grey & (brightest >= DARK)
+    values = rgb[found] / 255  # few have a colour at all
     most, least = values.max(-1), values.min(-1)
     spread = np.maximum(most - least, 1e-6)
-    r, g, b = values[..., 0], values[..., 1], values[..., 2]
+    r, g, b = values.T
     hue = np.where(
         most == r,
         ((g - b) / spread) % 6,
         np.where(most == g, (b - r) / spread + 2, (r - g) / spread + 4),
     )
     degrees = 60 * hue
-    inside = (degrees >= low) & (degrees <= high) | (degrees + 360 <= high)
-    coloured = ((most - least) / np.maximum(most, 1e-6) >= GREY) & (most >= DARK)
-    found: NDArray[np.bool_] = inside & coloured
+    found[found] = (degrees >= low) & (degrees <= high) | (degrees + 360 <= high)
     return found
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tpvqa.errors import UnknownNameError
-from tpvqa.observation import Depth, Frame, Observation, SensedFact
+from tpvqa.observation import Depth, LateDepth, LateFrame, Observation, SensedFact
 from tpvqa.pddl import Action, Atom
 from tpvqa.worlds import Execution, Report
 from tpvqa_robots.grasps.antipodal import antipodal
@@ -149,14 +149,14 @@ class SimulatedRobot:
             raise UnknownNameError("view", view, tuple(CAMERAS))
         with self.machine.lock:
             shot, now, facts = self._shot(view), self.machine.time, self.sensed()
-        frame = Frame(
+        frame = LateFrame(
             id=view,
             view=view,
-            data=_jpeg(shot.rgb),
+            data=lambda: _jpeg(shot.rgb),
             source="toys",
             stamp=now,
             intrinsics=shot.intrinsics,
-            depth=Depth.from_metres(shot.depth),
+            depth=LateDepth(lambda: Depth.from_metres(shot.depth).data),
         )
         return Observation(time=now, frames={view: frame}, facts=facts)
 
@@ -204,11 +204,15 @@ class SimulatedRobot:
 
     def _seen(self, shot: Shot, thing: str) -> Seen | None:
         """Where a thing is in a picture."""
-        return None if thing not in HUES else see(shot, thing, table=TABLE)
+        return see(shot, thing, table=TABLE) if self._knows(thing) else None
+
+    def _knows(self, thing: str) -> bool:
+        """Whether it is known how a thing looks."""
+        return thing in HUES
 
     def _find(self, args: tuple[str, ...], guard: Guard, feedback: Told) -> str:
         thing = args[0]
-        if thing not in HUES:
+        if not self._knows(thing):
             raise SkillError(f"what {thing} looks like is not known")
         self._retreat(guard)
         for yaw in (self.machine.yaw, *SCAN):
@@ -290,7 +294,7 @@ class SimulatedRobot:
         seen = self._see(where)
         if seen is None:
             raise SkillError(f"{where} is not in sight, or nothing can be put there")
-        inside = where not in ("goal_area", "toy_eggplant")
+        inside = where != "goal_area" and not where.startswith("toy")
         return seen.x, seen.y, (seen.top + INTO - 0.02) if inside else TABLE + HIGH
 
     def _reachable(self, shot: Shot, seen: Seen, guard: Guard) -> Grasp:

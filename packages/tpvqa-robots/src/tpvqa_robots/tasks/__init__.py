@@ -9,10 +9,12 @@ from tpvqa.tasks import TaskFiles, tasks_in
 
 @cache
 def task_files() -> tuple[TaskFiles, ...]:
-    """The files of `collect_toys`, unless the household is installed, which brings the same; and
-    of `sort_groceries`."""
+    """The files of `sort_groceries`, `open_door`, `collect_teddy` and the like; and of
+    `collect_toys`, unless the household is installed, which brings the same."""
     here = Path(__file__).parent
-    groceries = tasks_in(here.parent / "bins" / "task", default_world="bins")
-    if find_spec("tpvqa_household") is not None:
-        return groceries
-    return (*tasks_in(here, default_world="toys"), *groceries)
+    brought = set() if find_spec("tpvqa_household") is None else {"collect_toys"}
+    return (
+        *(f for f in tasks_in(here, default_world="toys") if f.name not in brought),
+        *tasks_in(here.parent / "bins" / "task", default_world="bins"),
+        *tasks_in(here.parent / "door" / "task", default_world="door"),
+    )

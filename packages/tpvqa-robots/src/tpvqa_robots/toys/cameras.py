@@ -1,8 +1,9 @@
 """The robot's cameras: pictures and depth with the errors of a real one, and what they show."""
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import astuple, dataclass
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -46,22 +47,42 @@ class Errors:
 NO_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Shot:
-    """A picture with its distances.
+    """A picture with its distances, of the moment it was taken; drawn when it is looked at.
 
     Attributes:
-        rgb: Height × width × 3, 0 to 255.
-        depth: Metres along the camera's axis, height × width; NaN where nothing was measured.
-        points: Where the robot takes each pixel to be: height × width × 3, metres from the arm's
-            foot, x ahead and y to the left, z above the floor; NaN likewise.
+        draw: Gives the picture, height × width × 3, 0 to 255.
+        measure: Gives the distances along the camera's axis, metres, height × width; NaN where
+            nothing was measured.
+        place: Gives where the robot takes pixels at such distances to be.
         intrinsics: Of the camera.
     """
 
-    rgb: NDArray[np.uint8]
-    depth: NDArray[np.float32]
-    points: NDArray[np.float64]
+    draw: Callable[[], NDArray[np.uint8]]
+    measure: Callable[[], NDArray[np.float64]]
+    place: Callable[[NDArray[np.float64]], NDArray[np.float64]]
     intrinsics: Intrinsics
+
+    @cached_property
+    def rgb(self) -> NDArray[np.uint8]:
+        """Height × width × 3, 0 to 255."""
+        return self.draw()
+
+    @cached_property
+    def depth(self) -> NDArray[np.float32]:
+        """Metres along the camera's axis, height × width; NaN where nothing was measured."""
+        return self._measured.astype(np.float32)
+
+    @cached_property
+    def points(self) -> NDArray[np.float64]:
+        """Where the robot takes each pixel to be: height × width × 3, metres from the arm's foot, x
+        ahead and y to the left, z above the floor; NaN likewise."""
+        return self.place(self._measured)
+
+    @cached_property
+    def _measured(self) -> NDArray[np.float64]:
+        return self.measure()
 
 
 class Cameras:
@@ -105,34 +126,55 @@ class Cameras:
         """What a camera of the model sees, without errors; the room's too."""
         with self._lock:
             self._canvas.update_scene(data, camera, self._option)
+            # The camera above looks down: it never sees the sky, whose drawing takes a while.
+            self._canvas.scene.flags[self._mj.mjtRndFlag.mjRND_SKYBOX] = camera != OVERHEAD
             return np.array(self._canvas.render())
 
     def shot(self, data: Any, view: str, number: int) -> Shot:
-        """A picture with depth.
+        """A picture with depth, of now, though it may be drawn later.
 
         Args:
             data: The state.
             view: One of `CAMERAS`.
             number: Tells one draw of the errors from another.
         """
-        camera = CAMERAS[view]
-        rgb = self.picture(data, camera).astype(np.float64)
+        camera, here = CAMERAS[view], self.intrinsics(view)
+        at, key = np.array(data.qpos), (*self._seed, "shot", number)
+        foot = data.body("support").xmat.reshape(3, 3)
+        turned = _rotation(self._turn) @ foot.T @ data.camera(camera).xmat.reshape(3, 3)
+        place = foot.T @ (data.camera(camera).xpos - data.body("support").xpos) + self._shift
+        errors, shape = self._errors, (HEIGHT, WIDTH)
+
+        def draw() -> NDArray[np.uint8]:
+            rgb = self.picture(self._then(at), camera).astype(np.float64)
+            rgb += chance_array(*key).normal(0, 1, rgb.shape) * errors.colour
+            return np.clip(np.rint(rgb), 0, 255).astype(np.uint8)
+
+        def measure() -> NDArray[np.float64]:
+            depth, drawn = self._distances(self._then(at), camera), chance_array(*key)
+            drawn.normal(0, 1, (*shape, 3))  # those of the colours
+            depth += drawn.normal(0, 1, shape) * errors.depth * depth**2
+            depth[drawn.random(shape) < errors.missing] = np.nan
+            return depth
+
+        return Shot(draw, measure, lambda depth: self._points(depth, here, turned, place), here)
+
+    def _then(self, qpos: NDArray[np.float64]) -> Any:
+        """The bodies, cameras and lights as they were with the joints so."""
+        mj, model, then = self._mj, self._model, self._mj.MjData(self._model)
+        then.qpos[:] = qpos
+        mj.mj_kinematics(model, then)
+        mj.mj_comPos(model, then)
+        mj.mj_camlight(model, then)
+        return then
+
+    def _distances(self, data: Any, camera: str) -> NDArray[np.float64]:
         with self._lock:
             self._canvas.enable_depth_rendering()
             self._canvas.update_scene(data, camera, self._option)
             depth = np.array(self._canvas.render(), np.float64)
             self._canvas.disable_depth_rendering()
-        drawn, errors = chance_array(*self._seed, "shot", number), self._errors
-        rgb += drawn.normal(0, 1, rgb.shape) * errors.colour
-        depth += drawn.normal(0, 1, depth.shape) * errors.depth * depth**2
-        depth[drawn.random(depth.shape) < errors.missing] = np.nan
-        here = self.intrinsics(view)
-        return Shot(
-            np.clip(np.rint(rgb), 0, 255).astype(np.uint8),
-            depth.astype(np.float32),
-            self._points(data, camera, depth, here),
-            here,
-        )
+        return depth
 
     def intrinsics(self, view: str) -> Intrinsics:
         """A view's pinhole camera."""
@@ -150,9 +192,14 @@ class Cameras:
             found[name] = found.get(name, 0) + int(count)
         return found
 
-    def mask_of(self, data: Any, view: str, body: str) -> NDArray[np.bool_]:
-        """Which pixels truly show a body: a recogniser without errors, where one stands in."""
-        own = np.nonzero(self._model.geom_bodyid == self._model.body(body).id)[0]
+    def mask_of(self, data: Any, view: str, name: str) -> NDArray[np.bool_]:
+        """Which pixels truly show a body, or else a geom: a recogniser without errors, where one
+        stands in."""
+        bodies = [self._model.body(i).name for i in range(self._model.nbody)]
+        if name in bodies:
+            own = np.nonzero(self._model.geom_bodyid == bodies.index(name))[0]
+        else:
+            own = np.array([self._model.geom(name).id])
         found: NDArray[np.bool_] = np.isin(self._geoms(data, view), own)
         return found
 
@@ -166,18 +213,23 @@ class Cameras:
         return np.where(drawn[..., 1] == int(self._mj.mjtObj.mjOBJ_GEOM), drawn[..., 0], -1)
 
     def _points(
-        self, data: Any, camera: str, depth: NDArray[np.float64], of: Intrinsics
+        self,
+        depth: NDArray[np.float64],
+        of: Intrinsics,
+        turned: NDArray[np.float64],
+        at: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        rows, columns = np.indices(depth.shape)
-        rays = np.stack(
-            [(columns - of.cx) / of.fx, -(rows - of.cy) / of.fy, -np.ones_like(depth)], -1
-        )
-        foot = data.body("support").xmat.reshape(3, 3)
-        turned = _rotation(self._turn) @ foot.T @ data.camera(camera).xmat.reshape(3, 3)
-        at = foot.T @ (data.camera(camera).xpos - data.body("support").xpos) + self._shift
-        points: NDArray[np.float64] = rays * depth[..., None] @ turned.T + at
+        points: NDArray[np.float64] = _rays(of) * depth[..., None] @ turned.T + at
         points[..., 2] += float(self._model.body("support").pos[2]) + _BASE_HEIGHT
         return points
+
+
+@cache
+def _rays(of: Intrinsics) -> NDArray[np.float64]:
+    """Of each pixel, where it is at one metre of distance from the camera."""
+    rows, columns = np.indices((of.height, of.width))
+    across, up = (columns - of.cx) / of.fx, -(rows - of.cy) / of.fy
+    return np.stack([across, up, -np.ones_like(across)], -1)
 
 
 _BASE_HEIGHT = 0.5

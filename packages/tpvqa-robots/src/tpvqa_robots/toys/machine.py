@@ -69,6 +69,8 @@ class Machine:
         self._yaw_qpos = model.joint(YAW_JOINT).qposadr[0]
         self._turner = model.actuator("actuator_mobile_yaw").id
         self._inertia = np.zeros((model.nv, model.nv))
+        self._of_arm = np.ravel_multi_index(np.ix_(self.dofs, self.dofs), self._inertia.shape)
+        self._step, self._steps = model.opt.timestep, round(TICK / model.opt.timestep)
         self.yaw_target = 0.0
         self.reference = np.zeros(6)
         self.velocity = np.zeros(6)
@@ -128,7 +130,7 @@ class Machine:
     def tick(self) -> None:
         """Let one `TICK` pass."""
         with self.lock:
-            for _ in range(round(TICK / self.model.opt.timestep)):
+            for _ in range(self._steps):
                 self._drive()
                 self._mj.mj_step(self.model, self.data)
             self.refresh()
@@ -136,15 +138,18 @@ class Machine:
             self.on_tick()
 
     def _drive(self) -> None:
-        data, step = self.data, self.model.opt.timestep
-        self.reference = self.reference + self.velocity * step
+        # Called at every step of physics, which takes 90 µs: so nothing is looked up anew here.
+        data, arm = self.data, self.dofs
+        self.reference = self.reference + self.velocity * self._step
         self._mj.mj_fullM(self.model, self._inertia, data.qM)
         error = self.reference - data.qpos[self.qpos]
-        wanted = STIFFNESS * error + DAMPING * (self.velocity - data.qvel[self.dofs])
-        torque = self._inertia[np.ix_(self.dofs, self.dofs)] @ wanted
-        torque += data.qfrc_bias[self.dofs] - data.qfrc_passive[self.dofs]
-        data.ctrl[self._motors] = np.clip(torque, -self._limits, self._limits)
+        wanted = STIFFNESS * error + DAMPING * (self.velocity - data.qvel[arm])
+        torque = self._inertia.take(self._of_arm) @ wanted
+        torque += data.qfrc_bias[arm] - data.qfrc_passive[arm]
+        np.minimum(np.maximum(torque, -self._limits, out=torque), self._limits, out=torque)
+        ctrl = data.ctrl
+        ctrl[self._motors] = torque
         turn = TURN_GAIN * (self.yaw_target - self.yaw)
-        data.ctrl[self._turner] = np.clip(turn, -TURNING, TURNING)
-        slips = any(slip.at(self.time) for slip in self.slips)
-        data.ctrl[self._fingers] = 0.0 if slips else self.closing
+        ctrl[self._turner] = min(max(turn, -TURNING), TURNING)
+        slips = bool(self.slips) and any(slip.at(self.time) for slip in self.slips)
+        ctrl[self._fingers] = 0.0 if slips else self.closing

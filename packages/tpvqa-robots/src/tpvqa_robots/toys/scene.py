@@ -2,12 +2,14 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 from tpvqa_robots.toys.mujoco import load_mujoco, robosuite_models
 from tpvqa_robots.toys.room import TABLE, furnished
+from tpvqa_robots.toys.scans import SCANS, add_scan, half_height
 from tpvqa_robots.toys.things import (
     COLOURS,
     GOAL_SIZE,
@@ -33,6 +35,8 @@ SPOTS: Mapping[str, Spot] = {
     "cyan_container": Spot(0.60, -0.28, -0.35),
     "toy_eggplant": Spot(0.55, -0.56, 0.5),
 }
+ELSEWHERE = Spot(0.56, 0.70, -0.4)
+"""Where a second toy stands."""
 
 _ASSETS = """
   <texture name="grain" type="2d" builtin="flat" rgb1=".66 .54 .40" width="200" height="200"
@@ -57,12 +61,32 @@ _TABLE = """
 _MAST = """<mujoco><worldbody><body name="mast">
   <geom type="capsule" fromto="-.42 0 .35 -.42 0 1.78" size=".018" rgba=".25 .26 .28 1" group="1"
     contype="0" conaffinity="0" mass="1"/>
-  <geom type="capsule" fromto="-.42 0 1.78 .40 0 1.78" size=".014" rgba=".25 .26 .28 1" group="1"
+  <geom type="capsule" fromto="-.42 0 1.78 {end}" size=".014" rgba=".25 .26 .28 1" group="1"
     contype="0" conaffinity="0" mass=".4"/>
-  <geom type="box" pos=".42 0 1.775" size=".02 .05 .015" rgba=".12 .12 .13 1" group="1"
+  <geom type="box" pos="{head}" size=".02 .05 .015" rgba=".12 .12 .13 1" group="1"
     contype="0" conaffinity="0" mass=".1"/>
-  <camera name="overhead" pos=".42 0 1.74" xyaxes="0 -1 0 .984 0 .177" fovy="50"/>
+  <camera name="overhead" pos="{eye}" xyaxes="{axes}" fovy="50"/>
 </body></worldbody></mujoco>"""
+
+
+@dataclass(frozen=True, slots=True)
+class Mast:
+    """Where the camera above the robot is, in MJCF, metres from the arm's foot.
+
+    Attributes:
+        end: Of the boom that carries it.
+        head: Of its case.
+        eye: Of its lens.
+        axes: How it looks: its right and its upward axis.
+    """
+
+    end: str = ".40 0 1.78"
+    head: str = ".42 0 1.775"
+    eye: str = ".42 0 1.74"
+    axes: str = "0 -1 0 .984 0 .177"
+
+
+OVER_THE_TABLE = Mast()
 
 
 def _materials() -> str:
@@ -74,8 +98,9 @@ def _materials() -> str:
 
 def _things(spots: Mapping[str, Spot]) -> str:
     found = []
-    for name in MOVABLE:
-        spot = spots[name]
+    for name, spot in spots.items():
+        if name not in MOVABLE:
+            continue
         shape = eggplant(name) if name == "toy_eggplant" else container(name)
         found.append(
             f'<body name="{name}" pos="{spot.x} {spot.y} {TABLE + 0.002}" '
@@ -94,7 +119,11 @@ def _room(spots: Mapping[str, Spot]) -> Any:
         legs=legs, gx=GOAL[0], gy=GOAL[1], ga=GOAL_SIZE[0] / 2, gb=GOAL_SIZE[1] / 2
     )
     things = _things(spots) + bystanders()
-    return furnished("toys", assets=_ASSETS + _materials(), table=table, things=things)
+    room = furnished("toys", assets=_ASSETS + _materials(), table=table, things=things)
+    for name, spot in spots.items():
+        if name in SCANS:
+            add_scan(room, name, (spot.x, spot.y, TABLE + half_height(name) + 0.002), spot.yaw)
+    return room
 
 
 def part_of_robosuite(file: Path) -> Any:
@@ -169,7 +198,7 @@ def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
     """The compiled model of the toys' table with the robot before it.
 
     Args:
-        spots: Where the things stand.
+        spots: Where the things stand: those of `things.MOVABLE` and `scans.SCANS` that are there.
 
     Raises:
         MissingExtraError: MuJoCo or robosuite is not installed.
@@ -177,12 +206,13 @@ def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
     return with_robot(_room(spots))
 
 
-def with_robot(room: Any) -> Any:
+def with_robot(room: Any, camera: Mast = OVER_THE_TABLE) -> Any:
     """The compiled model: UR5e and Robotiq 85 on an Omron base that turns, as robosuite has them.
 
     Args:
         room: A spec in which the arm's foot is to stand over the origin; what the arm has to keep
             off is its body `table`.
+        camera: Where the camera above it is.
 
     Raises:
         MissingExtraError: MuJoCo or robosuite is not installed.
@@ -194,7 +224,9 @@ def with_robot(room: Any) -> Any:
         base.delete(base.actuator(f"actuator_{name}"))
         base.delete(base.joint(f"joint_{name}"))
     base.joint("joint_mobile_yaw").frictionloss = 20
-    mast = mj.MjSpec.from_string(_MAST)
+    mast = mj.MjSpec.from_string(
+        _MAST.format(end=camera.end, head=camera.head, eye=camera.eye, axes=camera.axes)
+    )
     base.body("base").add_frame().attach_body(mast.body("mast"), "", "")
     arm = part_of_robosuite(assets / "robots" / "ur5e" / "robot.xml")
     hand = gripper()

@@ -62,7 +62,7 @@ def bystanders() -> str:
       <geom type="sphere" size=".032" material="yellow" mass=".03" {TOUCH}/></body>
     <body name="toy_cube" pos=".86 -.62 .73" euler="0 0 .5"><freejoint/>
       <geom type="box" size=".025 .025 .025" material="orange" mass=".04" {TOUCH}/></body>
-    <body name="toy_train" pos=".93 .60 .725" euler="0 0 1.1"><freejoint/>
+    <body name="toy_blocks" pos=".93 .60 .725" euler="0 0 1.1"><freejoint/>
       <geom type="box" size=".06 .022 .02" material="green" mass=".05" {TOUCH}/>
       <geom type="box" size=".022 .022 .02" pos="-.035 0 .04" material="yellow" mass=".02" {TOUCH}/>
       <geom type="cylinder" size=".009 .014" pos=".03 0 .034" material="wood" mass=".01" {TOUCH}/>

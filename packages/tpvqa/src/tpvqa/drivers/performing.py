@@ -277,7 +277,7 @@ def _less(one: float | None, other: float | None) -> float | None:
 
 def _named(frames: Mapping[str, Frame], look: int) -> dict[str, Frame]:
     """The frames of a look, each with the name of the file that it is saved as."""
-    return {view: replace(frame, id=f"{look:04d}-{frame.view}") for view, frame in frames.items()}
+    return {view: frame.named(f"{look:04d}-{frame.view}") for view, frame in frames.items()}
 
 
 def _answers(vlm: VLM, seen: Observation | None, questions: Sequence[Question]) -> list[Answer]:

@@ -6,15 +6,15 @@ seen and touched. So nothing is seen that cannot be touched, and the other way r
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from zipfile import ZipFile
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tpvqa_robots.grasps.training.solids import Solid, Thing
 from tpvqa_robots.toys.mujoco import robosuite_models
+from tpvqa_robots.toys.scans import pieces, spread, surface_of
 from tpvqa_robots.toys.scene import part_of_robosuite
 
 SCANS: Mapping[str, int] = {
@@ -49,21 +49,6 @@ SCANS_HELD_OUT: Mapping[str, int] = {
 OF_ROBOSUITE, OF_ROBOSUITE_HELD_OUT = ("milk", "can", "cereal"), ("bread", "lemon", "bottle")
 NARROW, LONG = 0.062, 0.15
 """The middle and the largest of a scan's three sizes, metres at most: larger things are shrunk."""
-OVERLAP, THIN, FEW = 0.001, 0.0008, 12
-"""How far cells overlap, half of what a flat one is made thick, metres; points it must have."""
-
-
-@dataclass(frozen=True)
-class Surface:
-    """Triangles.
-
-    Attributes:
-        points: n × 3, metres.
-        faces: m × 3, of points.
-    """
-
-    points: NDArray[np.float64]
-    faces: NDArray[np.int64]
 
 
 def scan(pack: Path, name: str, *, scale: float = 1.0) -> Thing:
@@ -76,13 +61,13 @@ def scan(pack: Path, name: str, *, scale: float = 1.0) -> Thing:
     """
     with ZipFile(pack) as archive:
         entry = next(e for e in json.loads(archive.read("index.json")) if e["name"] == name)
-        parts = [_surface(archive.read(part["mesh"])) for part in entry["parts"]]
+        parts = [surface_of(archive.read(part["mesh"])) for part in entry["parts"]]
     _, middle, large = np.sort(entry["extent"])
     factor = scale * min(1.0, NARROW / float(middle), LONG / float(large))
-    points = _spread([Surface(part.points * factor, part.faces) for part in parts])
+    points = spread([replace(part, points=part.points * factor) for part in parts])
     points -= (points.min(0) + points.max(0)) / 2
     count = {**SCANS, **SCANS_HELD_OUT}[name]
-    return Thing(name, tuple(_pieces(points, count)))
+    return Thing(name, tuple(Solid("hull", points=piece) for piece in pieces(points, count)))
 
 
 def of_robosuite(name: str, *, scale: float = 1.0) -> Thing:
@@ -95,51 +80,3 @@ def of_robosuite(name: str, *, scale: float = 1.0) -> Thing:
     points = np.array(model.mesh_vert, np.float64) * scale
     points -= (points.min(0) + points.max(0)) / 2
     return Thing(f"{name}-robosuite", (Solid("hull", points=points),))
-
-
-def _surface(data: bytes) -> Surface:
-    """Of the household's format: counts, ranges, then 16 bits a number."""
-    points, faces = (int(count) for count in np.frombuffer(data, "<u4", 2))
-    ranges = np.frombuffer(data, "<f4", 10, 8).astype(np.float64)
-    values = np.frombuffer(data, "<u2", points * 3, 48).reshape(-1, 3)
-    at = 48 + points * 10  # places in pictures are left out
-    indices = np.frombuffer(data, "<u2", faces * 3, at).reshape(-1, 3).astype(np.int64)
-    return Surface(ranges[0:3] + ranges[3:6] * values / 65535, indices)
-
-
-def _spread(parts: list[Surface], count: int = 12000) -> NDArray[np.float64]:
-    """Points spread over surfaces, and all their corners."""
-    rng, found = np.random.default_rng(0), [part.points for part in parts]
-    corners = np.concatenate([part.points[part.faces] for part in parts])
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    drawn = rng.choice(len(area), count, p=area / area.sum())
-    u, v = rng.random((2, count, 1))
-    over = u + v > 1
-    u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
-    found.append(a[drawn] + u * (b - a)[drawn] + v * (c - a)[drawn])
-    return np.concatenate(found)
-
-
-def _pieces(points: NDArray[np.float64], count: int) -> list[Solid]:
-    low, side = points.min(0), np.ptp(points, axis=0) / count
-    found = []
-    for cell in np.ndindex(count, count, count):
-        start = low + np.array(cell) * side - OVERLAP
-        inside = ((points >= start) & (points <= start + side + 2 * OVERLAP)).all(1)
-        if inside.sum() < FEW:
-            continue
-        own = points[inside]
-        _, spans, ways = np.linalg.svd(own - own.mean(0), full_matrices=False)
-        if spans[1] / np.sqrt(len(own)) < 0.0002:
-            continue  # a line
-        if spans[2] / np.sqrt(len(own)) < THIN:
-            own = np.concatenate([own + THIN * ways[2], own - THIN * ways[2]])
-        found.append(Solid("hull", points=_few(own)))
-    return found
-
-
-def _few(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Those that are farthest in some of 200 directions: enough for the hull."""
-    ways = np.random.default_rng(1).normal(size=(200, 3))
-    return points[np.unique((points @ ways.T).argmax(0))]

@@ -1,0 +1,1 @@
+"""Robosuite's door: its handle is gripped, turned and pulled."""

@@ -1,0 +1,5 @@
+(define (problem open_door)
+  (:domain door)
+  (:objects door - door handle - handle)
+  (:init (hand_empty))
+  (:goal (and (open door) (hand_empty))))

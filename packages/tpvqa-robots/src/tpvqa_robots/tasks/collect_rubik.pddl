@@ -1,0 +1,6 @@
+(define (problem collect_rubik)
+  (:domain toys)
+  (:objects blue_container cyan_container - container toy_rubik - toy)
+  (:init (found table) (hand_empty)
+         (on blue_container table) (on cyan_container table) (on toy_rubik table))
+  (:goal (exists (?c - container) (and (on ?c goal_area) (on toy_rubik ?c)))))

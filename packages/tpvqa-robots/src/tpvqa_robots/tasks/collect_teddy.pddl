@@ -1,0 +1,6 @@
+(define (problem collect_teddy)
+  (:domain toys)
+  (:objects blue_container cyan_container - container toy_teddy - toy)
+  (:init (found table) (hand_empty)
+         (on blue_container table) (on cyan_container table) (on toy_teddy table))
+  (:goal (exists (?c - container) (and (on ?c goal_area) (on toy_teddy ?c)))))
