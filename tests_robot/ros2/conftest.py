@@ -36,6 +36,21 @@ workspace:
   places: {table: [0.5, 0, 0.8], goal_area: [0.4, 0.3, 0.8], floor: [0.5, 0, -0.1]}
 """
 
+BY_ACTION = ("server: /tpvqa,", "action: /tpvqa/execute_skill,")
+PLAIN = """\
+skills:
+  find: {action: /arm/do, deadline: 10}
+  pick_up: {action: /arm/do, deadline: 10}
+  place: {action: /arm/do, deadline: 10}
+cameras:
+  overhead: {image: /arm/image, frame_id: eye}
+joints: /arm/joints
+sensed:
+  - {fact: (hand_empty), joint: gripper, below: 0.003, sure: 0.98}
+truth: /arm/truth
+limits: {age: 1.0, wait: 30, gone: 1.5, grace: 0.5}
+"""
+
 Start = Callable[..., "subprocess.Popen[bytes]"]
 Open = Callable[..., Ros2World]
 
@@ -80,16 +95,27 @@ def setup_file(tmp_path: Path) -> Path:
     return file
 
 
+def change(file: Path, *changes: tuple[str, str]) -> None:
+    """Change a setup file."""
+    text = file.read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    file.write_text(text)
+
+
 @pytest.fixture
 def start(state: Path) -> Iterator[Start]:
     """Start a skill server: faults, then seconds that a skill takes."""
     running = []
 
-    def begin(*faults: str, seconds: float = 0.05) -> "subprocess.Popen[bytes]":
+    def begin(
+        *faults: str, seconds: float = 0.05, which: str = "standin"
+    ) -> "subprocess.Popen[bytes]":
         words = [word for fault in faults for word in ("--fault", fault)]
         words += ["--seconds", str(seconds)]
         server = subprocess.Popen(
-            [sys.executable, "-m", "tests_robot.ros2.standin", str(state), *words],
+            [sys.executable, "-m", f"tests_robot.ros2.{which}", str(state), *words],
             stdout=subprocess.PIPE,
             cwd=Path(__file__).parents[2],
             env=os.environ.copy(),
@@ -111,11 +137,7 @@ def open_world(task: Task, setup_file: Path) -> Iterator[Open]:
     opened = []
 
     def make(*changes: tuple[str, str]) -> Ros2World:
-        text = setup_file.read_text()
-        for old, new in changes:
-            assert old in text
-            text = text.replace(old, new)
-        setup_file.write_text(text)
+        change(setup_file, *changes)
         load_setup(setup_file, task)
         opened.append(Ros2World.from_spec(str(setup_file), task=task))
         return opened[-1]
