@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from tests_robot.bag_reading import check_bag
 from tests_robot.ros2.conftest import BY_ACTION, Start, change, wait_for
 from tests_robot.ros2.test_world import done
 from tpvqa import Task
@@ -18,6 +19,8 @@ from tpvqa.episodes import read_episode
 from tpvqa.events import Ended, TrialState
 from tpvqa.events.events import Decided
 from tpvqa_robots.ros2.link import Link, said
+from tpvqa_robots.ros2_trial.bag import messages_of
+from tpvqa_robots.ros2_trial.bag_writing import write_bag
 
 pytest.importorskip("tpvqa_interfaces")
 
@@ -140,6 +143,9 @@ def test_a_task_is_run_told_of_and_asked_about(
     for each in client.beliefs:
         facts = {fact.fact: fact.probability for fact in each.facts}
         assert facts == pytest.approx(believed[each.event])
+    bag = Path(result.episode) / "bag"
+    write_bag(bag, messages_of(Path(result.episode)))
+    check_bag(Path(result.episode), bag)
 
 
 def test_a_task_is_cancelled_refused_and_ended_by_ctrl_c(

@@ -14,6 +14,7 @@ from tpvqa.config.layers import Layer
 def register(app: typer.Typer) -> None:
     """Add the commands to the application."""
     app.command("ros2-run")(ros2_run)
+    app.command()(bag)
 
 
 @trial_options()
@@ -54,3 +55,31 @@ def ros2_run(
     signal.signal(signal.SIGTERM, lambda *_: server.close())
     print(f"RunTask is offered as {prefix}/run_task; Ctrl-C ends it.", flush=True)
     server.run()
+
+
+def bag(
+    episode: Annotated[Path, typer.Argument(help="Folder of an episode.")],
+    *,
+    out: Annotated[
+        Path | None, typer.Option(help="New folder; by default `bag` in the episode.")
+    ] = None,
+    prefix: Annotated[str, typer.Option(help="Of the topics.")] = "/tpvqa",
+    began: Annotated[
+        float | None,
+        typer.Option(
+            help="When it began, in seconds since 1970; by default as its log's file says."
+        ),
+    ] = None,
+) -> None:
+    """Write an episode as a bag of rosbag2 in MCAP: pictures, plan, belief, decisions, and a log.
+
+    ROS 2 need not be installed. Exit codes: 0 written, 2 bad input, 6 it could not be written.
+    """
+    from tpvqa.cli.saying import tell
+    from tpvqa.episodes.log import episode_folder
+    from tpvqa_robots.ros2_trial.bag import messages_of
+    from tpvqa_robots.ros2_trial.bag_writing import write_bag
+
+    folder = episode_folder(episode) / "bag" if out is None else out
+    count = write_bag(folder, messages_of(episode, prefix=prefix, began=began))
+    tell(f"{folder}: {count} messages")
