@@ -7,12 +7,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
 
 from tpvqa import Task
+from tpvqa_robots.ros2.link import Link
 from tpvqa_robots.ros2.setup import load_setup
 from tpvqa_robots.ros2.world import Ros2World
 
@@ -82,6 +83,19 @@ def domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     pytest.fail("all DDS domains are taken")
 
 
+def transition(link: Link, node: str, number: int) -> bool:
+    """Take a managed node to another stage, by its service; whether it went there."""
+    from lifecycle_msgs.srv import ChangeState
+
+    client = link.node.create_client(ChangeState, f"/{node}/change_state")
+    wait_for(client.service_is_ready)
+    request = ChangeState.Request()
+    request.transition.id = number
+    changed = client.call_async(request)
+    wait_for(changed.done)
+    return bool(changed.result().success)
+
+
 @pytest.fixture
 def state(tmp_path: Path) -> Path:
     """Where the stand-in keeps how its world is, and what it did."""
@@ -110,10 +124,10 @@ def start(state: Path) -> Iterator[Start]:
     running = []
 
     def begin(
-        *faults: str, seconds: float = 0.05, which: str = "standin"
+        *faults: str, seconds: float = 0.05, which: str = "standin", more: Sequence[str] = ()
     ) -> "subprocess.Popen[bytes]":
         words = [word for fault in faults for word in ("--fault", fault)]
-        words += ["--seconds", str(seconds)]
+        words += ["--seconds", str(seconds), *more]
         server = subprocess.Popen(
             [sys.executable, "-m", f"tests_robot.ros2.{which}", str(state), *words],
             stdout=subprocess.PIPE,

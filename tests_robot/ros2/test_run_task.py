@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from tests_robot.bag_reading import check_bag
-from tests_robot.ros2.conftest import BY_ACTION, Start, change, wait_for
+from tests_robot.ros2.conftest import BY_ACTION, Start, change, transition, wait_for
 from tests_robot.ros2.test_world import done
 from tpvqa import Task
 from tpvqa.episodes import read_episode
@@ -105,6 +105,8 @@ def loop(setup_file: Path, tmp_path: Path) -> "Iterator[subprocess.Popen[str]]":
 def test_a_task_is_run_told_of_and_asked_about(
     start: Start, loop: "subprocess.Popen[str]", client: Client, state: Path
 ) -> None:
+    from lifecycle_msgs.msg import Transition
+
     start(seconds=0.3)
     asked = client.ask("(found blue_container)")
     assert asked.answered, asked.message
@@ -146,6 +148,11 @@ def test_a_task_is_run_told_of_and_asked_about(
     bag = Path(result.episode) / "bag"
     write_bag(bag, messages_of(Path(result.episode)))
     check_bag(Path(result.episode), bag)
+
+    assert transition(client.link, "tpvqa_run_task", Transition.TRANSITION_DEACTIVATE)
+    assert not client.send().accepted
+    assert transition(client.link, "tpvqa_run_task", Transition.TRANSITION_INACTIVE_SHUTDOWN)
+    assert loop.wait(60) == 0
 
 
 def test_a_task_is_cancelled_refused_and_ended_by_ctrl_c(

@@ -133,6 +133,7 @@ class SkillServer:
         with self._lock:
             self._active = False
             self._halt()
+        self._tick()
 
     def _cleanup(self) -> None:
         self._cameras, self._fronts = {}, []
