@@ -127,6 +127,7 @@ DRIVING = {
     "film": {"episodes"},
     "bridges": TRIALS,
     "ros2_trial": TRIALS | {"assembly", "cli", "config"},
+    "plansys2": TRIALS | {"assembly", "cli", "config"},
 }
 
 
