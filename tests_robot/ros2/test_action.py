@@ -57,27 +57,7 @@ def test_skills_are_done_cancelled_and_refused_by_action(
     assert second.execute(act("place blue_container goal_area")).report is Report.DONE
 
 
-@pytest.mark.parametrize("deaf", [False, True])
-def test_an_action_that_never_returns_is_stopped(
-    deaf: bool, start: Start, open_world: Open, act: Act, state: Path
-) -> None:
-    start("endless", *(("deaf",) if deaf else ()))
-    world = open_world(BY_ACTION, SHORT)
-    world.observe()
-    with Lag() as lag:
-        late = world.execute(act(FIND), deadline=0.5)
-    assert late.report is Report.LATE, late.message
-    assert late.seconds < lag.allows(1.5)
-    if deaf:
-        again = world.execute(act(FIND))
-        assert again.report is Report.UNAVAILABLE
-        assert "is still at" in again.message
-        assert len(done(state)) == 1
-    else:
-        wait_for(lambda: last(state)[1] == "stood")
-
-
-def test_an_emergency_stop_ends_an_action(
+def test_an_action_is_stopped_when_it_is_late_and_by_the_button(
     start: Start, open_world: Open, act: Act, state: Path
 ) -> None:
     from std_msgs.msg import Bool
@@ -88,8 +68,15 @@ def test_an_emergency_stop_ends_an_action(
     try:
         speaker = button.speaker(Bool, "/tpvqa/stop", said())
         button.start()
+        world.observe()
+        with Lag() as lag:
+            late = world.execute(act(FIND), deadline=0.5)
+        assert late.report is Report.LATE, late.message
+        assert late.seconds < lag.allows(1.5)
+        wait_for(lambda: last(state)[1] == "stood")
+
         thread, came = in_thread(world, act(FIND))
-        until_begun(state)
+        wait_for(lambda: len(done(state)) == 3)
         wait_for(lambda: speaker.get_subscription_count() == 2)
         with Lag() as lag:
             pressed = time.time()
@@ -101,6 +88,19 @@ def test_an_emergency_stop_ends_an_action(
         assert "emergency stop" in came[0].message
     finally:
         button.close()
+
+
+def test_a_server_that_is_still_at_an_action_takes_no_other(
+    start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    start("endless", "deaf")
+    world = open_world(BY_ACTION, SHORT)
+    world.observe()
+    assert world.execute(act(FIND), deadline=0.5).report is Report.LATE
+    again = world.execute(act(FIND))
+    assert again.report is Report.UNAVAILABLE
+    assert "is still at" in again.message
+    assert len(done(state)) == 1
 
 
 def test_a_loop_that_is_killed_leaves_no_action_running(

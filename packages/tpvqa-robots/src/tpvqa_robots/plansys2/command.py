@@ -37,5 +37,6 @@ def plansys2_performer(
         trial.check()
         node = PerformerNode(trial, name=name, say=lambda text: print(text, flush=True))
         signal.signal(signal.SIGTERM, lambda *_: node.close())
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
         print(f"{name} performs {trial.task.name} on actions_hub; Ctrl-C ends it.", flush=True)
         node.run()

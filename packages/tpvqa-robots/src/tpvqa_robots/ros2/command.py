@@ -1,5 +1,6 @@
 """`tpvqa skill-server`: offer a simulated robot on ROS 2 topics, and as an action."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -17,6 +18,10 @@ def skill_server(
     prefix: Annotated[str, typer.Option(help="Of the topics.")] = "/tpvqa",
     stop: Annotated[str, typer.Option(help="Topic of emergency stops.")] = "/tpvqa/stop",
     rate: Annotated[float, typer.Option(min=0.1, max=60, help="Pictures a second.")] = 5.0,
+    keep: Annotated[
+        Path | None,
+        typer.Option(help="File for the world's state after every skill; goes on from it."),
+    ] = None,
     managed: Annotated[
         bool, typer.Option("--managed", help="Wait to be configured and activated from outside.")
     ] = False,
@@ -39,6 +44,7 @@ def skill_server(
     from tpvqa.worlds.capabilities import truth_of
     from tpvqa.worlds.making import make_world
     from tpvqa_robots.ros2 import typed
+    from tpvqa_robots.ros2.kept import Kept
     from tpvqa_robots.ros2.link import load_rclpy
     from tpvqa_robots.ros2.of_world import WorldRobot
     from tpvqa_robots.ros2.server import ACTION, SkillServer
@@ -56,7 +62,7 @@ def skill_server(
             assert tells is not None
             return frozenset(atom for atom in atoms if tells.holds(atom))
 
-        robot = WorldRobot(made, loaded)
+        robot = WorldRobot(made, loaded, None if keep is None else Kept(made, keep))
         server = SkillServer(
             robot,
             loaded,

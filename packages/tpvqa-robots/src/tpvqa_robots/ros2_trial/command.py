@@ -53,6 +53,7 @@ def ros2_run(
         say=lambda text: print(text, flush=True),
     )
     signal.signal(signal.SIGTERM, lambda *_: server.close())
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
     print(f"RunTask is offered as {prefix}/run_task; Ctrl-C ends it.", flush=True)
     server.run()
 
