@@ -70,9 +70,9 @@ def test_an_action_is_stopped_when_it_is_late_and_by_the_button(
         button.start()
         world.observe()
         with Lag() as lag:
-            late = world.execute(act(FIND), deadline=0.5)
+            late = world.execute(act(FIND), deadline=1.0)
         assert late.report is Report.LATE, late.message
-        assert late.seconds < lag.allows(1.5)
+        assert late.seconds < lag.allows(2.0)
         wait_for(lambda: last(state)[1] == "stood")
 
         thread, came = in_thread(world, act(FIND))
