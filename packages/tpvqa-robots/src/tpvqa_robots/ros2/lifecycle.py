@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from tpvqa.errors import TpvqaError
+
 
 @dataclass(frozen=True, slots=True)
 class Stages:
@@ -34,6 +36,9 @@ def managed_node(stages: Stages) -> Callable[..., Any]:
         try:
             for step in steps:
                 step()
+        except TpvqaError as error:
+            print(error, file=sys.stderr)
+            return TransitionCallbackReturn.FAILURE
         except Exception as error:  # noqa: BLE001 — rclpy would swallow it
             traceback.print_exception(error, file=sys.stderr)
             return TransitionCallbackReturn.FAILURE

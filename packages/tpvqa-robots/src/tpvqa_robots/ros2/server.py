@@ -13,7 +13,7 @@ from dataclasses import replace
 from time import monotonic
 from typing import Any
 
-from tpvqa.errors import PDDLError, TpvqaError
+from tpvqa.errors import PDDLError, TpvqaError, WorldError
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.worlds import Execution, Report
 from tpvqa_robots.ros2 import typed, wire
@@ -136,6 +136,8 @@ class SkillServer:
         self._tick()
 
     def _cleanup(self) -> None:
+        if self._job is not None:
+            raise WorldError("a skill is still ending: clean up once it has")
         self._cameras, self._fronts = {}, []
         self._link.clear()
 

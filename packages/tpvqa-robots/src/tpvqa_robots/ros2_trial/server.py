@@ -12,7 +12,7 @@ from typing import Any
 
 from tpvqa import Trial, TrialConfig
 from tpvqa.drivers import Interrupted
-from tpvqa.errors import TpvqaError
+from tpvqa.errors import TpvqaError, WorldError
 from tpvqa.events import Ended
 from tpvqa_robots.ros2 import typed
 from tpvqa_robots.ros2.lifecycle import Stages, begin
@@ -87,8 +87,9 @@ class RunTaskServer:
                     continue
                 self._serve(handle)
         finally:
-            self._cleanup()
-            self._link.close()
+            self._link.close()  # first: a result may still be on its way
+            if self._asks is not None:
+                self._asks.close()
 
     def close(self) -> None:
         """End the trial that runs, and then the server; from any thread."""
@@ -139,6 +140,8 @@ class RunTaskServer:
         self._cancel.set()
 
     def _cleanup(self) -> None:
+        if self._busy:
+            raise WorldError("a trial is still ending: clean up once it has")
         self._link.clear()
         if self._asks is not None:
             self._asks.close()
