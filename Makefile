@@ -17,7 +17,7 @@ unexport PYTHONDONTWRITEBYTECODE
 BUILD := hatchling editables
 OURS := $(QUICKLY) --no-deps --no-build-isolation
 
-.PHONY: demo test lint types tests gl install install-dev clean robot robot-env test-robot
+.PHONY: demo test lint types tests gl install install-dev clean robot robot-env robot-interfaces test-robot
 
 demo: install
 	@rm -rf $(DEMO)
@@ -28,7 +28,7 @@ demo: install
 
 # Two installations at once, and the types beside the robot's tests, which mostly wait.
 test:
-	@$(MAKE) --no-print-directory -j2 install-dev robot-env gl
+	@$(MAKE) --no-print-directory -j2 install-dev robot-interfaces gl
 	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory -j2 types test-robot
 	@$(MAKE) --no-print-directory tests
@@ -88,8 +88,12 @@ robot: robot-env
 
 robot-env: $(ROBOT_VENV)/.installed
 
+# ROS 2's messages of our own, built into the robot's environment: half a minute, once.
+robot-interfaces: robot-env
+	@$(ROBOT_BIN)/tpvqa build-interfaces
+
 # How soon processes hear of each other over DDS is not in our hands: what fails is tried again.
-test-robot: robot-env gl
+test-robot: robot-interfaces gl
 	MUJOCO_GL=osmesa OMP_NUM_THREADS=1 $(ROBOT_BIN)/python -m pytest -n 3 --dist worksteal --reruns 2 tests_robot
 
 $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/pyproject.toml
@@ -100,7 +104,7 @@ $(ROBOT_VENV)/.installed: packages/tpvqa/pyproject.toml packages/tpvqa-robots/py
 	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) $(BUILD)
 	@$(ROBOT_BIN)/python -m pip install $(OURS) -e packages/tpvqa -e packages/tpvqa-robots
 	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) \
-	  tpvqa 'tpvqa-robots[grasps,gym,ros2,trees]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
+	  tpvqa 'tpvqa-robots[bag,grasps,gym,interfaces,ros2,trees]' 'mujoco==3.3.*' 'imageio-ffmpeg>=0.5' \
 	  'pytest>=8.2' 'pytest-xdist>=3.6' 'pytest-rerunfailures>=15' 'hypothesis>=6.100'
 	@$(ROBOT_BIN)/python -m pip install $(QUICKLY) --no-deps robosuite==1.5.2
 	@touch $@

@@ -122,7 +122,13 @@ def test_the_household_imports_what_is_public_and_nothing_of_the_experiments() -
         assert not re.search(r"from tpvqa\.[\w.]+ import [^\n]*\b_\w", text), path
 
 
-DRIVING = {"film": {"episodes"}, "bridges": {"drivers", "episodes", "events", "monitors", "trial"}}
+TRIALS = {"drivers", "episodes", "events", "monitors", "trial"}
+DRIVING = {
+    "film": {"episodes"},
+    "bridges": TRIALS,
+    "ros2_trial": TRIALS | {"assembly", "cli", "config"},
+    "plansys2": TRIALS | {"assembly", "cli", "config"},
+}
 
 
 def test_the_robots_import_what_is_public_and_whoever_drives_trials_what_that_takes() -> None:

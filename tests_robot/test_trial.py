@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests_robot.bag_reading import check_bag
 from tpvqa import Task, TpvqaError, load_task
 from tpvqa.tasks import find_task
 from tpvqa_robots.film.writing import GIF_BYTES
@@ -19,7 +20,7 @@ def run(*words: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def test_the_appendix_is_filmed(tmp_path: Path) -> None:
+def test_the_appendix_is_filmed_and_bagged(tmp_path: Path) -> None:
     """One container slips and falls, the other is placed; one grasp goes wrong and is repeated."""
     done = run("film", "--speed", 50, "--out", tmp_path / "made")
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
@@ -34,6 +35,13 @@ def test_the_appendix_is_filmed(tmp_path: Path) -> None:
     assert (ended["completed"], ended["repeats"], ended["replans"]) == (True, 1, 1)
     assert (tmp_path / "made" / "film.mp4").stat().st_size > 50_000
     assert 50_000 < (tmp_path / "made" / "film.gif").stat().st_size <= GIF_BYTES
+    bagged = run("bag", tmp_path / "made")
+    assert bagged.returncode == 0, bagged.stderr
+    found = check_bag(tmp_path / "made", tmp_path / "made" / "bag")
+    assert len(found["/tpvqa/overhead/depth"]) == sum(e["kind"] == "observed" for e in events)
+    again = run("bag", tmp_path / "made")
+    assert again.returncode == 2
+    assert "--out" in again.stderr
 
 
 @pytest.mark.parametrize("words", ["slip", "slip=2", "bad=x", "noise=-1", "appendix:slip=1"])

@@ -7,12 +7,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
 
 from tpvqa import Task
+from tpvqa_robots.ros2.link import Link
 from tpvqa_robots.ros2.setup import load_setup
 from tpvqa_robots.ros2.world import Ros2World
 
@@ -34,6 +35,21 @@ workspace:
   low: [-1, -1, 0]
   high: [1, 1, 1.2]
   places: {table: [0.5, 0, 0.8], goal_area: [0.4, 0.3, 0.8], floor: [0.5, 0, -0.1]}
+"""
+
+BY_ACTION = ("server: /tpvqa,", "action: /tpvqa/execute_skill,")
+PLAIN = """\
+skills:
+  find: {action: /arm/do, deadline: 10}
+  pick_up: {action: /arm/do, deadline: 10}
+  place: {action: /arm/do, deadline: 10}
+cameras:
+  overhead: {image: /arm/image, frame_id: eye}
+joints: /arm/joints
+sensed:
+  - {fact: (hand_empty), joint: gripper, below: 0.003, sure: 0.98}
+truth: /arm/truth
+limits: {age: 1.0, wait: 30, gone: 1.5, grace: 0.5}
 """
 
 Start = Callable[..., "subprocess.Popen[bytes]"]
@@ -67,6 +83,19 @@ def domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     pytest.fail("all DDS domains are taken")
 
 
+def transition(link: Link, node: str, number: int) -> bool:
+    """Take a managed node to another stage, by its service; whether it went there."""
+    from lifecycle_msgs.srv import ChangeState
+
+    client = link.node.create_client(ChangeState, f"/{node}/change_state")
+    wait_for(client.service_is_ready)
+    request = ChangeState.Request()
+    request.transition.id = number
+    changed = client.call_async(request)
+    wait_for(changed.done)
+    return bool(changed.result().success)
+
+
 @pytest.fixture
 def state(tmp_path: Path) -> Path:
     """Where the stand-in keeps how its world is, and what it did."""
@@ -80,16 +109,27 @@ def setup_file(tmp_path: Path) -> Path:
     return file
 
 
+def change(file: Path, *changes: tuple[str, str]) -> None:
+    """Change a setup file."""
+    text = file.read_text()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    file.write_text(text)
+
+
 @pytest.fixture
 def start(state: Path) -> Iterator[Start]:
     """Start a skill server: faults, then seconds that a skill takes."""
     running = []
 
-    def begin(*faults: str, seconds: float = 0.05) -> "subprocess.Popen[bytes]":
+    def begin(
+        *faults: str, seconds: float = 0.05, which: str = "standin", more: Sequence[str] = ()
+    ) -> "subprocess.Popen[bytes]":
         words = [word for fault in faults for word in ("--fault", fault)]
-        words += ["--seconds", str(seconds)]
+        words += ["--seconds", str(seconds), *more]
         server = subprocess.Popen(
-            [sys.executable, "-m", "tests_robot.ros2.standin", str(state), *words],
+            [sys.executable, "-m", f"tests_robot.ros2.{which}", str(state), *words],
             stdout=subprocess.PIPE,
             cwd=Path(__file__).parents[2],
             env=os.environ.copy(),
@@ -111,11 +151,7 @@ def open_world(task: Task, setup_file: Path) -> Iterator[Open]:
     opened = []
 
     def make(*changes: tuple[str, str]) -> Ros2World:
-        text = setup_file.read_text()
-        for old, new in changes:
-            assert old in text
-            text = text.replace(old, new)
-        setup_file.write_text(text)
+        change(setup_file, *changes)
         load_setup(setup_file, task)
         opened.append(Ros2World.from_spec(str(setup_file), task=task))
         return opened[-1]

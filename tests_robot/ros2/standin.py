@@ -110,13 +110,16 @@ def main() -> None:
     parser.add_argument("file", type=Path)
     parser.add_argument("--fault", action="append", default=[])
     parser.add_argument("--seconds", type=float, default=0.05)
+    parser.add_argument("--managed", action="store_true")
+    parser.add_argument("--sim-time", action="store_true")
     said = parser.parse_args()
     files = find_task("collect_toys")
     task = load_task(files.domain, files.problem)
     faults = set(said.fault)
     robot = StandIn(task, said.file, faults, said.seconds)
     views = () if "blind" in faults else ("overhead",)
-    server = SkillServer(robot, task, views, rate=20.0, truth=robot.true)
+    more = {"managed": said.managed, "sim_time": said.sim_time}
+    server = SkillServer(robot, task, views, rate=20.0, truth=robot.true, **more)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: server.close())
     print("ready", flush=True)

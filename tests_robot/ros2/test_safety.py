@@ -199,7 +199,7 @@ def test_the_server_itself_starts_nothing_on_an_old_picture(start: Start, state:
         )
         speaker = link.speaker(String, "/tpvqa/command", said())
         link.start()
-        wait_for(lambda: bool(heard))
+        wait_for(lambda: bool(heard) and speaker.get_subscription_count() > 0)
 
         def answers(name: str) -> Iterator[wire.Said]:
             said = (each for each in list(heard) if each["say"] in ("refused", "result"))

@@ -1,5 +1,6 @@
 """A monitored trial that is gone through a request at a time, and may be paused between them."""
 
+from collections.abc import Sequence
 from threading import Event
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from tpvqa_robots.bridges.jobs import turn
 
 if TYPE_CHECKING:
     from tpvqa import Trial
-    from tpvqa.drivers.journal import Writer
+    from tpvqa.drivers.journal import Listener, Writer
 
 PAUSED = "the trial was paused, and what was seen before counts no longer"
 
@@ -33,6 +34,7 @@ class PausableTrial:
         trial: The trial; it has not been run.
         writer: Where its events go; not closed here.
         patience: Seconds that world and VLM may be busy with something else.
+        listeners: Told of every event.
 
     Attributes:
         pause: Set to stop the skill that is running.
@@ -40,12 +42,19 @@ class PausableTrial:
         ended: The last event, once there is one.
     """
 
-    def __init__(self, trial: "Trial", writer: "Writer", *, patience: float):
+    def __init__(
+        self,
+        trial: "Trial",
+        writer: "Writer",
+        *,
+        patience: float,
+        listeners: "Sequence[Listener]" = (),
+    ):
         self.pause, self.still = Event(), Event()
         self.still.set()
         self.ended: Ended | None = None
         self._patience = patience
-        self._trial, self._writer = trial, writer
+        self._trial, self._writer, self._listeners = trial, writer, listeners
         self._stepping: SteppingTrial | None = None
         self._performer: Performer = trial.performer(writer, cancel=self.pause)
         self._acting = turn("act", trial.world)
@@ -63,7 +72,7 @@ class PausableTrial:
         Raises:
             TpvqaError: The trial has run already, or a plug-in broke.
         """
-        stepping: SteppingTrial = self._trial.stepping(self._writer)
+        stepping: SteppingTrial = self._trial.stepping(self._writer, listeners=self._listeners)
         stepping.begin()
         self._stepping = stepping
         self._end_if_over(stepping)

@@ -1,11 +1,12 @@
 """The loop's side of a skill server: one controller that holds it, and has skills done."""
 
+import math
 import threading
 import uuid
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import Any
+from typing import Any, Protocol
 
 from tpvqa_robots.ros2 import wire
 from tpvqa_robots.ros2.link import Link, said
@@ -13,7 +14,18 @@ from tpvqa_robots.ros2.link import Link, said
 
 @dataclass
 class Doing:
-    """A skill that was asked for, and what has been heard of it."""
+    """A skill that was asked for, and what has been heard of it.
+
+    Attributes:
+        id: Of what was asked.
+        server: Who was asked.
+        result: How it ended.
+        refused: Why it was not begun.
+        malformed: Whether it ended in a way that is not understood.
+        feedback: What the robot was about.
+        cancelled: Whether it is to be stopped.
+        taken_by: When the server has to have taken it, by `time.monotonic`.
+    """
 
     id: str
     server: str
@@ -21,10 +33,71 @@ class Doing:
     refused: str = ""
     malformed: bool = False
     feedback: list[str] = field(default_factory=list)
+    cancelled: bool = False
+    taken_by: float = math.inf
+
+    @property
+    def over(self) -> bool:
+        """Whether the server has said how it ended."""
+        return self.result is not None or bool(self.refused) or self.malformed
+
+    @property
+    def untaken(self) -> bool:
+        """Whether the server did not take it in time."""
+        return monotonic() > self.taken_by
 
 
-class SkillClient:
-    """Speaks with the skill server of a prefix.
+class Client(Protocol):
+    """Whoever has a robot's skills done, by topics or by an action.
+
+    Attributes:
+        prefix: What the server's topics, or its action, are called.
+    """
+
+    prefix: str
+
+    @property
+    def there(self) -> bool:
+        """Whether the server is there."""
+
+    @property
+    def holds(self) -> bool:
+        """Whether this controller has the robot."""
+
+    @property
+    def server(self) -> str | None:
+        """Which server it is: another after every start."""
+
+    @property
+    def holder(self) -> str | None:
+        """Who has the robot."""
+
+    @property
+    def busy(self) -> str | None:
+        """What the server is at."""
+
+    @property
+    def stopped(self) -> str:
+        """Why the server does nothing; empty where it would."""
+
+    def do(self, action: str, deadline: float, seen: float) -> Doing:
+        """Ask for a skill; what comes of it is told in what is returned.
+
+        Args:
+            action: As PDDL writes it.
+            deadline: Seconds that it has.
+            seen: The stamp of the latest picture that was looked at.
+        """
+
+    def cancel(self, doing: Doing) -> None:
+        """Have a skill stopped."""
+
+    def release(self) -> None:
+        """Give the robot back; what is still running is stopped."""
+
+
+class TopicClient:
+    """Speaks with the skill server of a prefix, in JSON on two topics.
 
     Args:
         link: The node.
@@ -38,7 +111,7 @@ class SkillClient:
 
         self.prefix, self._changed, self._gone = prefix, changed, gone
         self._string: Callable[..., Any] = String
-        self.me = f"loop-{uuid.uuid4().hex[:12]}"
+        self.me = new_name()
         self.server: str | None = None
         self.holder: str | None = None
         self.stopped = ""
@@ -60,13 +133,7 @@ class SkillClient:
         return self.there and self.holder == self.me
 
     def do(self, action: str, deadline: float, seen: float) -> Doing:
-        """Ask for a skill; what comes of it is told in what is returned.
-
-        Args:
-            action: As PDDL writes it.
-            deadline: Seconds that it has.
-            seen: The stamp of the latest picture that was looked at.
-        """
+        """Ask for a skill."""
         doing = self._doing = Doing(uuid.uuid4().hex, self.server or "")
         self._say("do", id=doing.id, action=action, deadline=deadline, seen=seen)
         return doing
@@ -107,3 +174,8 @@ class SkillClient:
             case "result":
                 doing.result = wire.result_of(heard)
                 doing.malformed = doing.result is None
+
+
+def new_name() -> str:
+    """What a loop calls itself."""
+    return f"loop-{uuid.uuid4().hex[:12]}"

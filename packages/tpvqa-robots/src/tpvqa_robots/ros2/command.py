@@ -1,5 +1,6 @@
-"""`tpvqa skill-server`: offer a simulated robot on ROS 2 topics."""
+"""`tpvqa skill-server`: offer a simulated robot on ROS 2 topics, and as an action."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -17,8 +18,20 @@ def skill_server(
     prefix: Annotated[str, typer.Option(help="Of the topics.")] = "/tpvqa",
     stop: Annotated[str, typer.Option(help="Topic of emergency stops.")] = "/tpvqa/stop",
     rate: Annotated[float, typer.Option(min=0.1, max=60, help="Pictures a second.")] = 5.0,
+    keep: Annotated[
+        Path | None,
+        typer.Option(help="File for the world's state after every skill; goes on from it."),
+    ] = None,
+    managed: Annotated[
+        bool, typer.Option("--managed", help="Wait to be configured and activated from outside.")
+    ] = False,
+    sim_time: Annotated[
+        bool, typer.Option("--sim-time", help="Stamps are of the clock on /clock.")
+    ] = False,
 ) -> None:
     """Offer a simulated robot's skills, pictures and joints on ROS 2 topics, until Ctrl-C.
+
+    Where tpvqa_interfaces is built (tpvqa build-interfaces), skills are a ROS 2 action, too.
 
     Exit codes: 0 ended by Ctrl-C or SIGTERM, 2 bad input.
     """
@@ -30,9 +43,11 @@ def skill_server(
     from tpvqa.tasks import find_task
     from tpvqa.worlds.capabilities import truth_of
     from tpvqa.worlds.making import make_world
+    from tpvqa_robots.ros2 import typed
+    from tpvqa_robots.ros2.kept import Kept
     from tpvqa_robots.ros2.link import load_rclpy
     from tpvqa_robots.ros2.of_world import WorldRobot
-    from tpvqa_robots.ros2.server import SkillServer
+    from tpvqa_robots.ros2.server import ACTION, SkillServer
     from tpvqa_robots.truth import atoms_of
 
     load_rclpy()
@@ -47,7 +62,7 @@ def skill_server(
             assert tells is not None
             return frozenset(atom for atom in atoms if tells.holds(atom))
 
-        robot = WorldRobot(made, loaded)
+        robot = WorldRobot(made, loaded, None if keep is None else Kept(made, keep))
         server = SkillServer(
             robot,
             loaded,
@@ -56,10 +71,13 @@ def skill_server(
             stop=stop,
             rate=rate,
             truth=None if tells is None else true,
+            managed=managed,
+            sim_time=sim_time,
         )
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: server.close())
-        typer.echo(f"{world} is offered on {prefix}; Ctrl-C ends it.")
+        action = f" and as {prefix}/{ACTION}" if typed.built() else ""
+        typer.echo(f"{world} is offered on {prefix}{action}; Ctrl-C ends it.")
         server.run()
     finally:
         if isinstance(made, Closing):

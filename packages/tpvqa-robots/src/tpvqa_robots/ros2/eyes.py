@@ -65,6 +65,8 @@ class Eye:
         if message is None:
             return None, f"no picture has come on {camera.image}"
         stamp = stamp_of(message)
+        if stamp <= 0:
+            return None, f"the last picture on {camera.image} bears no stamp"
         if stamp <= after:
             return (
                 None,

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tpvqa.errors import MissingExtraError, WorldError
+from tpvqa_robots.ros2.lifecycle import Stages, managed_node
 
 
 def load_rclpy() -> Any:
@@ -33,22 +34,30 @@ class Link:
 
     Args:
         name: Of the node.
+        stages: What it does at each stage of its life, where it is a managed node.
+        sim_time: Whether its clock is that of the topic /clock.
 
     Raises:
         MissingExtraError: ROS 2 is not installed.
         WorldError: The node cannot be made.
     """
 
-    def __init__(self, name: str):
+    def __init__(self, name: str, *, stages: Stages | None = None, sim_time: bool = False):
         rclpy = load_rclpy()
+        from rclpy.clock import Clock, ClockType
         from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+        from rclpy.parameter import Parameter
         from rclpy.signals import SignalHandlerOptions
 
         self._ended = ExternalShutdownException
         self._context = rclpy.Context()
         try:
             rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-            self.node = rclpy.create_node(name, context=self._context, enable_rosout=False)
+            more: dict[str, Any] = {"context": self._context, "enable_rosout": False}
+            if sim_time:
+                more["parameter_overrides"] = [Parameter("use_sim_time", value=True)]
+            make = rclpy.create_node if stages is None else managed_node(stages)
+            self.node = make(name, **more)
         except Exception as error:
             self._context.try_shutdown()
             raise WorldError(
@@ -59,6 +68,9 @@ class Link:
         self._executor.add_node(self.node)
         self._thread = threading.Thread(target=self._spin, name=name, daemon=True)
         self._closed = False
+        # Beats have to go on where simulated time stands still.
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._made: list[Callable[[], Any]] = []
 
     def start(self) -> None:
         """Begin to listen; what is subscribed to beforehand misses nothing."""
@@ -79,7 +91,8 @@ class Link:
 
     def listen(self, kind: Any, topic: str, heard: Callable[[Any], None], qos: Any) -> None:
         """Have messages of a topic given to a function."""
-        self.node.create_subscription(kind, topic, heard, qos)
+        made = self.node.create_subscription(kind, topic, heard, qos)
+        self._made.append(lambda: self.node.destroy_subscription(made))
 
     def watch(self, kind: Any, topic: str, heard: Callable[[Any], None]) -> None:
         """Have the latest message of a topic given to a function, however it is sent.
@@ -102,11 +115,23 @@ class Link:
 
     def speaker(self, kind: Any, topic: str, qos: Any) -> Any:
         """A publisher."""
-        return self.node.create_publisher(kind, topic, qos)
+        made = self.node.create_publisher(kind, topic, qos)
+        self._made.append(lambda: self.node.destroy_publisher(made))
+        return made
 
     def every(self, seconds: float, do: Callable[[], None]) -> None:
         """Do something again and again."""
-        self.node.create_timer(seconds, do)
+        made = self.node.create_timer(seconds, do, clock=self._steady)
+        self._made.append(lambda: self.node.destroy_timer(made))
+
+    def keep(self, ending: Callable[[], Any]) -> None:
+        """Have `clear` call something that ends what was made otherwise."""
+        self._made.append(ending)
+
+    def clear(self) -> None:
+        """End publishers, subscriptions and timers; the node stays."""
+        while self._made:
+            self._made.pop()()
 
     def close(self) -> None:
         """End the node. Can be called twice."""

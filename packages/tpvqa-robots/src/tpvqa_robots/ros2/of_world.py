@@ -7,6 +7,7 @@ from typing import Any, Protocol, runtime_checkable
 from tpvqa.observation import Observation
 from tpvqa.pddl import Action, Task
 from tpvqa.worlds import Execution, World
+from tpvqa_robots.ros2.kept import Kept
 from tpvqa_robots.skills.protocol import Robot
 
 
@@ -24,10 +25,11 @@ class WorldRobot:
     Args:
         world: The world; where it has a `robot`, that one's joints are told.
         task: Names its actions.
+        kept: Keeps the world's state after every action; nothing does by default.
     """
 
-    def __init__(self, world: World, task: Task):
-        self._world = world
+    def __init__(self, world: World, task: Task, kept: Kept | None = None):
+        self._world, self._kept = world, kept
         self.skills: Mapping[str, Any] = {schema.name: schema for schema in task.schemas}
         self._cancelled: threading.Event | None = None
 
@@ -42,7 +44,10 @@ class WorldRobot:
         """Execute it in the world; see `Robot.perform`."""
         feedback(f"begins {action.pddl()}")
         self._cancelled = cancelled
-        return self._world.execute(action, deadline=deadline, cancel=cancelled)
+        done = self._world.execute(action, deadline=deadline, cancel=cancelled)
+        if self._kept is not None:
+            self._kept.keep()
+        return done
 
     def look(self, view: str) -> Observation:
         """Observe the world."""

@@ -1,4 +1,4 @@
-"""The skill server: offers a `Robot` on topics, to one controller at a time.
+"""The skill server: offers a `Robot` on topics and as an action, to one controller at a time.
 
 The robot is moved and looked at by one thread alone, that of `run`; what is heard meanwhile cancels
 and stops it from the node's thread.
@@ -9,33 +9,30 @@ import queue
 import threading
 import uuid
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from time import monotonic
 from typing import Any
 
-from tpvqa.errors import PDDLError, TpvqaError
-from tpvqa.pddl import Action, Atom, State, Task
+from tpvqa.errors import PDDLError, TpvqaError, WorldError
+from tpvqa.pddl import Atom, State, Task
 from tpvqa.worlds import Execution, Report
-from tpvqa_robots.ros2 import wire
+from tpvqa_robots.ros2 import typed, wire
+from tpvqa_robots.ros2.by_action import ByAction
+from tpvqa_robots.ros2.by_topics import ByTopics
+from tpvqa_robots.ros2.job import Job, Standing, Teller, Wanted
 from tpvqa_robots.ros2.lease import Lease
+from tpvqa_robots.ros2.lifecycle import Stages, begin
 from tpvqa_robots.ros2.link import Link, said
 from tpvqa_robots.ros2.pictures import messages_of, set_stamp
 from tpvqa_robots.skills.protocol import Robot
 
-
-@dataclass
-class Job:
-    """A skill that is asked for."""
-
-    id: str
-    action: Action
-    deadline: float
-    cancelled: threading.Event = field(default_factory=threading.Event)
-    began: float = field(default_factory=monotonic)
+ACTION = "execute_skill"
+"""What the action is called, under the prefix."""
 
 
 class SkillServer:
-    """Offers a robot on PREFIX/command, PREFIX/status, PREFIX/VIEW/… and PREFIX/joints.
+    """Offers a robot on PREFIX/command, PREFIX/status, PREFIX/VIEW/… and PREFIX/joints; where
+    `tpvqa_interfaces` is built, as the action PREFIX/execute_skill, too.
 
     Args:
         robot: The robot.
@@ -45,6 +42,8 @@ class SkillServer:
         stop: The topic of emergency stops.
         rate: Pictures a second and camera.
         truth: Tells the true state, where the robot is simulated.
+        managed: Whether its node waits to be configured and activated by somebody else.
+        sim_time: Whether stamps are of the clock on /clock.
 
     Raises:
         MissingExtraError: ROS 2 is not installed.
@@ -60,42 +59,33 @@ class SkillServer:
         stop: str = "/tpvqa/stop",
         rate: float = 5.0,
         truth: Callable[[], State] | None = None,
+        managed: bool = False,
+        sim_time: bool = False,
     ):
         self._robot, self._task, self._views, self._truth = robot, task, views, truth
-        self._period = 1 / rate
-        self._link = link = Link("tpvqa_skill_server")
-        from sensor_msgs.msg import CameraInfo, CompressedImage, Image, JointState
-        from std_msgs.msg import Bool, String
-
-        self._string: Callable[..., Any] = String
-        self._joint_state: Callable[[], Any] = JointState
+        self._prefix, self._stop_topic, self._period = prefix, stop, 1 / rate
         self._me, self._lease = f"server-{uuid.uuid4().hex[:12]}", Lease()
         self._jobs: queue.Queue[Job] = queue.Queue()
         self._job: Job | None = None
-        self._ids: set[str] = set()
-        self._ended, self._stop, self._over = link.now(), "", threading.Event()
+        self._stop, self._active, self._over = "", False, threading.Event()
         self._lock = threading.RLock()
-        self._status = link.speaker(String, f"{prefix}/{wire.STATUS}", said())
-        self._joints = link.speaker(JointState, f"{prefix}/{wire.JOINTS}", said(1))
-        self._true = link.speaker(String, f"{prefix}/{wire.TRUTH}", said(1))
-        self._cameras: Mapping[str, tuple[Any, Any, Any]] = {
-            view: (
-                link.speaker(CompressedImage, f"{prefix}/{view}/image", said(1)),
-                link.speaker(Image, f"{prefix}/{view}/depth", said(1)),
-                link.speaker(CameraInfo, f"{prefix}/{view}/camera_info", said(1)),
-            )
-            for view in views
-        }
-        link.listen(String, f"{prefix}/{wire.COMMAND}", self._hear, said())
-        link.listen(Bool, stop, self._hear_stop, said())
-        link.every(wire.BEAT / 2, self._tick)
+        self._cameras: Mapping[str, tuple[Any, Any, Any]] = {}
+        self._fronts: list[ByTopics | ByAction] = []
+        stages = Stages(
+            self._configure, self._activate, self._deactivate, self._cleanup, self.close
+        )
+        self._link = Link("tpvqa_skill_server", stages=stages, sim_time=sim_time)
+        self._ended = self._link.now()
+        if not managed:
+            begin(self._link.node)
 
     def run(self) -> None:
         """Serve until `close` is called, or Ctrl-C."""
         self._link.start()
         try:
             while not self._over.is_set():
-                self._show()
+                if self._active:
+                    self._show()
                 try:
                     job = self._jobs.get(timeout=self._period)
                 except queue.Empty:
@@ -111,6 +101,45 @@ class SkillServer:
         job = self._job
         if job is not None:
             job.cancelled.set()
+
+    def _configure(self) -> None:
+        from sensor_msgs.msg import CameraInfo, CompressedImage, Image, JointState
+        from std_msgs.msg import Bool, String
+
+        link, prefix = self._link, self._prefix
+        self._string: Callable[..., Any] = String
+        self._joint_state: Callable[[], Any] = JointState
+        self._joints = link.speaker(JointState, f"{prefix}/{wire.JOINTS}", said(1))
+        self._true = link.speaker(String, f"{prefix}/{wire.TRUTH}", said(1))
+        self._cameras = {
+            view: (
+                link.speaker(CompressedImage, f"{prefix}/{view}/image", said(1)),
+                link.speaker(Image, f"{prefix}/{view}/depth", said(1)),
+                link.speaker(CameraInfo, f"{prefix}/{view}/camera_info", said(1)),
+            )
+            for view in self._views
+        }
+        link.listen(Bool, self._stop_topic, self._hear_stop, said())
+        if typed.built():
+            self._fronts.append(ByAction(link, f"{prefix}/{ACTION}", self))
+        self._fronts.append(ByTopics(link, prefix, self))
+        link.every(wire.BEAT / 2, self._tick)
+
+    def _activate(self) -> None:
+        with self._lock:  # what was seen before it is old
+            self._ended, self._active = self._link.now(), True
+
+    def _deactivate(self) -> None:
+        with self._lock:
+            self._active = False
+            self._halt()
+        self._tick()
+
+    def _cleanup(self) -> None:
+        if self._job is not None:
+            raise WorldError("a skill is still ending: clean up once it has")
+        self._cameras, self._fronts = {}, []
+        self._link.clear()
 
     def _show(self) -> None:
         """Publish what the robot sees and feels now."""
@@ -136,7 +165,7 @@ class SkillServer:
                 job.action,
                 deadline=job.deadline,
                 cancelled=job.cancelled,
-                feedback=lambda told: self._say("feedback", id=job.id, message=told),
+                feedback=job.teller.feedback,
             )
         except TpvqaError as error:
             done = Execution(Report.FAILED, monotonic() - job.began, str(error))
@@ -144,64 +173,54 @@ class SkillServer:
             done = replace(done, report=Report.LATE, message=f"stopped after {job.deadline:g} s")
         with self._lock:
             self._ended, self._job = self._link.now(), None
-        self._say(
-            "result",
-            id=job.id,
-            report=done.report.value,
-            seconds=float(done.seconds),
-            message=done.message,
-            facts=wire.written(done.facts),
-            ended=self._ended,
-        )
+        job.teller.ended(done, self._ended)
 
-    def _hear(self, message: Any) -> None:
-        heard = wire.read(message.data)
-        by = None if heard is None else wire.text_of(heard, "from")
-        if heard is None or by is None:
-            return
+    def beat(self, by: str) -> None:
+        """A controller was heard; where nobody has the robot, it has it now."""
         with self._lock:
-            match heard["say"]:
-                case "beat":
-                    if self._lease.expired(monotonic()):
-                        self._halt()
-                    self._lease.beat(by, monotonic())
-                case "release" if self._lease.holder == by:
-                    self._halt()
-                    self._lease.release(by)
-                case "cancel" if self._lease.holder == by and self._job is not None:
-                    if wire.text_of(heard, "id") == self._job.id:
-                        self._job.cancelled.set()
-                case "do":
-                    self._do(by, heard)
+            if self._lease.expired(monotonic()):
+                self._halt()
+            self._lease.beat(by, monotonic())
 
-    def _do(self, by: str, heard: wire.Said) -> None:
-        name = wire.text_of(heard, "id")
-        if name is None or name in self._ids:
-            return
-        try:
-            job = self._accepted(by, name, heard)
-        except (ValueError, PDDLError) as refused:
-            self._say("refused", id=name, message=str(refused))
-            return
-        self._ids.add(name)
-        self._job = job
-        self._jobs.put(job)
+    def release(self, by: str) -> None:
+        """A controller gives the robot back; what it had begun is stopped."""
+        with self._lock:
+            if self._lease.holder == by:
+                self._halt()
+                self._lease.release(by)
 
-    def _accepted(self, by: str, name: str, heard: wire.Said) -> Job:
+    def cancel(self, by: str | None, name: str) -> None:
+        """Stop a skill; `by` is None where the asker is known by its goal alone."""
+        with self._lock:
+            job = self._job
+            if job is not None and job.id == name and by in (None, self._lease.holder):
+                job.cancelled.set()
+
+    def do(self, wanted: Wanted, teller: Teller) -> None:
+        """Begin a skill, or say why not."""
+        with self._lock:
+            try:
+                job = self._accepted(wanted, teller)
+            except (ValueError, PDDLError) as refused:
+                teller.refused(str(refused))
+                return
+            self._job = job
+            self._jobs.put(job)
+
+    def _accepted(self, wanted: Wanted, teller: Teller) -> Job:
         """The skill that is asked for, where it may begin.
 
         Raises:
             ValueError: It may not; says why.
             PDDLError: It is no action of the task.
         """
-        if self._stop:
-            raise ValueError(self._stop)
-        if not self._lease.beat(by, monotonic()):
+        if self._stopped:
+            raise ValueError(self._stopped)
+        if not self._lease.beat(wanted.by, monotonic()):
             raise ValueError(f"the robot is held by another controller, {self._lease.holder}")
         if self._job is not None:
             raise ValueError(f"the robot is still at {self._job.action.pddl()}")
-        deadline, seen = wire.number_of(heard, "deadline"), wire.number_of(heard, "seen")
-        action = wire.text_of(heard, "action")
+        action, deadline, seen = wanted.action, wanted.deadline, wanted.seen
         if deadline is None or deadline <= 0 or seen is None or action is None:
             raise ValueError("expected action, deadline in seconds and the stamp 'seen'")
         if seen <= self._ended:
@@ -210,7 +229,11 @@ class SkillServer:
         ground = self._task.action(words.predicate, words.arguments)
         if ground.name not in self._robot.skills:
             raise ValueError(f"the robot has no skill {ground.name!r}")
-        return Job(name, ground, deadline)
+        return Job(wanted.id, ground, deadline, teller)
+
+    @property
+    def _stopped(self) -> str:
+        return self._stop or ("" if self._active else "the skill server is not active")
 
     def _hear_stop(self, message: Any) -> None:
         with self._lock:
@@ -233,9 +256,7 @@ class SkillServer:
                 self._lease.holder = None
             if job is not None and now - job.began > job.deadline and not job.cancelled.is_set():
                 self._halt()
-            holder, stopped = self._lease.holder, self._stop
-        running = None if job is None else job.action.pddl()
-        self._say("alive", server=self._me, holder=holder, running=running, stopped=stopped)
-
-    def _say(self, what: str, **values: Any) -> None:
-        self._status.publish(self._string(data=wire.write(what, **values)))
+            running = None if job is None else job.action.pddl()
+            stands = Standing(self._me, self._lease.holder, running, self._stopped)
+        for front in self._fronts:
+            front.stands(stands)

@@ -12,14 +12,33 @@ from tpvqa.yaml_places import Place, read_yaml
 
 DEADLINE = 60.0
 """Seconds of a skill where nobody says."""
-SECTIONS = ("skills", "cameras", "joints", "sensed", "told", "stop", "truth", "limits", "workspace")
+SECTIONS = (
+    "skills",
+    "cameras",
+    "joints",
+    "sensed",
+    "told",
+    "stop",
+    "truth",
+    "limits",
+    "workspace",
+    "sim_time",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Server:
+    """A skill server: the name of its action, or the prefix of its topics."""
+
+    name: str
+    is_action: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Skill:
-    """Who carries out a PDDL action: the server's topics' prefix, and seconds that it has."""
+    """Who carries out a PDDL action, and seconds that it has."""
 
-    server: str
+    server: Server
     deadline: float
 
 
@@ -89,6 +108,7 @@ class Setup:
         gone: Seconds after which a server that is not heard is gone.
         grace: Seconds that a server has to answer beyond a skill's deadline.
         workspace: What must not be left; None for no bounds.
+        sim_time: Whether stamps are of the clock on /clock, as a simulator publishes it.
     """
 
     skills: Mapping[str, Skill]
@@ -103,6 +123,7 @@ class Setup:
     gone: float
     grace: float
     workspace: Workspace | None
+    sim_time: bool = False
 
 
 def load_setup(path: Path, task: Task) -> Setup:
@@ -144,15 +165,22 @@ def load_setup(path: Path, task: Task) -> Setup:
         gone=_number(limits.get("gone"), 2.0, least=0.5),
         grace=_number(limits.get("grace"), 2.0, least=0.1),
         workspace=_workspace(parts.get("workspace"), task),
+        sim_time="sim_time" in parts and parts["sim_time"].truth(),
     )
 
 
 def _skill(place: Place) -> Skill:
-    parts = place.sections("server", "deadline")
-    server = _topic(parts.get("server"))
-    if server is None:
-        raise place.wrong("a skill needs its server, e.g. {server: /tpvqa, deadline: 60}")
-    return Skill(server.rstrip("/"), _number(parts.get("deadline"), DEADLINE, least=0.1))
+    parts = place.sections("server", "action", "deadline")
+    if ("server" in parts) == ("action" in parts):
+        raise place.wrong(
+            "a skill needs either its server, e.g. {server: /tpvqa, deadline: 60}, or its action, "
+            "e.g. {action: /tpvqa/execute_skill, deadline: 60}"
+        )
+    is_action = "action" in parts
+    name = _topic(parts["action" if is_action else "server"])
+    assert name is not None
+    server = Server(name.rstrip("/"), is_action)
+    return Skill(server, _number(parts.get("deadline"), DEADLINE, least=0.1))
 
 
 def _camera(place: Place) -> Camera:

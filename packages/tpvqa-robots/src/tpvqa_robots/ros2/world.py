@@ -12,11 +12,12 @@ from tpvqa.errors import ConfigError, UnknownNameError, WorldError
 from tpvqa.observation import Frame, Observation, SensedFact
 from tpvqa.pddl import Action, Task
 from tpvqa.worlds.protocol import Execution, Report
-from tpvqa_robots.ros2.client import Doing, SkillClient
+from tpvqa_robots.ros2.action_client import ActionClient
+from tpvqa_robots.ros2.client import Client, Doing, TopicClient
 from tpvqa_robots.ros2.eyes import open_eyes
 from tpvqa_robots.ros2.feeling import Joints
 from tpvqa_robots.ros2.link import Link, said
-from tpvqa_robots.ros2.setup import Setup, load_setup
+from tpvqa_robots.ros2.setup import Server, Setup, load_setup
 from tpvqa_robots.ros2.truth import PublishedTruth
 
 TICK = 0.02
@@ -40,19 +41,21 @@ class Ros2World:
 
     Raises:
         MissingExtraError: ROS 2 is not installed.
+        TpvqaError: A server is an action's, and its messages are not built.
     """
 
     def __init__(self, task: Task, setup: Setup):
         from std_msgs.msg import Bool, String
 
         self._task, self._setup = task, setup
-        self._link = Link("tpvqa_loop")
+        self._link = Link("tpvqa_loop", sim_time=setup.sim_time)
         self._changed = threading.Condition()
         self._eyes = open_eyes(self._link, setup, self._changed)
-        self._clients = {
-            server: SkillClient(self._link, server, self._changed, setup.gone)
-            for server in dict.fromkeys(skill.server for skill in setup.skills.values())
-        }
+        try:
+            self._clients = self._found(setup)
+        except BaseException:
+            self._link.close()
+            raise
         self._joints: Joints | None = None
         if setup.joints is not None:
             self._joints = Joints(self._link, setup.joints, setup.sensed, self._notify)
@@ -79,6 +82,13 @@ class Ros2World:
             raise ConfigError("The world 'ros2' needs its file: --world ros2:robot.yaml")
         setup = load_setup(Path(arguments), task)
         return cls(task, setup) if setup.truth is None else SimulatedRos2World(task, setup)
+
+    def _found(self, setup: Setup) -> dict[Server, Client]:
+        found: dict[Server, Client] = {}
+        for server in dict.fromkeys(skill.server for skill in setup.skills.values()):
+            make = ActionClient if server.is_action else TopicClient
+            found[server] = make(self._link, server.name, self._changed, setup.gone)
+        return found
 
     def views(self) -> Sequence[str]:
         """The cameras of the setup file."""
@@ -160,7 +170,7 @@ class Ros2World:
 
     def _await(
         self,
-        client: SkillClient,
+        client: Client,
         doing: Doing,
         action: Action,
         began: float,
@@ -171,7 +181,7 @@ class Ros2World:
         cancelled: float | None = None
         while True:
             with self._changed:
-                if doing.result is None and not doing.refused and not doing.malformed:
+                if not doing.over:
                     self._changed.wait(TICK)
             took = monotonic() - began
             stopped = self._stopped(client)
@@ -188,9 +198,10 @@ class Ros2World:
             if doing.refused:
                 return _refused(began, doing.refused)
             gone = not client.there or client.server != doing.server
-            if doing.malformed or gone:
+            if doing.malformed or gone or doing.untaken:
+                client.cancel(doing)
                 self._ended = self._link.now()
-                what = "answered what is not understood" if doing.malformed else "went away"
+                what = _broke(doing, gone=gone)
                 said = f"the skill server {client.prefix} {what} in the middle of {action.pddl()}"
                 return Execution(Report.FAILED, took, f"{said}: what came of it is for a new look")
             if cancelled is None and cancel is not None and cancel.is_set():
@@ -206,7 +217,7 @@ class Ros2World:
                 said = f"{action.pddl()} did not return within {seconds:g} s, and was cancelled"
                 return Execution(Report.LATE, took, said, self._facts(()))
 
-    def _not_ready(self, client: SkillClient, cancel: Event | None) -> str:
+    def _not_ready(self, client: Client, cancel: Event | None) -> str:
         """Wait until a server is there and this controller has it; why not, in the end."""
 
         def over() -> bool:
@@ -267,7 +278,7 @@ class Ros2World:
         felt = ", ".join(f"{f.atom.pddl()} {f.probability:.2f}" for f in self._facts(()))
         return f"the robot stands; {joints}" + (f"; it feels {felt}" if felt else "")
 
-    def _stopped(self, client: SkillClient) -> str:
+    def _stopped(self, client: Client) -> str:
         return self._stop or client.stopped
 
     def _hear_stop(self, message: Any) -> None:
@@ -306,6 +317,12 @@ class SimulatedRos2World(Ros2World):
         """What is true now."""
         assert self._published is not None
         return self._published
+
+
+def _broke(doing: Doing, *, gone: bool) -> str:
+    if doing.malformed:
+        return "answered what is not understood"
+    return "went away" if gone else "did not take the goal"
 
 
 def _refused(began: float, why: str) -> Execution:

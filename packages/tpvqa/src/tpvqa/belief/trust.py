@@ -92,8 +92,9 @@ class Trust:
         self._normalise()
 
     def _normalise(self) -> None:
-        total = sum(self._weights)
-        self._weights = [max(w / total, 1e-9) for w in self._weights]
+        floor = 1e-9 * sum(self._weights)
+        above = [max(w, floor) for w in self._weights]
+        self._weights = [w / sum(above) for w in above]
         self._trusted.clear()
 
 

@@ -1,0 +1,18 @@
+# The wheels' CMake files name include folders of the interpreter that they were built with. Those that
+# are not here are taken out once all packages have been found; the build names the right ones itself.
+function(_take_out_what_is_not_here)
+  get_property(targets DIRECTORY PROPERTY IMPORTED_TARGETS)
+  foreach(target IN LISTS targets)
+    get_target_property(folders ${target} INTERFACE_INCLUDE_DIRECTORIES)
+    if(folders)
+      set(here "")
+      foreach(folder IN LISTS folders)
+        if(NOT IS_ABSOLUTE "${folder}" OR EXISTS "${folder}")
+          list(APPEND here "${folder}")
+        endif()
+      endforeach()
+      set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${here}")
+    endif()
+  endforeach()
+endfunction()
+cmake_language(DEFER CALL _take_out_what_is_not_here)
