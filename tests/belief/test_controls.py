@@ -47,7 +47,7 @@ def asked(right: float, seed: int) -> tuple[Evidence, list[bool]]:
         truths.append(likely(question) > 0.5)
         says = truths[-1] == (random.random() < right)
         reply = Reply.YES if says else Reply.NO
-        evidence.take(question, Answer(question.text, reply, None), look, None)
+        evidence.take(question, Answer(question, reply), look, None)
     return evidence, truths
 
 
