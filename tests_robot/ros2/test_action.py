@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests_robot.conftest import Act
@@ -216,6 +216,8 @@ def test_of_loops_that_hear_each_other_one_has_the_robot(beats: list[tuple[str, 
 
 
 @given(st.integers(0, 255), st.floats(), st.floats(), st.text(max_size=9))
+@example(1, 0.0, 0.0, "\x1f")
+@example(1, 0.0, 0.0, "(= (battery r)")
 def test_a_malformed_result_of_an_action_is_no_result(
     report: int, seconds: float, probability: float, fact: str
 ) -> None:

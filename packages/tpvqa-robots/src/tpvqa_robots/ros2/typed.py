@@ -84,9 +84,12 @@ def result_of(message: Any, came: float) -> Result | None:
         return None
     facts = []
     for each in message.facts:
-        if not 0 <= each.probability <= 1 or not each.fact.strip("() "):
+        if not 0 <= each.probability <= 1:
             return None
-        facts.append(SensedFact(Atom.parse(each.fact), float(each.probability)))
+        try:
+            facts.append(SensedFact(Atom.parse(each.fact), float(each.probability)))
+        except ValueError:
+            return None
     ended = seconds_of(message.ended)
     report = _REPORTS[message.report - 1]
     return Result(
