@@ -10,7 +10,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.by_kind import Kinds
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.doing import Doing
+from tpvqa.belief.doing import IDLE, Doing
 from tpvqa.belief.falls import fallen
 from tpvqa.belief.far_off import FarOff
 from tpvqa.belief.faults import FaultModel, JointState, Rates
@@ -96,9 +96,10 @@ class Chooser:
         """Note that an action is executed, before the belief predicts what it leads to."""
         self.seeking.acted()
         self.rounds.acted(belief.ranked()[0][0], action)
-        if self.settles < SETTLED and not self.following:
+        state = self._model.state(belief.ranked()[0][0])
+        if self.settles < SETTLED and not self.follows(action, state):
             self._unseen.follow(action)
-        self._unseen.acted(action, self._model.state(belief.ranked()[0][0]))
+        self._unseen.acted(action, state)
 
     def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
         """Go on with a model that gives joint states other numbers."""
@@ -138,9 +139,7 @@ class Chooser:
                 known.clear()
             self._far.forget()
         ranked = belief.ranked()
-        if self.settles >= SETTLED or (barred is not None and self.following[:1] == (barred,)):
-            self._unseen.following = ()
-        followed = self._followed_now(ranked) if self.blind else None
+        followed = self._followed_now(ranked, current, barred)
         if followed is not None:
             return followed
         kinds = np.array([self._model.kind(number) for number, _ in ranked], np.intp)
@@ -158,7 +157,7 @@ class Chooser:
         if not acts and not self._goal_likely(ranked):  # to try is better than to end
             for limits in work.values():
                 limits[1] = 1.0
-        if self._stuck(ranked):
+        if self._stuck(ranked) or self.ahead.left == 0:
             choices = [each for each in choices if each.action is None]
         found: list[tuple[Choice, Floats, Floats]] = []
         blind = self._blind(choices, ranked, rates) if self.settles < SETTLED else {}
@@ -189,14 +188,23 @@ class Chooser:
         table = Table(told, numbers, weights, costs, works)
         if self.blind and table.best.action is not None:
             self._unseen.follow(table.best.action)
-            return self._followed_now(ranked) or table
+            return self._followed_now(ranked, current, barred) or table
         return table
 
-    def _followed_now(self, ranked: Sequence[tuple[int, float]]) -> Table | None:
-        """What is being followed unseen, as the only choice; None where nothing is."""
-        if not self._unseen.following:
+    def _followed_now(
+        self, ranked: Sequence[tuple[int, float]], current: Sequence[Action], barred: Action | None
+    ) -> Table | None:
+        """What is being followed unseen, as the only choice; None where nothing is, or where it
+        need not, or may not, be followed any more."""
+        if not self.following:
             return None
-        choice = Choice(self._unseen.following[0], self._model.state(ranked[0][0]))
+        choice = Choice(self.following[0], self._model.state(ranked[0][0]))
+        sure = sum(weight for number, weight in ranked if self.ahead.is_goal(number)) > IDLE
+        allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
+        if self.settles >= SETTLED or sure or not allowed:
+            self._unseen.following = ()
+        if not self.blind or not self.following:
+            return None
         weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
         ones = np.ones((len(ranked), 1))
         return Table((choice,), numbers, weights, ones, ones[None])
@@ -205,6 +213,11 @@ class Chooser:
     def following(self) -> tuple[Action, ...]:
         """The actions that are followed unseen, where they are: those that are left."""
         return self._unseen.following
+
+    def follows(self, action: Action, state: State) -> bool:
+        """Whether an action is the next one of what is being followed."""
+        same = self._model.same_skill
+        return bool(self.following) and same(self.following[0], action, state)
 
     def _blind(
         self, choices: Sequence[Choice], ranked: Sequence[tuple[int, float]], rates: Rates

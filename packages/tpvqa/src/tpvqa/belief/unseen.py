@@ -116,13 +116,13 @@ class Unseen:
                     own[:, column] = less[:, column]
             paid = self._costs.action + self._led_to(led, own)
             weights = np.array([weight for weight, _ in led])
-            best = np.argsort(weights @ paid, kind="stable")[:BEST].tolist()
+            best = np.argsort(np.round(weights @ paid, 9), kind="stable")[:BEST].tolist()
             found[action] = [self._whole(paid[:, n], ranked) for n in dict.fromkeys([0, *best])]
             self._after[action] = self._actions(ways, told[best[0]], action)
         led_states = ranked[: len(actions[0][1])]
         here = begun[self._steps.places([number for number, _ in led_states])]
         expected = np.array([weight for _, weight in led_states]) @ here
-        for column in np.argsort(expected, kind="stable")[:BEST].tolist():
+        for column in np.argsort(np.round(expected, 9), kind="stable")[:BEST].tolist():
             if told[column].way is None:
                 break
             first = self._first(ways, told[column])
@@ -187,13 +187,14 @@ class Unseen:
         told = [_Sequence(None), *(_Sequence(*each) for each in numbered)]
         once = [self._followed(ways[n], times, ended, None) for n, times in numbered]
         costs = [float(whole @ begun[places, 0]) for begun, _ in once]
-        best = sorted(range(len(once)), key=costs.__getitem__)[: ENDINGS - 1]
+        best = sorted(range(len(once)), key=lambda each: round(costs[each], 9))[: ENDINGS - 1]
         parts = [(ended, ended), *once]
         if best:
             seconds = np.concatenate([once[each][0] for each in best], axis=1)
             then = tuple(told[1 + each] for each in best)
+            which = tuple((*ways[n], times) for n, times in (numbered[each] for each in best))
             for number, times in numbered:
-                parts.append(self._followed(ways[number], times, seconds, then))
+                parts.append(self._followed(ways[number], times, seconds, which))
                 told += [_Sequence(number, times, each) for each in then]
         begun, less = (np.concatenate([each[side] for each in parts], axis=1) for side in (0, 1))
         return told, begun, less

@@ -37,7 +37,7 @@ from tpvqa.monitors.requests import Request
 from tpvqa.monitors.scrutiny import unknown
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated, bound_for
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.monitors.ways import Ways, known_plan
+from tpvqa.monitors.ways import UNSEEN, Ways, known_plan
 from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
@@ -333,10 +333,10 @@ class BeliefMonitor(Learning, PlainArguments):
         questions, likely = self._about_needs(step.book), self._asking.likely
         if self._asks_all and budget.questions > 0:
             new = (q for q in questions if q.family not in self._now.replies and views(q))
-            doubted = [each for each in new if DOUBT < likely(each) < 1 - DOUBT]
-            if doubted:
+            if doubted := [each for each in new if DOUBT < likely(each) < 1 - DOUBT]:
                 return Inquiry(doubted[0], 1, 0.0)
-        if budget.questions > 0 and (known := self._controls.next(questions, likely, views)):
+        able = min(budget.questions, budget.looks) > 0
+        if able and (known := self._controls.next(questions, likely, views)):
             return Inquiry(known, 1, 0.0)
         found = self._inquirer.best(
             questions,
@@ -394,7 +394,7 @@ class BeliefMonitor(Learning, PlainArguments):
         ):
             self._settled = action
         plan = self._ways.plan(state, action) if action and decision is Decision.REPLAN else None
-        if decision is Decision.REPLAN and self._chooser.following:
-            plan = known_plan([each for each, _ in groupby(self._chooser.following)])
+        if action and decision is Decision.REPLAN and self._chooser.follows(action, state):
+            plan = known_plan([each for each, _ in groupby(self._chooser.following)], UNSEEN)
         marginals = self.belief.probabilities(sorted(self._ways.atoms))
         return Verdict(decision, why, state, step=place, belief=marginals, plan=plan)

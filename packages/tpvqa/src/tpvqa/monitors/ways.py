@@ -19,6 +19,9 @@ from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import regress
 
+UNSEEN = "followed unseen"
+"""Who has planned what is followed without a look, whatever is true."""
+
 
 class Ways:
     """Has plans made where none is known, or none without a skill that seems to be dead.
@@ -57,6 +60,8 @@ class Ways:
         if step.plan is self._followed:
             return
         self._followed = step.plan
+        if step.plan.planner == UNSEEN:  # it need not lead to the goal from there
+            return
         self._plans[step.state] = step.plan
         if self.annotated(step) is None:
             self._annotate(step.plan, step.state)
@@ -183,6 +188,6 @@ class Ways:
                 del self._annotated[old]
 
 
-def known_plan(actions: Sequence[Action]) -> Plan:
+def known_plan(actions: Sequence[Action], named: str = "a known plan") -> Plan:
     """What is known already, as a plan."""
-    return Plan(tuple(actions), sum(each.cost for each in actions), "a known plan", 0.0)
+    return Plan(tuple(actions), sum(each.cost for each in actions), named, 0.0)
