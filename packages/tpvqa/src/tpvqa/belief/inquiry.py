@@ -85,7 +85,6 @@ class Inquirer:
         picture: Picture | None,
         views: Callable[[FactQuestion], Sequence[str | None]],
         person: bool = False,
-        dearer: float = 1.0,
     ) -> Inquiry | None:
         """What to ask next; None where no answer is worth its price.
 
@@ -104,10 +103,7 @@ class Inquirer:
         now = float(table.expected.min())
         # Q-MDP takes a mistake to be noticed at once; it is noticed so many answers later.
         late = self._evidence.answers_to_be_sure()
-        asking, looking = (
-            dearer * self._costs.question / late,
-            dearer * self._costs.look / late,
-        )
+        asking, looking = self._costs.question / late, self._costs.look / late
         truths = self._model.truths([each.atoms for each in questions], table.numbers)
         likely = (truths @ table.weights).tolist()
         if_true, work_if_true = truths @ weighted, truths @ work
@@ -185,9 +181,7 @@ class Inquirer:
                 weighted,
                 work,
                 budget,
-                asking + looking
-                if not ending
-                else dearer * (self._costs.question + self._costs.look),
+                asking + looking if not ending else self._costs.question + self._costs.look,
                 self._costs.failure if ending else action,
                 self._costs.person if person else None,
                 found,
