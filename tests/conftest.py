@@ -24,7 +24,7 @@ if threading.current_thread() is threading.main_thread():
 def _no_wait_for_the_disk() -> Iterator[None]:
     """What is written is there for everyone at once; only a power cut would tell the difference."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(os, "fsync", lambda file: None)
+        patch.setattr(os, "fsync", os.fstat)  # what is no open file is still refused
         yield
 
 

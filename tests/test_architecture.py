@@ -2,6 +2,7 @@
 
 import ast
 import re
+import sys
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -169,3 +170,9 @@ def test_a_source_file_is_one_idea() -> None:
         if (n := len(path.read_text().splitlines())) > 400
     }
     assert long == {}
+
+
+def test_no_script_hides_a_module_of_the_standard_library_from_those_beside_it() -> None:
+    scripts = [path for room in ("benchmarks", "tools") for path in (ROOT / room).glob("*.py")]
+    assert len(scripts) > 20
+    assert not [path for path in scripts if path.stem in sys.stdlib_module_names]

@@ -14,7 +14,14 @@ from hypothesis import strategies as st
 from tests_robot.conftest import Act
 from tests_robot.ros2.conftest import BY_ACTION, PLAIN, Open, Start, change, wait_for
 from tests_robot.ros2.lag import Lag
-from tests_robot.ros2.test_safety import FIND, PICK, SHORT, in_thread, last, until_begun
+from tests_robot.ros2.test_safety import (
+    FIND,
+    PICK,
+    SHORT,
+    in_thread,
+    last,
+    stands_when_killed,
+)
 from tests_robot.ros2.test_world import done, run
 from tpvqa import Atom
 from tpvqa.worlds import Execution, Report
@@ -108,14 +115,7 @@ def test_a_loop_that_is_killed_leaves_no_action_running(
 ) -> None:
     start("endless")
     change(setup_file, BY_ACTION)
-    trial = run(setup_file, tmp_path / "episode")
-    until_begun(state)
-    trial.kill()
-    trial.communicate()
-    with Lag() as lag:
-        killed = time.time()
-        wait_for(lambda: last(state)[1] == "stood")
-    assert last(state)[2] - killed < lag.allows(EXPIRES + 1)
+    stands_when_killed(setup_file, state, tmp_path / "episode")
 
 
 def test_the_action_says_why_it_begins_nothing(start: Start, state: Path) -> None:

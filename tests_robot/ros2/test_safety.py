@@ -226,7 +226,12 @@ def test_a_loop_that_is_killed_leaves_no_arm_in_motion(
     start: Start, setup_file: Path, state: Path, tmp_path: Path
 ) -> None:
     start("endless")
-    trial = run(setup_file, tmp_path / "episode")
+    stands_when_killed(setup_file, state, tmp_path / "episode")
+
+
+def stands_when_killed(setup_file: Path, state: Path, episode: Path) -> None:
+    """A robot that is at an action stands soon after its loop was killed."""
+    trial = run(setup_file, episode)
     until_begun(state)
     trial.kill()
     trial.communicate()

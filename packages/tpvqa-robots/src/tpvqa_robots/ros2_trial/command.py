@@ -39,11 +39,12 @@ def ros2_run(
     """
     import signal
 
-    from tpvqa.assembly.named_files import see_files
+    from tpvqa import Trial
     from tpvqa_robots.ros2_trial.server import RunTaskServer
 
     config = trial_config(trial_layers(layers, task, problem_file))
-    see_files(config)
+    with Trial(config):  # what cannot be made is told now, and not by the first goal
+        pass
     server = RunTaskServer(
         config,
         out,

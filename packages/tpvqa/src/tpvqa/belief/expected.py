@@ -196,4 +196,5 @@ def _cases(mean: float, cases: float) -> Beta:
 
 
 def answered_apart(last: LastAnswer, view: str | None) -> Apart:
+    """Whether a further answer from a view is of another one than the last was."""
     return Apart.SAME_VIEW if last.view == view else Apart.OTHER_VIEW
