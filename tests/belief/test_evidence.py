@@ -12,7 +12,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.heard import Heard
-from tpvqa.belief.lasting import FRESH, KINDS
+from tpvqa.belief.kinds import FRESH, KINDS
 from tpvqa.belief.trust import Trust
 from tpvqa.belief.worth import Said, Worth, by_truth
 from tpvqa.pddl import Literal, load_task

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tpvqa.belief.heard import Heard
-from tpvqa.belief.lasting import KINDS, SHARES, STAYS, own_rate
+from tpvqa.belief.kinds import KINDS
+from tpvqa.belief.lasting import SHARES, STAYS, own_rate
 from tpvqa.belief.led import Led
 from tpvqa.belief.worth import Cases, Said, Worth
 

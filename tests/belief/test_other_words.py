@@ -12,7 +12,7 @@ from tpvqa.belief import AnswerRates, Calibration, Group
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.faults import Rates
-from tpvqa.belief.lasting import KINDS
+from tpvqa.belief.kinds import KINDS
 from tpvqa.belief.other_words import OtherWords
 from tpvqa.questions import FactQuestion
 from tpvqa.vlm import Answer, Reply

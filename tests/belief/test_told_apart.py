@@ -14,7 +14,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.information import Floats
-from tpvqa.belief.lasting import KINDS
+from tpvqa.belief.kinds import KINDS
 from tpvqa.belief.told_apart import ToldApart
 from tpvqa.belief.trust import GRID, Trust
 from tpvqa.pddl import Literal

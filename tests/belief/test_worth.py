@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tpvqa.belief.heard import Heard
 from tpvqa.belief.information import TIMES, settled
-from tpvqa.belief.lasting import FRESH, KINDS, RECORDED
+from tpvqa.belief.kinds import FRESH, KINDS, RECORDED
 from tpvqa.belief.trust import GRID, Trust
 from tpvqa.belief.worth import Cases, Said, Worth, by_truth
 

@@ -14,7 +14,6 @@ from tpvqa.assembly.simulating import simulate
 from tpvqa.assembly.told import read_told, see_fitting, stated_bound
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
-from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.priors import Priors, load_priors
 from tpvqa.belief.risk import RiskBound
 from tpvqa.belief.shipped import shipped_calibration
@@ -50,6 +49,7 @@ from tpvqa.worlds.making import make_world
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 if TYPE_CHECKING:
+    from tpvqa.belief.faults import FaultModel
     from tpvqa.drivers.asynchronous import AsynchronousTrial
 
 
@@ -91,7 +91,7 @@ class Trial:
         book: QuestionBook | None = None,
         rules: WorldRules | None = None,
         priors: Priors | None = None,
-        model: FaultModel | None = None,
+        model: "FaultModel | None" = None,
         calibration: Calibration | None = None,
         experience: Experience | None = None,
         risk: RiskBound | None = None,
@@ -135,7 +135,7 @@ class Trial:
         self,
         planner: Planner | None,
         vlm: VLM | None,
-        model: FaultModel | None,
+        model: "FaultModel | None",
         calibration: Calibration | None,
         experience: Experience | None,
         risk: RiskBound | None,

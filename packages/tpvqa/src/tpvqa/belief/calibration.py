@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from tpvqa.belief.bounds import BOUND, EDGE
-from tpvqa.belief.lasting import FRESH, KINDS, UNKNOWN
+from tpvqa.belief.kinds import FRESH, KINDS, UNKNOWN
 from tpvqa.belief.own_words import OwnWords, SensorWorth, SkillWorth, fit_sensors, fit_skills
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError, PlacedError

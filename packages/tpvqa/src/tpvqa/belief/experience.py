@@ -4,17 +4,19 @@ Kept from one trial to the next, as one small JSON file.
 """
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.chances import Beta, Chances
-from tpvqa.belief.faults import Rates
 from tpvqa.belief.trust import GRID, Trust
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError
 from tpvqa.files import read_plain
+
+if TYPE_CHECKING:
+    from tpvqa.belief.chances import Beta, Chances
+    from tpvqa.belief.faults import Rates
 
 Cases = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
 
@@ -57,7 +59,7 @@ class Experience(BaseModel):
         return weights
 
     @staticmethod
-    def of(chances: Chances, trust: Trust | None, trials: int) -> "Experience":
+    def of(chances: "Chances", trust: Trust | None, trials: int) -> "Experience":
         """What a monitor has learned by the end of a trial."""
         return Experience(
             failure=_cases(chances.failure),
@@ -66,12 +68,14 @@ class Experience(BaseModel):
             trials=trials,
         )
 
-    def chances(self, rates: Rates | None = None) -> Chances:
+    def chances(self, rates: "Rates | None" = None) -> "Chances":
         """The rates of faults to begin the next trial with.
 
         Args:
             rates: Gives the rate of spontaneous changes, which is not learned.
         """
+        from tpvqa.belief.chances import Beta, Chances  # late, as numpy takes a while
+
         chances = Chances(rates)
         chances.failure = Beta(*self.failure)
         chances.disturbance = Beta(*self.disturbance)
@@ -122,6 +126,6 @@ class Experience(BaseModel):
         write_json(path, self, remedy="Name another file with --experience")
 
 
-def _cases(beta: Beta) -> tuple[float, float]:
+def _cases(beta: "Beta") -> tuple[float, float]:
     """Cases for and against; a rate that was believed for certain can be learned again."""
     return max(beta.yes, 1e-3), max(beta.no, 1e-3)

@@ -9,55 +9,21 @@ own, or a coin's: then some questions are always misread, and the rest now and t
 """
 
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.belief.information import Floats
+from tpvqa.belief.kinds import KINDS
 
 Columns = NDArray[np.intp] | slice
 """Which of all that is told apart of the noise; in `KINDS` along it, once or several times over."""
 EVERY = slice(None)
 
 
-class Kind(NamedTuple):
-    """How errors may last.
-
-    Attributes:
-        share: The lasting share s.
-        stays: Probability that a misreading, or that there is none, goes on when the scene has
-            changed.
-        coin: Whether an answer drawn afresh is a coin's.
-    """
-
-    share: float
-    stays: float
-    coin: bool = False
-
-
-KINDS = (
-    Kind(0.0, 0.0),
-    *(Kind(share, stays) for share in (0.35, 0.6, 0.8, 0.97) for stays in (0.0, 0.9)),
-    Kind(0.9, 0.9, coin=True),
-    Kind(0.9, 0.99, coin=True),
-)
-"""What is told apart."""
-FRESH = (1.0, *(0.0 for _ in KINDS[1:]))
-"""How probable each is where errors are known not to last."""
-RECORDED = (0.34, 0.05, 0.05, 0.07, 0.06, 0.12, 0.11, 0.07, 0.07, 0.03, 0.03)
-"""How probable each is before any answer of a VLM was labelled: for two thirds as with those of
-ViPlan (a lasting share of about .8 and .98, of which .77 and .55 stay), shared out widely; the rest
-for one that answers anew at every look."""
 DISPERSED = 8.0
 """Where errors last, a question in a scene has its own rate of yes, too, for answers drawn afresh,
 known beforehand as well as from so many answers: none is better than the worst known of it."""
-UNKNOWN = tuple(
-    0.9 if not kind.share else 0.1 * weight / (1 - RECORDED[0])
-    for kind, weight in zip(KINDS, RECORDED, strict=True)
-)
-"""How probable each is taken to be of a VLM of which nothing is known. Less than the recordings
-say: else a few answers about one thing could never speak against what is believed of it."""
 SUREST = 0.001
 """The scene's own answers are wrong so often at least."""
 SHARES = np.array([kind.share for kind in KINDS])

@@ -14,7 +14,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.information import Floats
-from tpvqa.belief.lasting import KINDS
+from tpvqa.belief.kinds import KINDS
 from tpvqa.belief.skills import SkillState
 from tpvqa.belief.trust import GRID
 from tpvqa.pddl import Action

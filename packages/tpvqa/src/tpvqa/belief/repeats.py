@@ -9,8 +9,9 @@ import numpy as np
 from tpvqa.belief.calibration import AnswerRates
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.information import Floats
+from tpvqa.belief.kinds import KINDS, RECORDED
 from tpvqa.belief.labelled_answer import LabelledAnswer
-from tpvqa.belief.lasting import KINDS, RECORDED, SHARES, STAYS, fresh_rate, own_rate
+from tpvqa.belief.lasting import SHARES, STAYS, fresh_rate, own_rate
 from tpvqa.belief.runs import ANSWERS
 from tpvqa.vlm.answer import Reply
 

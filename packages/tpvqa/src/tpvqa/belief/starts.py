@@ -1,9 +1,13 @@
 """How a trial begins: what may hold at first, and how a simulated world truly is."""
 
-from tpvqa.belief.faults import FaultRules
+from typing import TYPE_CHECKING
+
 from tpvqa.belief.priors import Priors
 from tpvqa.chance import chance
 from tpvqa.pddl import State, Task
+
+if TYPE_CHECKING:
+    from tpvqa.belief.faults import FaultRules
 
 
 def opened(task: Task, priors: Priors) -> Task:
@@ -25,7 +29,7 @@ def opened(task: Task, priors: Priors) -> Task:
 
 
 def drawn_start(
-    task: Task, priors: Priors, rules: FaultRules, seed: int, episode: int
+    task: Task, priors: Priors, rules: "FaultRules", seed: int, episode: int
 ) -> State | None:
     """The true initial state of a simulated world; None for the problem's own.
 

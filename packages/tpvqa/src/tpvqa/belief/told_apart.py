@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tpvqa.belief.information import Floats
-from tpvqa.belief.lasting import KINDS
+from tpvqa.belief.kinds import KINDS
 from tpvqa.belief.led import Places
 
 LEFT_OUT = 1e-7

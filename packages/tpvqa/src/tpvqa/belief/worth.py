@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 
 from tpvqa.belief.heard import Drawn, after_answer, own
 from tpvqa.belief.information import Floats, Mixture, Reliability
+from tpvqa.belief.kinds import KINDS, RECORDED
 from tpvqa.belief.lasting import (
     DISPERSED,
     EVERY,
-    KINDS,
-    RECORDED,
     SHARES,
     STAYS,
     SUREST,
