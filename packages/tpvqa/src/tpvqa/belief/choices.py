@@ -10,32 +10,24 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.by_kind import Kinds
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
+from tpvqa.belief.doing import IDLE, Doing
 from tpvqa.belief.falls import fallen
 from tpvqa.belief.far_off import FarOff
 from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import CHECKS, Outlook
 from tpvqa.belief.rounds import Rounds
+from tpvqa.belief.seeking import Seeking
 from tpvqa.belief.settling import SETTLED
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice, Table
 from tpvqa.belief.unseen import Unseen
 from tpvqa.pddl import Action, State, Task
 
-LIKELY = 0.02
-"""Joint states of at least this probability get a plan of their own."""
-UNLIKELY = 4
-"""Plans between two actions from joint states that are less probable than that."""
-ENDS = 2
-"""Plans between two actions from where a way may end as nothing shows that it is not the way."""
 CHOICES = 6
 """Choices that are compared, at most."""
-IDLE = 0.97
-"""An action that changes nothing with this probability is no choice."""
-HIDDEN_IDLE = 0.99
-"""The same where nothing shows what it does: what it costs tells how often it is worth doing."""
-FLOOR = 0.1
-"""An action is no choice whose preconditions hold with less than this, where it is not done."""
+BLIND = 0.3
+"""Where answers settle less, what was decided is followed to its end, as nothing new is seen."""
 SEVERAL = 40
 """Joint states of which it is worked out what they cost unseen; the rest is lost."""
 DISTURBED = 0.02
@@ -60,6 +52,9 @@ class Chooser:
         ahead: What lies ahead of single joint states.
         changes_left: Changes of plan that the trial still allows; None for any number.
         rounds: What was done where.
+        seeking: From where plans are wanted.
+        settles: How far answers settle what is in doubt.
+        finding: What it costs to ask so much.
     """
 
     def __init__(
@@ -82,10 +77,15 @@ class Chooser:
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._far = FarOff(model, self.ahead, self._step)
         self._worked_out_for: tuple[int, Rates] | None = None
-        self._sought: set[State] = set()
-        self._unlikely = self._ends = 0
+        self._doing = Doing(self.ahead, self._far, self._sight)
+        self.seeking = Seeking(model, self.ahead, self._commitments)
         self.rounds = Rounds(costs.action)
         self.changes_left: int | None = None
+
+    @property
+    def blind(self) -> bool:
+        """Whether answers say so little that what was decided is followed to its end."""
+        return self.settles < BLIND
 
     @property
     def plans(self) -> Sequence[AnnotatedPlan]:
@@ -94,9 +94,12 @@ class Chooser:
 
     def acted(self, belief: Belief, action: Action) -> None:
         """Note that an action is executed, before the belief predicts what it leads to."""
-        self._sought.clear()
-        self._unlikely = self._ends = 0
+        self.seeking.acted()
         self.rounds.acted(belief.ranked()[0][0], action)
+        state = self._model.state(belief.ranked()[0][0])
+        if self.settles < SETTLED and not self.follows(action, state):
+            self._unseen.follow(action)
+        self._unseen.acted(action, state)
 
     def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
         """Go on with a model that gives joint states other numbers."""
@@ -104,6 +107,7 @@ class Chooser:
         self._sight.renumbered(model)
         self.ahead.renumbered(model)
         self._commitments.renumbered(model)
+        self.seeking.renumbered(model)
         self._unseen.renumbered(model)
         self._near.clear()
         self._far.renumbered(model)
@@ -112,50 +116,6 @@ class Chooser:
     def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
         """The cheapest known way from a state: a place in a plan, and that plan."""
         return self.ahead.best(self._model.number(JointState(state)))
-
-    def unplanned(self, belief: Belief) -> State | None:
-        """The most probable joint state that no known plan helps; None if none is likely.
-
-        Many that are unlikely each are likely together: then the first few of them count too. For
-        none is a plan sought twice between two actions.
-        """
-        found: State | None = None
-        together = 0.0
-        for number, weight in belief.ranked():
-            if weight < LIKELY / 10:
-                break
-            state = self._model.state(number)
-            if state in self.ahead.hopeless or state in self._sought:
-                continue
-            if self.ahead.best(number) is None:
-                if weight >= LIKELY:
-                    self._sought.add(state)
-                    return state
-                found = found or state
-                together += weight
-        if together < LIKELY or self._unlikely >= UNLIKELY:
-            return self._foreseen()
-        self._unlikely += 1
-        if found is not None:
-            self._sought.add(found)
-        return found
-
-    def foresees(self) -> bool:
-        """Whether a way on may end where no plan is known, so that one is worth having."""
-        return self._foreseen(sought=False) is not None
-
-    def _foreseen(self, *, sought: bool = True) -> State | None:
-        """The most probable such end; noted as one for which a plan is sought, or not."""
-        ends = self._commitments.unplanned
-        if not ends or self._ends >= ENDS:
-            return None
-        state = max(ends, key=ends.__getitem__)
-        if ends[state] < LIKELY or state in self._sought or state in self.ahead.hopeless:
-            return None
-        if sought:
-            self._ends += 1
-            self._sought.add(state)
-        return state
 
     def table(
         self,
@@ -172,13 +132,16 @@ class Chooser:
             current: The plan that is being followed; other actions cost a change of plan.
             barred: An action that the trial does not allow now: it was repeated too often.
         """
-        self.ahead.may_be_blind(self.settles < SETTLED)
+        self.ahead.may_be_blind(self.settles)
         if (self.ahead.version, rates) != self._worked_out_for:
             self._worked_out_for = self.ahead.version, rates
             for known in (self._going, self._led, self._near):
                 known.clear()
             self._far.forget()
         ranked = belief.ranked()
+        followed = self._followed_now(ranked, current, barred)
+        if followed is not None:
+            return followed
         kinds = np.array([self._model.kind(number) for number, _ in ranked], np.intp)
         self._commitments.unplanned.clear()
         choices = [
@@ -187,45 +150,90 @@ class Chooser:
             if self._allowed(each, current, barred) and self._worth_a_try(each)
         ]
         weights = np.array([weight for _, weight in ranked])
-        work = {each: self._work(each, ranked, kinds) for each in choices}
+        work = {each: self._doing.of(each, ranked, kinds) for each in choices}
         acts = any(
             each.action is not None and (work[each] @ weights >= 0).all() for each in choices
         )
         if not acts and not self._goal_likely(ranked):  # to try is better than to end
             for limits in work.values():
                 limits[1] = 1.0
-        if self._stuck(ranked):
+        if self._stuck(ranked) or self.ahead.left == 0:
             choices = [each for each in choices if each.action is None]
         found: list[tuple[Choice, Floats, Floats]] = []
+        blind = self._blind(choices, ranked, rates) if self.settles < SETTLED else {}
         for each in choices:
             if each.action is None:
-                end, unseen = self._end(ranked), self.settles < SETTLED
-                found += self._unseen.ends(each, end) if unseen else [(each, end, work[each])]
+                found.append((each, self._end(ranked), work[each]))
                 continue
             more = 0.0 if self._in(each, current) else self._costs.replan
-            more += self.rounds.dearer(each.action, ranked[0][0], self.ahead.progress)
+            dearer = self.rounds.dearer(each.action, ranked[0][0], self.ahead.progress)
+            more += self.settles * dearer if blind else dearer
             seen = self._column(each.action, ranked, kinds, rates) + more
             if self.settles >= SETTLED:
                 found.append((each, seen, work[each]))
                 continue
-            for blind in self._blind(each.action, ranked, rates):
-                found_out = self.settles * seen + (1 - self.settles) * (blind + more)
-                for column in (found_out + self.finding, blind + more):
-                    found.append((each, column, work[each]))
+            for unseen in blind.pop(each.action):
+                found_out = self.settles * seen + (1 - self.settles) * (unseen + more)
+                columns = (found_out + self.finding, unseen + more)
+                found += [(each, column, work[each]) for column in columns]
+        for action, further in blind.items():
+            each = Choice(action, self._model.state(ranked[0][0]))
+            if self._allowed(each, current, barred) and self._worth_a_try(each):
+                more = 0.0 if self._in(each, current) else self._costs.replan
+                own = self._doing.of(each, ranked, kinds)
+                found += [(each, column + more, own) for column in further]
         told, numbers = tuple(each[0] for each in found), tuple(number for number, _ in ranked)
         costs = np.stack([each[1] for each in found], axis=1)
-        return Table(told, numbers, weights, costs, np.stack([each[2] for each in found], axis=2))
+        works = np.stack([each[2] for each in found], axis=2)
+        table = Table(told, numbers, weights, costs, works)
+        if self.blind and table.best.action is not None:
+            self._unseen.follow(table.best.action)
+            return self._followed_now(ranked, current, barred) or table
+        return table
+
+    def _followed_now(
+        self, ranked: Sequence[tuple[int, float]], current: Sequence[Action], barred: Action | None
+    ) -> Table | None:
+        """What is being followed unseen, as the only choice; None where nothing is, or where it
+        need not, or may not, be followed any more."""
+        if not self.following:
+            return None
+        choice = Choice(self.following[0], self._model.state(ranked[0][0]))
+        sure = sum(weight for number, weight in ranked if self.ahead.is_goal(number)) > IDLE
+        allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
+        if self.settles >= SETTLED or sure or not allowed:
+            self._unseen.following = ()
+        if not self.blind or not self.following:
+            return None
+        weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
+        ones = np.ones((len(ranked), 1))
+        return Table((choice,), numbers, weights, ones, ones[None])
+
+    @property
+    def following(self) -> tuple[Action, ...]:
+        """The actions that are followed unseen, where they are: those that are left."""
+        return self._unseen.following
+
+    def follows(self, action: Action, state: State) -> bool:
+        """Whether an action is the next one of what is being followed."""
+        same = self._model.same_skill
+        return bool(self.following) and same(self.following[0], action, state)
 
     def _blind(
-        self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates
-    ) -> list[Floats]:
-        """The expected costs of an action in the joint states, where nothing is seen after it, for
+        self, choices: Sequence[Choice], ranked: Sequence[tuple[int, float]], rates: Rates
+    ) -> dict[Action, list[Floats]]:
+        """The expected costs of actions in the joint states, where nothing is seen after them, for
         every way to go on."""
+        actions = [each.action for each in choices if each.action is not None]
         led = [
-            (weight, self._successors(action, number, weight, rates))
-            for number, weight in ranked[:SEVERAL]
+            [
+                (weight, self._successors(action, number, weight, rates))
+                for number, weight in ranked[:SEVERAL]
+            ]
+            for action in actions
         ]
-        return [self._step + column for column in self._unseen.columns(action, led, len(ranked))]
+        told = list(zip(actions, led, strict=True))
+        return self._unseen.columns(told, ranked) if told else {}
 
     def _end(self, ranked: Sequence[tuple[int, float]]) -> Floats:
         lost = self.ahead.failure
@@ -370,25 +378,3 @@ class Chooser:
     def _in(self, choice: Choice, plan: Sequence[Action]) -> bool:
         same, action = self._model.same_skill, choice.action
         return action is not None and any(same(action, each, choice.state) for each in plan)
-
-    def _work(self, choice: Choice, ranked: Sequence[tuple[int, float]], kinds: Kinds) -> Floats:
-        """What a choice has to do in the joint states: what it would change, and what it can, each
-        less how probable that has to be; shape (2, states).
-
-        Q-MDP, which takes everything to be known after the next action, would wait for ever.
-        """
-        found = np.ones((2, len(ranked)))
-        if choice.action is not None:
-            # Who does in vain what nothing shows never learns that it is in vain.
-            hidden = self._sight.hidden(choice.action)
-            works = 1 - self.ahead.skill(choice.action).failure if hidden else 1.0
-            idle = HIDDEN_IDLE if hidden else IDLE
-            undone, possible = self._done_by(choice.action, ranked, kinds)
-            found[0] = works * undone * possible - (1 - idle)
-            found[1] = undone * (possible - FLOOR)
-        return found
-
-    def _done_by(self, action: Action, ranked: Sequence[tuple[int, float]], kinds: Kinds) -> Floats:
-        """Where something is left to do for an action, and where it can be done; shape (2,
-        states)."""
-        return self._far.does(action, ranked, kinds).T[:2]

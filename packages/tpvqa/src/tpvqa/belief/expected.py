@@ -69,6 +69,12 @@ class Expected:
         sure = answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
         return 1 + (sure - 1) * max(0.0, 5 * self.settling().share - 4)
 
+    @property
+    def right(self) -> float:
+        """How often answers are right, by the calibration."""
+        rates = self._calibration.whole.rates
+        return min(max((rates.yes_if_true + 1 - rates.yes_if_false) / 2, 0.501), 0.999)
+
     def settling(self, questions: Iterable[FactQuestion] = ()) -> Settling:
         """How far the answers in another scene would settle what is in doubt.
 

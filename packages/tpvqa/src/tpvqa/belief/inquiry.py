@@ -85,6 +85,7 @@ class Inquirer:
         picture: Picture | None,
         views: Callable[[FactQuestion], Sequence[str | None]],
         person: bool = False,
+        dearer: float = 1.0,
     ) -> Inquiry | None:
         """What to ask next; None where no answer is worth its price.
 
@@ -103,7 +104,10 @@ class Inquirer:
         now = float(table.expected.min())
         # Q-MDP takes a mistake to be noticed at once; it is noticed so many answers later.
         late = self._evidence.answers_to_be_sure()
-        asking, looking = self._costs.question / late, self._costs.look / late
+        asking, looking = (
+            dearer * self._costs.question / late,
+            dearer * self._costs.look / late,
+        )
         truths = self._model.truths([each.atoms for each in questions], table.numbers)
         likely = (truths @ table.weights).tolist()
         if_true, work_if_true = truths @ weighted, truths @ work
@@ -181,7 +185,9 @@ class Inquirer:
                 weighted,
                 work,
                 budget,
-                asking + looking if not ending else self._costs.question + self._costs.look,
+                asking + looking
+                if not ending
+                else dearer * (self._costs.question + self._costs.look),
                 self._costs.failure if ending else action,
                 self._costs.person if person else None,
                 found,

@@ -114,3 +114,14 @@ class Learned:
                 weights = self._belief.where_noise(part)
             shares = self._belief.outcome_shares(weights)
             chances.learn(shares, action, self._belief.earlier_shares(weights))
+
+    def carried(self, last: Action | None) -> Chances:
+        """What the next trial may begin with.
+
+        Args:
+            last: The last action, where it was not learned yet how it came out.
+        """
+        chances = deepcopy(self.likeliest)
+        if last is not None:
+            chances.learn(self._belief.outcome_shares(), last, self._belief.earlier_shares())
+        return chances

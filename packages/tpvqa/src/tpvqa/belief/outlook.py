@@ -14,9 +14,11 @@ from tpvqa.pddl import Action, State, Task
 
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
-UNSEEN = 10.0
-"""Actions for every step that a task is worth which may have to be done unseen: twice what blind
-repetition, five times a step, takes."""
+UNSEEN = 80.0
+"""Actions for every step that a task is worth which has to be done unseen: it is done as thoroughly
+as blind repetition does it, five times a step, and once more where that helps."""
+LEVELS = 4
+"""How finely it is told apart how far a task may have to be done unseen."""
 PLANS = 16
 """Plans that are kept, the latest ones."""
 KNOWN = 64
@@ -54,7 +56,7 @@ class Outlook:
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
         self._rates = Rates()
         self._lost: float | None = None
-        self._blind = False
+        self._blind = 0.0
         self._most_repeated: float | None = None
         self._standing: list[tuple[AnnotatedPlan, _Places]] | None = None
         self._places: dict[AnnotatedPlan, _Places] = {}
@@ -91,9 +93,14 @@ class Outlook:
             self._to_go.clear()
             self.version += 1
 
-    def may_be_blind(self, blind: bool) -> None:
-        """Note whether the task may have to be done unseen: it is worth its while then, too."""
-        if blind is not self._blind:
+    def may_be_blind(self, settles: float) -> None:
+        """Note how far the task may have to be done unseen: it is worth its while then, too.
+
+        Args:
+            settles: How far answers settle what is in doubt.
+        """
+        blind = round((1 - settles) * LEVELS) / LEVELS
+        if blind != self._blind:
             self._blind = blind
             self._forget()
 
@@ -289,19 +296,26 @@ class Outlook:
         """What a failed task costs: always more than it takes to do it, so that long plans are
         worth their while; whether one more try is worth it is asked try by try."""
         if self._lost is None:
-            steps, works = self._longest(), 1 - self._rates.failure
-            twice = 2 * steps * self._costs.action / self.progress
-            unchecked = steps * self._costs.action / max(works, 0.05) ** steps
-            blind = UNSEEN * steps * self._costs.action if self._blind else 0.0
-            self._lost = max(
-                self._costs.failure, blind, twice, 1.5 * min(steps * self._usual_step(), unchecked)
-            )
+            self._lost = self._lost_where(self._blind)
         return self._lost
 
+    def _lost_where(self, unseen: float) -> float:
+        steps, works = self._longest(), 1 - self._rates.failure
+        twice = 2 * steps * self._costs.action / self.progress
+        unchecked = steps * self._costs.action / max(works, 0.05) ** steps
+        blind = UNSEEN * unseen * steps * self._costs.action
+        checked = 1.5 * min(steps * self._usual_step(), unchecked)
+        return max(self._costs.failure, blind, twice, checked)
+
     @property
-    def disturbance(self) -> float:
-        """Probability that a failure undoes something."""
-        return self._rates.disturbance
+    def dearer(self) -> float:
+        """How many times as much a failed task costs as it would if all could be seen."""
+        return self.failure / self._lost_where(0.0)
+
+    @property
+    def rates(self) -> Rates:
+        """The rates of actions in general."""
+        return self._rates
 
     def _usual_step(self) -> float:
         checks = CHECKS * (self._costs.question + self._costs.look)

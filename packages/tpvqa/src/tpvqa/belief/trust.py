@@ -4,7 +4,7 @@ from functools import lru_cache
 from math import exp, log
 from operator import mul
 
-GRID = (0.05, 0.15, 0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.7, 2.2)
+GRID = (0.01, 0.15, 0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.7, 2.2)
 """Factors by which log likelihood ratios may have to be multiplied."""
 RECORDED = (
     *(0.11, 0.13, 0.15, 0.18, 0.23, 0.23, 0.24, 0.41),
@@ -17,9 +17,11 @@ ALIKE = 0.4
 KNOWN = 10
 """Labelled answers after which a calibration is believed as much as those recordings."""
 
-ELSEWHERE = 0.02
+ELSEWHERE = 0.05
 """Chance that a calibration says nothing of the VLM in this scene, however well it was learned: the
 camera, the light or the model is another one."""
+NOTHING = 0.5
+"""The share of that chance with which its answers are then worth nothing at all."""
 
 
 class Trust:
@@ -69,8 +71,8 @@ class Trust:
         trust.weights = tuple(
             (1 - unknown - ELSEWHERE) * learned
             + unknown * each / sum(recorded)
-            + ELSEWHERE / len(GRID)
-            for learned, each in zip(trust.weights, recorded, strict=True)
+            + ELSEWHERE * ((1 - NOTHING) / len(GRID) + (NOTHING if place == 0 else 0.0))
+            for place, (learned, each) in enumerate(zip(trust.weights, recorded, strict=True))
         )
         return trust
 
@@ -90,8 +92,9 @@ class Trust:
         self._normalise()
 
     def _normalise(self) -> None:
-        total = sum(self._weights)
-        self._weights = [max(w / total, 1e-9) for w in self._weights]
+        floor = 1e-9 * sum(self._weights)
+        above = [max(w, floor) for w in self._weights]
+        self._weights = [w / sum(above) for w in above]
         self._trusted.clear()
 
 

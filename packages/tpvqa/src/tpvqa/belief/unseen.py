@@ -2,11 +2,13 @@
 
 Q-MDP takes all to be known after the next action. Where the answers that can be had do not settle a
 doubt, that is not so; a plan is then worth what it does unseen, every step repeated so often as the
-risk that is left is worth another time.
+risk that is left is worth another time, and perhaps another plan after it. That is worked out
+backward from the end, in every joint state, in the belief's own model.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import prod
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,18 +17,40 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import Outlook
-from tpvqa.belief.table import Choice
-from tpvqa.pddl import Action
+from tpvqa.belief.steps import Steps
+from tpvqa.pddl import Action, State
 
-Way = tuple[int, AnnotatedPlan] | None
-"""A place in a plan, and that plan; None to end."""
+Way = tuple[int, AnnotatedPlan]
+"""A place in a plan, and that plan."""
 Led = tuple[float, Sequence[tuple[float, int, float]]]
 """The probability of a joint state, and what an action leads to from it: shares, joint states, and
 what each costs besides."""
 WAYS = 4
 """Ways that are compared, those of the most probable joint states, besides ending."""
-TIMES = (1, 2, 3, 4, 6, 8)
+TIMES = (1, 2, 3, 4, 6)
 """How often every step may be repeated."""
+ENDINGS = 3
+"""What may come after a way: the end, or one of the two best ways."""
+BEST = 5
+"""Ways to go on that are told of an action, those that are expected to cost least."""
+KEEPING = 1.0
+"""By how many actions something else has to be better than what is being followed."""
+HORIZON = 14
+"""Steps of a plan that are followed exactly; what comes after them is worked out roughly."""
+
+
+class _Sequence(NamedTuple):
+    """To end, where there is no way; or a way with each step repeated, and what follows it.
+
+    Attributes:
+        way: Its number among those compared; None to end.
+        times: How often each step is done.
+        then: What follows; None for the end.
+    """
+
+    way: int | None
+    times: int = 0
+    then: "_Sequence | None" = None
 
 
 class Unseen:
@@ -36,94 +60,214 @@ class Unseen:
         model: The action model.
         ahead: The cheapest ways from single joint states.
         costs: What things cost.
+
+    Attributes:
+        following: The actions that were decided for and are not done yet.
     """
 
     def __init__(self, model: FaultModel, ahead: Outlook, costs: Costs):
         self._model, self._ahead, self._costs = model, ahead, costs
+        self._steps = Steps(model)
         self._walks: dict[AnnotatedPlan, dict[tuple[int, int], tuple[int, ...] | None]] = {}
-        self._paid: dict[tuple[int, int], dict[int, float]] = {}
-        self._worked_out_for = -1
+        self._repeats: dict[tuple[int, int], int] = {}
+        self._known: dict[tuple[int, int, int, object], tuple[Floats, Floats]] = {}
+        self._worked_out_for: tuple[int, int] = (-1, -1)
+        self.following: tuple[Action, ...] = ()
+        self._after: dict[Action, tuple[Action, ...]] = {}
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
-        self._model = model
+        self._model, self._steps = model, Steps(model)
         self._walks.clear()
-        self._paid.clear()
+        self._known.clear()
 
-    def columns(self, done: Action, led: Sequence[Led], states: int) -> list[Floats]:
-        """What is left to pay after an action, for every way worth comparing.
+    def acted(self, action: Action, state: State) -> None:
+        """Note that an action is executed, where a state is most probable."""
+        follows = self.following and self._model.same_skill(self.following[0], action, state)
+        self.following = self.following[1:] if follows else ()
+
+    def follow(self, action: Action) -> None:
+        """Decide for an action, with what is best to come after it."""
+        self.following = (action, *self._after.get(action, ()))
+
+    def columns(
+        self,
+        actions: Sequence[tuple[Action, Sequence[Led]]],
+        ranked: Sequence[tuple[int, float]],
+    ) -> dict[Action, list[Floats]]:
+        """The expected costs of actions in the joint states, for the best ways to go on.
+
+        What is best to do need not be the next step of anybody's plan: such actions are told, too.
 
         Args:
-            done: The action.
-            led: Of the most probable joint states, their probabilities and what it leads to.
-            states: How many joint states there are; of the others the task fails.
+            actions: Each with the probabilities of the most probable joint states and what it
+                leads to from them.
+            ranked: All joint states with their probabilities, the most probable first; where the
+                actions do not say what they lead to, the task fails.
         """
-        ways = self.ways(
-            (other, share * weight) for weight, after in led for share, other, _ in after
-        )
-        found = []
-        for way in ways:
-            column = np.full(states, self._ahead.failure)
-            column[: len(led)] = [
-                sum(share * (self.cost(way, other, done) + more) for share, other, more in after)
-                for _, after in led
-            ]
-            found.append(column)
+        masses, ways = self._prepared(actions, ranked)
+        told, begun, less = self._worked_out(ways, masses)
+        self._after = {}
+        found: dict[Action, list[Floats]] = {}
+        for action, led in actions:
+            own = begun.copy()
+            for column, each in enumerate(told):
+                if each.way is not None and self._first(ways, each) == action:
+                    own[:, column] = less[:, column]
+            paid = self._costs.action + self._led_to(led, own)
+            weights = np.array([weight for weight, _ in led])
+            best = np.argsort(np.round(weights @ paid, 9), kind="stable")[:BEST].tolist()
+            found[action] = [self._whole(paid[:, n], ranked) for n in dict.fromkeys([0, *best])]
+            self._after[action] = self._actions(ways, told[best[0]], action)
+        led_states = ranked[: len(actions[0][1])]
+        here = begun[self._steps.places([number for number, _ in led_states])]
+        expected = np.array([weight for _, weight in led_states]) @ here
+        for column in np.argsort(np.round(expected, 9), kind="stable")[:BEST].tolist():
+            if told[column].way is None:
+                break
+            first = self._first(ways, told[column])
+            if first not in found:
+                found[first] = [self._whole(here[:, column], ranked)]
+                self._after[first] = self._actions(ways, told[column], first)
+        if self.following:
+            left = self._ended()[:, None]
+            for action in reversed(self.following):
+                left = self._costs.action + self._back(action, left)
+            kept = left[self._steps.places([number for number, _ in led_states]), 0] - KEEPING
+            first, *rest = self.following
+            found.setdefault(first, []).append(self._whole(np.maximum(kept, 0.0), ranked))
+            self._after[first] = tuple(rest)
         return found
 
-    def ends(self, choice: Choice, end: Floats) -> list[tuple[Choice, Floats, Floats]]:
-        """To say that the goal is reached, where that is likely, or to give up: what each costs in
-        the joint states, and what it has to do there (see `Table.work`).
+    def _prepared(
+        self,
+        actions: Sequence[tuple[Action, Sequence[Led]]],
+        ranked: Sequence[tuple[int, float]],
+    ) -> tuple[dict[int, float], list[Way]]:
+        """What is predicted, and the ways to compare. What was worked out before is forgotten where
+        it does not hold any more."""
+        masses = dict(ranked[: len(actions[0][1])])
+        for _, led in actions:
+            for weight, after in led:
+                for share, other, _ in after:
+                    masses[other] = masses.get(other, 0.0) + weight * share / len(actions)
+        ways = self._ways(masses.items(), [action for action, _ in actions])
+        steps = {a for place, plan in ways for a in plan.actions[place : place + HORIZON]}
+        self._steps.cover(masses, steps.union(self.following), self._ahead.rates)
+        version = self._ahead.version, self._steps.version
+        if version != self._worked_out_for:
+            self._worked_out_for = version
+            self._known.clear()
+            self._repeats.clear()
+            for old in self._walks.keys() - {*self._ahead.plans}:
+                del self._walks[old]
+        return masses, ways
 
-        Args:
-            choice: To end.
-            end: What it costs where the goal is not reached.
-        """
-        likely = np.tile(np.where(end > 0, -0.5, 0.5), (2, 1))
-        lost = np.full_like(end, self._ahead.failure)
-        return [(choice, end, likely), (choice, lost, np.ones_like(likely))]
-
-    def ways(self, predicted: Iterable[tuple[int, float]]) -> list[Way]:
-        """The ways worth comparing.
-
-        Args:
-            predicted: Joint states with their probabilities.
-        """
+    def _ways(self, predicted: Iterable[tuple[int, float]], actions: Sequence[Action]) -> list[Way]:
+        """Those of the most probable joint states, and what comes next on them after an action."""
         masses: dict[Way, float] = {}
         for number, mass in predicted:
             way = self._ahead.best(number)
             if way is not None and way[0] < len(way[1].actions):
                 masses[way] = masses.get(way, 0.0) + mass
-        ranked = sorted(masses, key=lambda way: -masses[way])
-        return [None, *ranked[:WAYS]]
+        found = sorted(masses, key=lambda way: -masses[way])[:WAYS]
+        for place, plan in list(found):
+            if plan.actions[place] in actions and place + 1 < len(plan.actions):
+                found.append((place + 1, plan))
+        return list(dict.fromkeys(found))
 
-    def cost(self, way: Way, number: int, done: Action) -> float:
-        """What a way costs from a joint state, with the risk that it ends elsewhere.
+    def _worked_out(
+        self, ways: Sequence[Way], masses: Mapping[int, float]
+    ) -> tuple[list[_Sequence], Floats, Floats]:
+        """What can be done, and what each costs from every joint state (rows); and the same with
+        its first step once less."""
+        places, whole = self._steps.places(masses), np.array(list(masses.values()))
+        ended = self._ended()[:, None]
+        numbered = [(number, times) for number in range(len(ways)) for times in TIMES]
+        told = [_Sequence(None), *(_Sequence(*each) for each in numbered)]
+        once = [self._followed(ways[n], times, ended, None) for n, times in numbered]
+        costs = [float(whole @ begun[places, 0]) for begun, _ in once]
+        best = sorted(range(len(once)), key=lambda each: round(costs[each], 9))[: ENDINGS - 1]
+        parts = [(ended, ended), *once]
+        if best:
+            seconds = np.concatenate([once[each][0] for each in best], axis=1)
+            then = tuple(told[1 + each] for each in best)
+            which = tuple((*ways[n], times) for n, times in (numbered[each] for each in best))
+            for number, times in numbered:
+                parts.append(self._followed(ways[number], times, seconds, which))
+                told += [_Sequence(number, times, each) for each in then]
+        begun, less = (np.concatenate([each[side] for each in parts], axis=1) for side in (0, 1))
+        return told, begun, less
 
-        Args:
-            way: The way.
-            number: Of the joint state.
-            done: The action before it; where the way begins with it, that counts.
-        """
-        if way is None:
-            return 0.0 if self._ahead.is_goal(number) else self._ahead.failure
-        if self._worked_out_for != self._ahead.version:
-            self._worked_out_for = self._ahead.version
-            self._paid.clear()
-            for old in self._walks.keys() - {*self._ahead.plans}:
-                del self._walks[old]
+    def _followed(self, way: Way, times: int, after: Floats, then: object) -> tuple[Floats, Floats]:
+        """What a way costs from every joint state, each step repeated, by what is left to pay after
+        it; and with its first step once less."""
         place, plan = way
-        known = self._paid.setdefault((id(plan), place), {})
-        kind = self._model.kind(number)
-        if kind not in known:
-            known[kind] = self._worked_out(plan, place, number)
-        begun = self._costs.action if plan.actions[place] == done else 0.0
-        return known[kind] - begun
+        key = place, id(plan), times, then
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        stop = min(len(plan.actions), place + HORIZON)
+        if stop < len(plan.actions):
+            rest = [*(self._rest(plan, stop, n) for n in self._steps.numbers), self._ahead.failure]
+            after = np.repeat(np.array(rest)[:, None], after.shape[1], axis=1)
+        values = before = after
+        for action in reversed(plan.actions[place:stop]):
+            for _ in range(times):
+                before = values
+                values = self._costs.action + self._back(action, values)
+        found = self._known[key] = values, before
+        return found
 
-    def _worked_out(self, plan: AnnotatedPlan, place: int, number: int) -> float:
+    def _back(self, action: Action, after: Floats) -> Floats:
+        ahead = self._ahead
+        return self._steps.back(action, after, ahead.skill(action).failure, ahead.rates)
+
+    def _ended(self) -> Floats:
+        """What it costs to end in each joint state."""
+        lost = self._ahead.failure
+        goals = [0.0 if self._ahead.is_goal(n) else lost for n in self._steps.numbers]
+        return np.array([*goals, lost])
+
+    def _led_to(self, led: Sequence[Led], values: Floats) -> Floats:
+        """The expectation of something after an action, in the joint states before it."""
+        leads, more = np.zeros((len(led), len(values))), np.zeros(len(led))
+        for row, (_, after) in enumerate(led):
+            for share, other, besides in after:
+                leads[row, self._steps.place[other]] += share
+                more[row] += share * besides
+        found: Floats = leads @ values + more[:, None]
+        return found
+
+    def _whole(self, first: Floats, ranked: Sequence[tuple[int, float]]) -> Floats:
+        """Costs in all joint states, by those in the first of them."""
+        found = np.full(len(ranked), self._ahead.failure)
+        found[: len(first)] = first
+        return found
+
+    def _first(self, ways: Sequence[Way], each: _Sequence) -> Action:
+        assert each.way is not None
+        place, plan = ways[each.way]
+        return plan.actions[place]
+
+    def _actions(self, ways: Sequence[Way], each: _Sequence, done: Action) -> tuple[Action, ...]:
+        """The actions of something that can be done, after the first, where that is one of them;
+        none where a plan is too long to be followed."""
+        found: list[Action] = []
+        part: _Sequence | None = each
+        while part is not None and part.way is not None:
+            place, plan = ways[part.way]
+            if len(plan.actions) - place > HORIZON:
+                return ()
+            found += [action for action in plan.actions[place:] for _ in range(part.times)]
+            part = part.then
+        return tuple(found[1:] if found[:1] == [done] else found)
+
+    def _rest(self, plan: AnnotatedPlan, place: int, number: int) -> float:
+        """What the rest of a long plan costs from a joint state, roughly."""
         steps = len(plan.actions) - place
         needed = self._walk(plan, place, number)
-        times = self._times(plan, place)
+        times = self._repeated(plan, place)
         paid = times * steps * self._costs.action
         if needed is None:
             return paid + self._ahead.failure
@@ -134,20 +278,20 @@ class Unseen:
         """Probability that some tries do what is wanted, and nothing else."""
         failure = self._ahead.skill(action).failure
         failed = sum(failure**each for each in range(1, times + 1))
-        return float((1 - failure**times) * (1 - self._ahead.disturbance) ** failed)
+        return float((1 - failure**times) * (1 - self._ahead.rates.disturbance) ** failed)
 
-    def _times(self, plan: AnnotatedPlan, place: int) -> int:
+    def _repeated(self, plan: AnnotatedPlan, place: int) -> int:
         """How often every step is best repeated where the way is the right one."""
-        known = self._paid[id(plan), place]
-        if -1 not in known:
+        known = self._repeats.get((id(plan), place))
+        if known is None:
             rest = plan.actions[place:]
 
             def paid(times: int) -> float:
                 lost = 1 - prod(self._works(each, times) for each in rest)
                 return times * len(rest) * self._costs.action + lost * self._ahead.failure
 
-            known[-1] = min(TIMES, key=paid)
-        return int(known[-1])
+            known = self._repeats[id(plan), place] = min(TIMES, key=paid)
+        return known
 
     def _walk(self, plan: AnnotatedPlan, place: int, number: int) -> tuple[int, ...] | None:
         """The steps of a plan that change something on the way from a joint state to the goal;

@@ -165,6 +165,11 @@ class Worth:
         return float(self._weights @ self.shares)
 
     @property
+    def nothing(self) -> float:
+        """The probability that answers are worth nothing; 0 where that is not learned."""
+        return 0.0 if self.trust is None else self.trust.weights[0]
+
+    @property
     def lasts(self) -> bool:
         """Whether errors may last at all, as far as is worth a thought."""
         return float(self._weights[self.shares > 0].sum()) > LASTS

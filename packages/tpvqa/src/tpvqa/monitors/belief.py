@@ -1,14 +1,15 @@
 """The monitor that believes: probabilities instead of votes, costs instead of thresholds."""
 
 from collections.abc import Collection, Generator, Sequence
-from copy import deepcopy
 from dataclasses import replace
+from itertools import groupby
 from typing import Any
 
 from tpvqa.belief.ablations import belief_without
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Chooser
+from tpvqa.belief.controls import Controls
 from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.experience import Experience
@@ -36,7 +37,7 @@ from tpvqa.monitors.requests import Request
 from tpvqa.monitors.scrutiny import unknown
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated, bound_for
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.monitors.ways import Ways
+from tpvqa.monitors.ways import UNSEEN, Ways, known_plan
 from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
@@ -114,6 +115,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self._past: Errand | None = None
         self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
+        self._controls = Controls(self.evidence, self.costs)
         self._feeling = Feeling(self._sight, senses, self.evidence.noticed(task))
         self._asking = Asking(
             self.belief,
@@ -172,11 +174,8 @@ class BeliefMonitor(Learning, PlainArguments):
         """What is known now, for the next trial; None where nothing is learned."""
         if self.trust is None:
             return None
-        chances = deepcopy(self.chances.likeliest)
-        if not self._now.learned:
-            shares, action = self.belief.outcome_shares(), self._now.action
-            chances.learn(shares, action, self.belief.earlier_shares())
-        return Experience.of(chances, self.trust, self._trials + 1)
+        last = None if self._now.learned else self._now.action
+        return Experience.of(self.chances.carried(last), self.trust, self._trials + 1)
 
     @property
     def goal_probability(self) -> float:
@@ -204,8 +203,8 @@ class BeliefMonitor(Learning, PlainArguments):
 
     @property
     def _choosers(self) -> list[Chooser]:
-        every = [self._task_ways, *([] if self._errand is None else [self._errand.ways])]
-        return [ways.chooser for ways in every]
+        further = [] if self._errand is None else [self._errand.ways.chooser]
+        return [self._task_ways.chooser, *further]
 
     @property
     def _now(self) -> Inspection:
@@ -293,7 +292,8 @@ class BeliefMonitor(Learning, PlainArguments):
         """Learn from how the last action came out, after all that was seen of it."""
         if action is not None and self._learns and not self._now.learned:
             self._now.learned = True
-            self.chances.learn(action)
+            if not self._chooser.blind or self._now.noticed:  # else nothing was seen of it
+                self.chances.learn(action)
         for chooser in self._choosers:
             chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
@@ -303,7 +303,7 @@ class BeliefMonitor(Learning, PlainArguments):
             yield from self._asking.feel(self._ways.atoms)
             self._settle(step)
             table = self._chooser.table(self.belief, self.chances.rates, step.plan.actions, barred)
-            if self._chooser.foresees():
+            if self._chooser.seeking.foresees():
                 continue
             inquiry = self._inquire(step, table)
             if inquiry is not None:
@@ -330,16 +330,14 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
         budget, views = self._asking.budget(), self._asking.open_views
-        questions = self._about_needs(step.book)
+        questions, likely = self._about_needs(step.book), self._asking.likely
         if self._asks_all and budget.questions > 0:
-            new = (
-                q
-                for q in questions
-                if q.family not in self._now.replies and self._asking.open_views(q)
-            )
-            doubted = [each for each in new if DOUBT < self._asking.likely(each) < 1 - DOUBT]
-            if doubted:
+            new = (q for q in questions if q.family not in self._now.replies and views(q))
+            if doubted := [each for each in new if DOUBT < likely(each) < 1 - DOUBT]:
                 return Inquiry(doubted[0], 1, 0.0)
+        able = min(budget.questions, budget.looks) > 0
+        if able and (known := self._controls.next(questions, likely, views)):
+            return Inquiry(known, 1, 0.0)
         found = self._inquirer.best(
             questions,
             table,
@@ -347,6 +345,7 @@ class BeliefMonitor(Learning, PlainArguments):
             picture=self._now.picture,
             views=views,
             person=self._asking.person,
+            dearer=self._chooser.ahead.dearer,
         )
         if found is None and self._chooser.settles >= TELLING and self._ways.closely(self._now):
             found = unknown(self._now, self.belief, step.book, budget, views)
@@ -389,12 +388,13 @@ class BeliefMonitor(Learning, PlainArguments):
             risk=self._risk,
         )
         why = reason(grounds, decision, action, state, place)
-        if self._errand is not None:
-            why = f"{self._errand.why}; {why}"
+        why = why if self._errand is None else f"{self._errand.why}; {why}"
         if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
             acted or place != step.index
         ):
             self._settled = action
         plan = self._ways.plan(state, action) if action and decision is Decision.REPLAN else None
+        if action and decision is Decision.REPLAN and self._chooser.follows(action, state):
+            plan = known_plan([each for each, _ in groupby(self._chooser.following)], UNSEEN)
         marginals = self.belief.probabilities(sorted(self._ways.atoms))
         return Verdict(decision, why, state, step=place, belief=marginals, plan=plan)

@@ -4,11 +4,11 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any
 
 from tpvqa.belief.belief import MOST, Belief
-from tpvqa.belief.choices import LIKELY
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.first import Prior
 from tpvqa.belief.inquiry import DOUBT, Budget
 from tpvqa.belief.last_answer import Picture
+from tpvqa.belief.seeking import LIKELY
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Inspection, Replies
 from tpvqa.monitors.protocol import Check

@@ -1,14 +1,15 @@
 """Which ways to the goal a belief monitor knows, and where it has others planned."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from typing import Any
 
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.choices import LIKELY, Chooser
+from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.learned import Learned
 from tpvqa.belief.outlook import KNOWN
+from tpvqa.belief.seeking import LIKELY
 from tpvqa.belief.skills import CLOSELY, NAMED, SUSPECT
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.inspection import Inspection
@@ -17,6 +18,9 @@ from tpvqa.monitors.requests import PlanFrom, Request
 from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import regress
+
+UNSEEN = "followed unseen"
+"""Who has planned what is followed without a look, whatever is true."""
 
 
 class Ways:
@@ -56,6 +60,8 @@ class Ways:
         if step.plan is self._followed:
             return
         self._followed = step.plan
+        if step.plan.planner == UNSEEN:  # it need not lead to the goal from there
+            return
         self._plans[step.state] = step.plan
         if self.annotated(step) is None:
             self._annotate(step.plan, step.state)
@@ -83,12 +89,11 @@ class Ways:
         if way is None:
             return None
         place, plan = way
-        actions = plan.actions[place:]
-        return Plan(actions, sum(each.cost for each in actions), "a known plan", 0.0)
+        return known_plan(plan.actions[place:])
 
     def seek(self, belief: Belief) -> Generator[Request, Any, None]:
         """Have plans made for what is likely, and without what does not work."""
-        while (state := self.chooser.unplanned(belief)) is not None:
+        while (state := self.chooser.seeking.unplanned(belief)) is not None:
             if state in self._plans:  # other plans have taken its place meanwhile
                 self._annotate(self._plans[state], state)
                 continue
@@ -181,3 +186,8 @@ class Ways:
         for old in list(self._annotated)[: len(self._annotated) - KNOWN]:  # worked out anew if need
             if self._annotated[old] not in self.chooser.plans:
                 del self._annotated[old]
+
+
+def known_plan(actions: Sequence[Action], named: str = "a known plan") -> Plan:
+    """What is known already, as a plan."""
+    return Plan(tuple(actions), sum(each.cost for each in actions), named, 0.0)

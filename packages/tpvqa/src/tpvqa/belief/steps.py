@@ -1,0 +1,156 @@
+"""What single steps do unseen, over many joint states at once."""
+
+from collections.abc import Collection, Iterable, Mapping
+from heapq import heappop, heappush
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.information import Floats
+from tpvqa.pddl import Action
+
+MOST = 260
+"""Joint states that are told apart besides those that are begun from: those that are reached most
+probably. The rest is lost."""
+LEAST = 1e-4
+"""What is reached less probably is not told apart."""
+TRIES = 4
+"""So many tries of a step may each undo something, where it is reckoned what is reached."""
+
+Places = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+
+class _Leads(NamedTuple):
+    """Where an action leads from every joint state; where it can be done, and has nothing to do."""
+
+    there: Places
+    possible: Bools
+    achieved: Bools
+
+
+class _Falls(NamedTuple):
+    """What undoing leads to: from which joint states, to which, with which shares; and where the
+    falls of each begin."""
+
+    rows: Places
+    columns: Places
+    shares: Floats
+    starts: Places
+
+
+class Steps:
+    """Steps backward: what is left to pay before an action, from what is left to pay after it.
+
+    Args:
+        model: The action model.
+
+    Attributes:
+        numbers: The joint states that are told apart. All others come last, as one, and are lost.
+        place: The place of each.
+        version: Grows whenever there are others.
+    """
+
+    def __init__(self, model: FaultModel):
+        self._model = model
+        self.numbers: list[int] = []
+        self.place: dict[int, int] = {}
+        self.version = 0
+        self._covered: frozenset[Action] = frozenset()
+        self._leads: dict[Action, _Leads] = {}
+        self._falls: _Falls | None = None
+
+    def cover(self, masses: Mapping[int, float], actions: Collection[Action], rates: Rates) -> None:
+        """Tell apart what some actions may lead to.
+
+        Args:
+            masses: From where, with probabilities.
+            actions: They.
+            rates: How often they undo something.
+        """
+        if masses.keys() <= self.place.keys() and self._covered.issuperset(actions):
+            return
+        self.version += 1
+        self._covered = frozenset(actions)
+        undone = rates.failure * rates.disturbance + (1 - rates.failure) * rates.spontaneous
+        self.numbers = self._reached(masses, min(1.0, TRIES * undone))
+        self.place = {number: place for place, number in enumerate(self.numbers)}
+        self._leads.clear()
+        self._falls = None
+
+    def _reached(self, masses: Mapping[int, float], undone: float) -> list[int]:
+        found, chances = dict.fromkeys(masses), dict(masses)
+        queue = sorted((-mass, number) for number, mass in masses.items())
+        leads_to = [self._model.outcomes(action) for action in sorted(self._covered, key=str)]
+        done = set[int]()
+        while queue and len(found) < MOST + len(masses):
+            mass, number = heappop(queue)
+            if number in done or -mass < LEAST:
+                continue
+            done.add(number)
+            found.setdefault(number)
+            intended = {each[number].intended for each in leads_to}
+            reached = {there: -mass for there in intended if there is not None}
+            for share, other in self._model.undone(number):
+                reached[other] = max(-mass * share * undone, reached.get(other, 0.0))
+            for other, chance in reached.items():
+                if chance > chances.get(other, 0.0):
+                    chances[other] = chance
+                    heappush(queue, (-chance, other))
+        return list(found)
+
+    def places(self, numbers: Iterable[int]) -> Places:
+        """Where some joint states stand."""
+        return np.array([self.place[number] for number in numbers], np.intp)
+
+    def back(self, action: Action, after: Floats, failure: float, rates: Rates) -> Floats:
+        """What is left to pay before an action.
+
+        Args:
+            action: It.
+            after: What is left to pay after it, in every joint state that is told apart (rows), and
+                last in all others.
+            failure: How often it fails.
+            rates: How often something is undone.
+        """
+        leads = self._leads.get(action) or self._led(action)
+        fallen = self._fallen(after)
+        failed = (1 - rates.disturbance) * after + rates.disturbance * fallen
+        worked = (1 - rates.spontaneous) * after + rates.spontaneous * fallen
+        tried = (1 - failure) * worked[leads.there] + failure * failed
+        found: Floats = np.where(leads.achieved, after, np.where(leads.possible, tried, failed))
+        return found
+
+    def _led(self, action: Action) -> _Leads:
+        outcomes, last = self._model.outcomes(action), len(self.numbers)
+        each = [outcomes[number] for number in self.numbers]
+        there = [last if o.intended is None else self.place.get(o.intended, last) for o in each]
+        possible = [*(o.intended is not None for o in each), True]
+        achieved = [*(o.achieved for o in each), True]
+        found = self._leads[action] = _Leads(
+            np.array([*there, last], np.intp),
+            np.array(possible)[:, None],
+            np.array(achieved)[:, None],
+        )
+        return found
+
+    def _fallen(self, after: Floats) -> Floats:
+        """What is left to pay where something was undone."""
+        if self._falls is None:
+            last = len(self.numbers)
+            falls = [
+                (place, self.place.get(other, last), share)
+                for place, number in enumerate(self.numbers)
+                for share, other in self._model.undone(number)
+            ]
+            rows = np.array([each[0] for each in falls], np.intp)
+            columns = np.array([each[1] for each in falls], np.intp)
+            shares = np.array([each[2] for each in falls])
+            self._falls = _Falls(rows, columns, shares, np.flatnonzero(np.diff(rows, prepend=-1)))
+        found, (rows, columns, shares, starts) = after.copy(), self._falls
+        if len(rows):
+            summed = np.add.reduceat(shares[:, None] * after[columns], starts, axis=0)
+            found[rows[starts]] = summed
+        return found

@@ -1,0 +1,67 @@
+"""Ways followed unseen: which is best, however the answers before have put the others in order."""
+
+from tests.belief.test_belief import plan_of
+from tpvqa.belief.annotated import AnnotatedPlan
+from tpvqa.belief.belief import Belief
+from tpvqa.belief.choices import Chooser
+from tpvqa.belief.costs import Costs
+from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.pddl import Task, load_task
+from tpvqa.planning.regression import regress
+from tpvqa.tasks import find_task
+from tpvqa.worlds.world_file import load_world_file
+
+
+def unseen(task: Task, *, left: int | None = None) -> tuple[Chooser, Belief]:
+    """A chooser whose answers say nothing, before the first action of a known plan."""
+    rules = load_world_file(find_task(task.name).world, task)
+    model, plan = FaultModel(task, rules), plan_of(task)
+    chooser, belief = Chooser(model, Costs()), Belief(model)
+    needs = regress(task, tuple(plan), task.init)
+    chooser.ahead.add(AnnotatedPlan(task, tuple(plan), needs))
+    chooser.settles = 0.0
+    chooser.ahead.allow(left)
+    return chooser, belief
+
+
+def followed(chooser: Chooser, belief: Belief, task: Task, most: int = 200) -> int:
+    """How many actions are done until nothing more is worth it."""
+    plan = tuple(plan_of(task))
+    for done in range(most):
+        action = chooser.table(belief, Rates(), plan).best.action
+        if action is None:
+            return done
+        chooser.acted(belief, action)
+        belief.act(action, Rates(0.25, 0.25, 0.0))
+    return most
+
+
+def test_a_task_is_done_unseen_as_thoroughly_as_by_repeating_blindly() -> None:
+    task = load_task("clean_dishes")
+    chooser, belief = unseen(task)
+    done = followed(chooser, belief, task)
+    blind = Belief(belief.model)
+    for action in plan_of(task):
+        for _ in range(5):
+            blind.act(action, Rates(0.25, 0.25, 0.0))
+    assert belief.where(task.goal_holds) > blind.where(task.goal_holds) - 0.02
+    assert done < 100
+
+
+def test_no_action_is_followed_where_none_is_left() -> None:
+    task = load_task("clean_dishes")
+    chooser, belief = unseen(task, left=10)
+    assert chooser.table(belief, Rates(), plan_of(task)).best.action is not None
+    chooser.ahead.allow(0)
+    assert chooser.table(belief, Rates(), plan_of(task)).best.action is None
+
+
+def test_what_is_certain_ends_what_is_followed() -> None:
+    task = load_task("clean_dishes")
+    chooser, belief = unseen(task)
+    assert chooser.table(belief, Rates(), plan_of(task)).best.action is not None
+    state = task.init
+    for action in plan_of(task):
+        state = task.apply(state, action)
+    belief.begin([(state, 1.0)])
+    assert chooser.table(belief, Rates(), plan_of(task)).best.action is None
