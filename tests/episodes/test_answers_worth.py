@@ -90,7 +90,8 @@ def test_answers_that_are_worse_than_believed_are_told() -> None:
     known = KNOWN.model_copy(update={"whole": good})
     told = [saves(events_of(CONFIG.but(vlm="oracle:0.7", episode=n), known)) for n in range(5)]
     assert any("labels would say how far not to trust them" in each for each in told)
-    assert not any("questions less" in each for each in told)
+    for each in told:  # seldom they happen to agree as often as believed
+        assert ("questions less" in each) <= (float(each.partition(" of ")[0] or 0) > 0.9)
 
 
 @pytest.mark.parametrize("monitor", ["tpvqa", "tp"])

@@ -24,6 +24,8 @@ from tpvqa.vlm import Reply
 
 PAIRS = 4.0
 """Pairs of answers that ρ counts for without any data."""
+DEARER = 2.0
+"""How many times its price a question has to be worth at most, while answers are worth a thing."""
 
 Pair = tuple[float, float]
 _NONE = np.zeros(0, bool)
@@ -74,6 +76,17 @@ class Expected:
         """How often answers are right, by the calibration."""
         rates = self._calibration.whole.rates
         return min(max((rates.yes_if_true + 1 - rates.yes_if_false) / 2, 0.501), 0.999)
+
+    def dearer(self, times: float) -> float:
+        """How many times its price a question has to be worth.
+
+        What decides between two actions is worth no more where a failed task costs more; so it is
+        not much, unless answers are probably worth nothing.
+
+        Args:
+            times: How many times as much a failed task costs as it would if all could be seen.
+        """
+        return times if self.worth.nothing > 0.5 else min(times, DEARER)
 
     def settling(self, questions: Iterable[FactQuestion] = ()) -> Settling:
         """How far the answers in another scene would settle what is in doubt.

@@ -384,12 +384,11 @@ class FaultModel:
             for atom in sorted(joint_state.state - self._begun):
                 states = self._memory.undone(atom, joint_state.state, joint_state.past)
                 if states:
-                    results.append([self.become(number, after) for after in states])
+                    results.append([(each, self.become(number, after)) for each, after in states])
             shares: dict[int, float] = {}
             for outcomes in results:
-                for outcome in outcomes:
-                    share = 1 / len(results) / len(outcomes)
-                    shares[outcome] = shares.get(outcome, 0.0) + share
+                for share, outcome in outcomes:
+                    shares[outcome] = shares.get(outcome, 0.0) + share / len(results)
             found = tuple((share, outcome) for outcome, share in shares.items())
             self._undone[number] = found
         return found

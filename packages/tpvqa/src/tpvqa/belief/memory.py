@@ -10,6 +10,9 @@ from typing import Any, Protocol, runtime_checkable
 from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Atom, State, Task
 
+LOST = 0.1
+"""How often what was held falls where nothing that the task knows says that it is."""
+
 Past = tuple[Any, ...]
 """What is remembered; equal where nothing that can still happen tells it apart."""
 
@@ -49,8 +52,8 @@ class Memory(Protocol):
             begun: The state in which the trial began, of which nothing can be undone.
         """
 
-    def undone(self, atom: Atom, state: State, past: Past) -> list[State]:
-        """What undoing a true atom can lead to."""
+    def undone(self, atom: Atom, state: State, past: Past) -> list[tuple[float, State]]:
+        """What undoing a true atom can lead to, each with its share."""
 
 
 def memory_of(task: Task, undo: Sequence[Undoing]) -> Memory:
@@ -85,10 +88,13 @@ class ByGroups:
                 latest[group] = None
         return tuple(latest) if any(latest) else ()
 
-    def undone(self, atom: Atom, state: State, past: Past) -> list[State]:
-        """The one state that this leads to; none where nothing held before."""
-        after = self._back.undone(atom, state, (past or self._nothing).__getitem__)
-        return [] if after is None else [after]
+    def undone(self, atom: Atom, state: State, past: Past) -> list[tuple[float, State]]:
+        """What was before, and seldom that a thing is lost; none where nothing held before."""
+        before = (past or self._nothing).__getitem__
+        after, lost = (undo(atom, state, before) for undo in (self._back.undone, self._back.lost))
+        if after is None:
+            return []
+        return [(1.0, after)] if lost is None else [(1 - LOST, after), (LOST, lost)]
 
 
 class ByRules:
@@ -121,10 +127,12 @@ class ByRules:
             latest[atom] = None
         return tuple(latest)
 
-    def undone(self, atom: Atom, state: State, past: Past) -> list[State]:
-        """What undoing a true atom can lead to."""
-        task = self._task
-        return [after for rule in self._undo for _, after in rule.results(atom, state, past, task)]
+    def undone(self, atom: Atom, state: State, past: Past) -> list[tuple[float, State]]:
+        """What undoing a true atom can lead to, all as probable."""
+        found = [
+            after for rule in self._undo for _, after in rule.results(atom, state, past, self._task)
+        ]
+        return [(1 / len(found), after) for after in found]
 
     def _keys(self, atom: Atom) -> list[Any]:
         if self._patterns is None:

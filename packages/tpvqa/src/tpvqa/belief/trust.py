@@ -17,7 +17,7 @@ ALIKE = 0.4
 KNOWN = 10
 """Labelled answers after which a calibration is believed as much as those recordings."""
 
-ELSEWHERE = 0.05
+ELSEWHERE = 0.02
 """Chance that a calibration says nothing of the VLM in this scene, however well it was learned: the
 camera, the light or the model is another one."""
 NOTHING = 0.5

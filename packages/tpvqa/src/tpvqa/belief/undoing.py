@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
+from tpvqa.belief.places import things
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.arithmetic import VALUE
 from tpvqa.pddl.likewise import numbers_likewise
@@ -23,11 +24,13 @@ class BackToBefore:
         self._groups: list[State] = []
         self._homes: dict[Atom, list[int]] = {}
         self._rivals: dict[Atom, State] = {}
+        places = {thing.places for thing in things(task)}
         for group in task.mutex_groups:
             if group.exactly_one:
                 for each in group.atoms:
                     self._homes.setdefault(each, []).append(len(self._groups))
                 self._groups.append(group.atoms)
+        self._places = {n for n, each in enumerate(self._groups) if any(p <= each for p in places)}
 
     @property
     def groups(self) -> int:
@@ -76,6 +79,26 @@ class BackToBefore:
             for number in self.homes(gone)
         ):
             return None
+        return after
+
+    def lost(self, atom: Atom, state: State, before: Callable[[int], Atom | None]) -> State | None:
+        """The state in which a thing that was held fell where none of the facts says; None where
+        an atom does not say that one is held.
+
+        Args:
+            atom: What is undone.
+            state: Where it holds.
+            before: What held last, besides it, of a group.
+        """
+        after, homes = state - {atom}, self.homes(atom)
+        held = [number for number in homes if number not in self._places]
+        if not held or len(held) == len(homes):
+            return None
+        for number in held:
+            earlier = before(number)
+            if earlier is None or len(earlier.arguments) >= len(atom.arguments):
+                return None
+            after |= {earlier}
         return after
 
     def _rivals_of(self, atom: Atom) -> State:

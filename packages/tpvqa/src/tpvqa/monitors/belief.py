@@ -345,7 +345,7 @@ class BeliefMonitor(Learning, PlainArguments):
             picture=self._now.picture,
             views=views,
             person=self._asking.person,
-            dearer=self._chooser.ahead.dearer,
+            dearer=self.evidence.dearer(self._chooser.ahead.dearer),
         )
         if found is None and self._chooser.settles >= TELLING and self._ways.closely(self._now):
             found = unknown(self._now, self.belief, step.book, budget, views)
