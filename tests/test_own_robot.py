@@ -115,7 +115,8 @@ def test_what_it_feels_is_logged_and_decides(package: Edit, tmp_path: Path) -> N
     decided = [e for e in events if isinstance(e, Decided) and "pick_up plate" in e.action]
     assert any("as sensed" in e.reason for e in decided)
     done = [each[:2] for each in sys.modules["my_lab"].done]
-    assert done.count(("pick_up", "plate")) == 2
+    before = done[: done.index(("wash", "plate"))]
+    assert before.count(("pick_up", "plate")) >= 2
 
 
 @pytest.mark.parametrize("way", ["watching", "stepping"])

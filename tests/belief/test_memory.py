@@ -6,9 +6,9 @@ import pytest
 
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.memory import ByRules
+from tpvqa.belief.memory import ByRules, Past
 from tpvqa.belief.undoing import BackToBefore
-from tpvqa.pddl import Action, Task, task_from_text
+from tpvqa.pddl import Action, Atom, State, Task, task_from_text
 
 DOMAIN = """(define (domain blocks)
   (:requirements :strips :typing) (:types block)
@@ -36,6 +36,17 @@ def blocks() -> Task:
     return task_from_text(DOMAIN, PROBLEM)
 
 
+class _Whole(ByRules):
+    """Remembers all that ended."""
+
+    def __init__(self, task: Task):
+        self._back = BackToBefore(task)
+        super().__init__(task, (self._back,))
+
+    def undone(self, atom: Atom, state: State, past: Past) -> list[tuple[float, State]]:
+        return self._back.with_shares(atom, state, self._back.latest(atom, past))
+
+
 def done(model: FaultModel, actions: list[Action]) -> Belief:
     belief = Belief(model, smallest=0.0, most=10**6)
     for action in actions:
@@ -55,7 +66,7 @@ def test_forgetting_what_no_fault_leads_back_to_changes_no_probability(
         actions.append(random.choice(possible))
         state = blocks.apply(state, actions[-1])
     short, whole = FaultModel(blocks), FaultModel(blocks)
-    whole._memory = ByRules(blocks, (BackToBefore(blocks),))
+    whole._memory = _Whole(blocks)
     few, many = done(short, actions), done(whole, actions)
     for atom in blocks.atoms():
         assert few.probability(atom) == pytest.approx(many.probability(atom), abs=1e-12)

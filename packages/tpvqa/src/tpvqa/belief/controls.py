@@ -14,7 +14,7 @@ from tpvqa.questions import FactQuestion
 
 KNOWN = 0.01
 """What is surer than this is known."""
-RULED_OUT = 0.01
+RULED_OUT = 0.003
 """That answers are worth nothing is ruled out where it is less probable, and found where the
 contrary is."""
 LOST = 0.5

@@ -29,6 +29,8 @@ DEARER = 2.0
 
 Pair = tuple[float, float]
 _NONE = np.zeros(0, bool)
+EXHAUSTED = 5.0
+"""So many times the answers that it takes to be sure are asked for in one scene, at most."""
 
 
 class Expected:
@@ -65,11 +67,18 @@ class Expected:
 
     def answers_to_be_sure(self) -> float:
         """How many answers of this VLM it takes to notice a mistake."""
+        return 1 + (self._to_be_sure() - 1) * max(0.0, 5 * self.settling().share - 4)
+
+    def exhausting(self) -> float:
+        """After how many answers in one scene a question has said what it can: as errors last, what
+        it has not settled then it never will."""
+        return EXHAUSTED * self._to_be_sure()
+
+    def _to_be_sure(self) -> float:
         rates = self._calibration.whole.rates
         expected = self.worth.expect((rates.yes_if_true, rates.yes_if_false))
         right = (expected.yes_if_true + 1 - expected.yes_if_false) / 2
-        sure = answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
-        return 1 + (sure - 1) * max(0.0, 5 * self.settling().share - 4)
+        return answers_to_be_sure(right, self._repeats[Apart.SAME_VIEW].mean)
 
     @property
     def right(self) -> float:

@@ -10,9 +10,6 @@ from typing import Any, Protocol, runtime_checkable
 from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Atom, State, Task
 
-LOST = 0.1
-"""How often what was held falls where nothing that the task knows says that it is."""
-
 Past = tuple[Any, ...]
 """What is remembered; equal where nothing that can still happen tells it apart."""
 
@@ -90,11 +87,7 @@ class ByGroups:
 
     def undone(self, atom: Atom, state: State, past: Past) -> list[tuple[float, State]]:
         """What was before, and seldom that a thing is lost; none where nothing held before."""
-        before = (past or self._nothing).__getitem__
-        after, lost = (undo(atom, state, before) for undo in (self._back.undone, self._back.lost))
-        if after is None:
-            return []
-        return [(1.0, after)] if lost is None else [(1 - LOST, after), (LOST, lost)]
+        return self._back.with_shares(atom, state, (past or self._nothing).__getitem__)
 
 
 class ByRules:

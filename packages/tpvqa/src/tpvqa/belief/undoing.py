@@ -7,6 +7,9 @@ from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.arithmetic import VALUE
 from tpvqa.pddl.likewise import numbers_likewise
 
+LOST = 0.1
+"""How often what was held falls where nothing that the task knows says that it is."""
+
 
 class BackToBefore:
     """An undone fact gives way to what held before it in its groups.
@@ -45,15 +48,20 @@ class BackToBefore:
         self, atom: Atom, state: State, history: Sequence[Atom], task: Task
     ) -> list[tuple[str, State]]:
         """The one state that this leads to; none where nothing held before."""
+        before = self.latest(atom, history)
+        after = None if atom.predicate == VALUE else self.undone(atom, state, before)
+        if after is not None and task.numeric is not None:
+            after = numbers_likewise(task, state, after) or after
+        return [] if after is None else [("it is as before", after)]
+
+    def latest(self, atom: Atom, history: Sequence[Atom]) -> Callable[[int], Atom | None]:
+        """What held last, besides an atom, of a group, by all that ended, the latest last."""
 
         def before(number: int) -> Atom | None:
             others = self._groups[number] - {atom}
             return next((each for each in reversed(history) if each in others), None)
 
-        after = None if atom.predicate == VALUE else self.undone(atom, state, before)
-        if after is not None and task.numeric is not None:
-            after = numbers_likewise(task, state, after) or after
-        return [] if after is None else [("it is as before", after)]
+        return before
 
     def undone(
         self, atom: Atom, state: State, before: Callable[[int], Atom | None]
@@ -81,25 +89,37 @@ class BackToBefore:
             return None
         return after
 
-    def lost(self, atom: Atom, state: State, before: Callable[[int], Atom | None]) -> State | None:
-        """The state in which a thing that was held fell where none of the facts says; None where
-        an atom does not say that one is held.
+    def with_shares(
+        self, atom: Atom, state: State, before: Callable[[int], Atom | None]
+    ) -> list[tuple[float, State]]:
+        """What undoing an atom leads to, with shares: seldom a thing is lost.
 
         Args:
             atom: What is undone.
             state: Where it holds.
             before: What held last, besides it, of a group.
         """
-        after, homes = state - {atom}, self.homes(atom)
-        held = [number for number in homes if number not in self._places]
-        if not held or len(held) == len(homes):
+        after, lost = self.undone(atom, state, before), self.lost(atom, state, before)
+        if after is None:
+            return []
+        return [(1.0, after)] if lost is None else [(1 - LOST, after), (LOST, lost)]
+
+    def lost(self, atom: Atom, state: State, before: Callable[[int], Atom | None]) -> State | None:
+        """The state in which a thing is nowhere that a fact says, and what held it is free again;
+        None where an atom does not say that something holds a thing.
+
+        Args:
+            atom: What is undone.
+            state: Where it holds.
+            before: What held last, besides it, of a group.
+        """
+        homes = self.homes(atom)
+        holders = [number for number in homes if number not in self._places]
+        earlier = [before(number) for number in holders]
+        freed = {each for each in earlier if each and atom.arguments[0] not in each.arguments}
+        if len(holders) == len(homes) or None in earlier or not freed:
             return None
-        for number in held:
-            earlier = before(number)
-            if earlier is None or len(earlier.arguments) >= len(atom.arguments):
-                return None
-            after |= {earlier}
-        return after
+        return state - {atom} | freed
 
     def _rivals_of(self, atom: Atom) -> State:
         """The facts that do not hold together with one."""

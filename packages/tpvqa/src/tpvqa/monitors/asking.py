@@ -75,6 +75,13 @@ class Asking:
             min(costs.looks_per_step - now.looks, looks),
         )
 
+    def unexhausted(self, questions: Sequence[FactQuestion]) -> list[FactQuestion]:
+        """Those that may still say something in this scene."""
+        replies = self.now.replies
+        most = self._evidence.exhausting() * max(1, len(self._views))
+        told = {each for each, known in replies.items() if len(known.replies) >= most}
+        return [each for each in questions if each.family not in told]
+
     def likely(self, question: FactQuestion) -> float:
         """The probability that yes is right."""
         return self._belief.probability(question.atom, question.alike)

@@ -329,14 +329,15 @@ class BeliefMonitor(Learning, PlainArguments):
         return self._errand is not None
 
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
-        budget, views = self._asking.budget(), self._asking.open_views
-        questions, likely = self._about_needs(step.book), self._asking.likely
+        asking = self._asking
+        budget, views, likely = asking.budget(), asking.open_views, asking.likely
+        questions = asking.unexhausted(self._about_needs(step.book))
         if self._asks_all and budget.questions > 0:
             new = (q for q in questions if q.family not in self._now.replies and views(q))
             if doubted := [each for each in new if DOUBT < likely(each) < 1 - DOUBT]:
                 return Inquiry(doubted[0], 1, 0.0)
-        able = min(budget.questions, budget.looks) > 0
-        if able and (known := self._controls.next(questions, likely, views)):
+        able = questions if min(budget.questions, budget.looks) > 0 else []
+        if known := self._controls.next(able, likely, views):
             return Inquiry(known, 1, 0.0)
         found = self._inquirer.best(
             questions,
@@ -344,7 +345,7 @@ class BeliefMonitor(Learning, PlainArguments):
             budget,
             picture=self._now.picture,
             views=views,
-            person=self._asking.person,
+            person=asking.person,
             dearer=self.evidence.dearer(self._chooser.ahead.dearer),
         )
         if found is None and self._chooser.settles >= TELLING and self._ways.closely(self._now):
@@ -387,11 +388,10 @@ class BeliefMonitor(Learning, PlainArguments):
             failing=self._ways.failing(step),
             risk=self._risk,
         )
-        why = reason(grounds, decision, action, state, place)
-        why = why if self._errand is None else f"{self._errand.why}; {why}"
-        if decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN) and (
-            acted or place != step.index
-        ):
+        errand = "" if self._errand is None else f"{self._errand.why}; "
+        why = errand + reason(grounds, decision, action, state, place)
+        moves = decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN)
+        if moves and (acted or place != step.index):
             self._settled = action
         plan = self._ways.plan(state, action) if action and decision is Decision.REPLAN else None
         if action and decision is Decision.REPLAN and self._chooser.follows(action, state):
