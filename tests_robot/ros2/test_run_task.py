@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -54,9 +55,9 @@ class Client:
         wait_for(sent.done)
         return sent.result()
 
-    def result(self, handle: Any, got: Any = None) -> Any:
+    def result(self, handle: Any, got: Any = None, seconds: float = 120) -> Any:
         got = got or handle.get_result_async()
-        wait_for(got.done, 120)
+        wait_for(got.done, seconds)
         return got.result()
 
     def ask(self, fact: str, view: str = "") -> Any:
@@ -82,24 +83,33 @@ def client(domain: int) -> Iterator[Client]:
         each.link.close()
 
 
-@pytest.fixture
-def loop(setup_file: Path, tmp_path: Path) -> "Iterator[subprocess.Popen[str]]":
-    """`tpvqa ros2-run` on the robot of the setup file."""
-    change(setup_file, BY_ACTION)
+@contextmanager
+def offered_loop(setup_file: Path, out: Path, monitor: str) -> "Iterator[subprocess.Popen[str]]":
+    """`tpvqa ros2-run` on the robot of a setup file, once its action is offered."""
     command = [str(Path(sys.executable).parent / "tpvqa"), "ros2-run", "collect_toys"]
-    command += ["--world", f"ros2:{setup_file}", "--vlm", "oracle", "--monitor", "belief"]
+    command += ["--world", f"ros2:{setup_file}", "--vlm", "oracle", "--monitor", monitor]
     server = subprocess.Popen(
-        [*command, "--out", str(tmp_path / "episodes")],
+        [*command, "--out", str(out)],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
         env=os.environ.copy(),
     )
-    assert server.stdout is not None
-    assert "offered" in server.stdout.readline()
-    yield server
-    server.kill()
-    server.wait()
+    try:
+        assert server.stdout is not None
+        assert "offered" in server.stdout.readline()
+        yield server
+    finally:
+        server.kill()
+        server.wait()
+
+
+@pytest.fixture
+def loop(setup_file: Path, tmp_path: Path) -> "Iterator[subprocess.Popen[str]]":
+    """The loop on the robot of the setup file."""
+    change(setup_file, BY_ACTION)
+    with offered_loop(setup_file, tmp_path / "episodes", "belief") as server:
+        yield server
 
 
 def test_a_task_is_run_told_of_and_asked_about(
