@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
@@ -13,10 +13,11 @@ from pathlib import Path
 import pytest
 
 from tests_robot.ros2.conftest import BY_ACTION, change, wait_for
+from tests_robot.ros2.looks import check_looks, stamps, until_next_action
 from tests_robot.ros2.test_run_task import Client, offered_loop
 from tpvqa.episodes import read_episode
 from tpvqa.events import Ended, Event
-from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided, Observed
+from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided
 from tpvqa.worlds import Report
 from tpvqa_robots.ros2.link import said
 
@@ -89,7 +90,7 @@ def test_the_appendix_over_dds_goes_on_after_its_robot_was_killed(
     events = read_episode(result.episode)
     check_the_appendix(events)
     check_the_restart(events, restarted)
-    check_every_action(events)
+    check_looks(events)
     # The robot itself did no more than the log says, though another one had to go on for it.
     done = [pddl for pddl, acted in actions(events) if acted.report is not Report.FAILED]
     grasped = json.loads(kept.read_text())["grasps"]
@@ -118,35 +119,13 @@ def check_the_restart(events: list[Event], restarted: float) -> None:
     assert isinstance(broken, Acted)
     assert isinstance(acting, Acting)
     assert (acting.action.pddl(), broken.report) == (KILLED, Report.FAILED)
-    after = events[at + 1 :]
-    before_next = after[: next(n for n, e in enumerate(after) if isinstance(e, Acting))]
-    stamps = [stamp for event in before_next for stamp in stamp_of(event)]
-    assert stamps
-    assert min(stamps) > restarted
-    assert ("(in_hand cyan_container)", "no") in answers(before_next)
+    looked = until_next_action(events, at)
+    assert stamps(looked)
+    assert min(stamps(looked)) > restarted
+    assert ("(in_hand cyan_container)", "no") in answers(looked)
 
 
-def check_every_action(events: list[Event]) -> None:
-    """Each begins after a look at what came of the one before; none is repeated undecided."""
-    latest, looked, decided, last = 0.0, True, False, ""
-    for event in events:
-        for stamp in stamp_of(event):
-            assert stamp >= latest
-            looked = looked or stamp > latest
-            latest = stamp
-        decided = decided or (isinstance(event, Decided) and event.decision != "go on")
-        if isinstance(event, Acting):
-            assert looked, f"{event.action.pddl()} began without a look"
-            assert decided or event.action.pddl() != last
-            looked, decided, last = False, False, event.action.pddl()
-
-
-def stamp_of(event: Event) -> list[float]:
-    """When the picture of a look was taken, by the clock on the wall."""
-    return [float(event.detail["stamp"])] if isinstance(event, Observed) else []
-
-
-def answers(events: list[Event]) -> list[tuple[str | None, str]]:
+def answers(events: Sequence[Event]) -> list[tuple[str | None, str]]:
     """Which facts were asked about, and what was answered."""
     found: list[tuple[str | None, str]] = []
     for asked, answered in pairwise(events):

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,11 +15,12 @@ import pytest
 
 from tests_robot.bag_reading import check_bag
 from tests_robot.ros2.conftest import BY_ACTION, Start, change, transition, wait_for
+from tests_robot.ros2.looks import check_looks, stamps, until_next_action
 from tests_robot.ros2.test_world import done
 from tpvqa import Task
 from tpvqa.episodes import read_episode
 from tpvqa.events import Ended, TrialState
-from tpvqa.events.events import Decided
+from tpvqa.events.events import Acting, Decided, Resumed
 from tpvqa_robots.ros2.link import Link, said
 from tpvqa_robots.ros2_trial.bag import messages_of
 from tpvqa_robots.ros2_trial.bag_writing import write_bag
@@ -201,3 +203,28 @@ def test_a_task_is_cancelled_refused_and_ended_by_ctrl_c(
     assert isinstance(last, Ended)
     assert last.because == "cancelled"
     wait_for(lambda: done(state)[-1][1] == "stood")
+
+
+def test_a_trial_goes_on_after_its_loop_was_killed(
+    start: Start, setup_file: Path, client: Client, state: Path, tmp_path: Path
+) -> None:
+    """Killed in a skill, and the episode resumed: a look comes before anything else."""
+    start(seconds=0.5)
+    change(setup_file, BY_ACTION)
+    with offered_loop(setup_file, tmp_path / "episodes", "tpvqa"):
+        assert client.send().accepted
+        wait_for(lambda: state.exists() and len(done(state)) >= 3)
+    (episode,) = (tmp_path / "episodes").iterdir()
+    restarted = time.time()
+    command = [str(Path(sys.executable).parent / "tpvqa"), "resume", str(episode)]
+    command += ["--world", f"ros2:{setup_file}", "--vlm", "oracle"]
+    resumed = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert resumed.returncode == 0, resumed.stdout + resumed.stderr
+    events = read_episode(episode)
+    assert isinstance(events[-1], Ended)
+    assert events[-1].completed
+    at = next(n for n, event in enumerate(events) if isinstance(event, Resumed))
+    assert min(stamps(until_next_action(events, at))) > restarted
+    check_looks(events)
+    begun = [action for action, what in done(state) if what == "begins"]
+    assert begun == [event.action.pddl() for event in events if isinstance(event, Acting)]
