@@ -191,6 +191,7 @@ def test_a_task_is_cancelled_refused_and_ended_by_ctrl_c(
     wait_for(lambda: done(state)[-1][1] == "stood")
 
     handle = client.send()
+    assert handle.accepted
     got = handle.get_result_async()  # a server that has ended cannot be asked any more
     wait_for(lambda: len(done(state)) == 3, 90)
     loop.send_signal(signal.SIGINT)
