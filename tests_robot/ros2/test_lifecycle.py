@@ -35,11 +35,12 @@ def test_a_skill_server_goes_through_its_stages(
         assert not transition(manager, NODE, Transition.TRANSITION_CLEANUP + 100)
         assert transition(manager, NODE, Transition.TRANSITION_ACTIVATE)
         wait_for(lambda: bool(world.observe().frames))
-        for _ in range(20):  # it may not be heard yet that it is active
+        for _ in range(100):  # it may not be heard yet that it is active
             thread, came = in_thread(world, act(FIND))
             wait_for(lambda: bool(done(state)) or bool(came))  # noqa: B023
             if not came:
                 break
+            time.sleep(0.1)
         assert done(state), came
         assert transition(manager, NODE, Transition.TRANSITION_DEACTIVATE)
         thread.join(30)

@@ -5,7 +5,9 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +15,12 @@ import pytest
 
 from tests_robot.bag_reading import check_bag
 from tests_robot.ros2.conftest import BY_ACTION, Start, change, transition, wait_for
+from tests_robot.ros2.looks import check_looks, stamps, until_next_action
 from tests_robot.ros2.test_world import done
 from tpvqa import Task
 from tpvqa.episodes import read_episode
 from tpvqa.events import Ended, TrialState
-from tpvqa.events.events import Decided
+from tpvqa.events.events import Acting, Decided, Resumed
 from tpvqa_robots.ros2.link import Link, said
 from tpvqa_robots.ros2_trial.bag import messages_of
 from tpvqa_robots.ros2_trial.bag_writing import write_bag
@@ -54,9 +57,9 @@ class Client:
         wait_for(sent.done)
         return sent.result()
 
-    def result(self, handle: Any, got: Any = None) -> Any:
+    def result(self, handle: Any, got: Any = None, seconds: float = 120) -> Any:
         got = got or handle.get_result_async()
-        wait_for(got.done, 120)
+        wait_for(got.done, seconds)
         return got.result()
 
     def ask(self, fact: str, view: str = "") -> Any:
@@ -82,24 +85,33 @@ def client(domain: int) -> Iterator[Client]:
         each.link.close()
 
 
-@pytest.fixture
-def loop(setup_file: Path, tmp_path: Path) -> "Iterator[subprocess.Popen[str]]":
-    """`tpvqa ros2-run` on the robot of the setup file."""
-    change(setup_file, BY_ACTION)
+@contextmanager
+def offered_loop(setup_file: Path, out: Path, monitor: str) -> "Iterator[subprocess.Popen[str]]":
+    """`tpvqa ros2-run` on the robot of a setup file, once its action is offered."""
     command = [str(Path(sys.executable).parent / "tpvqa"), "ros2-run", "collect_toys"]
-    command += ["--world", f"ros2:{setup_file}", "--vlm", "oracle", "--monitor", "belief"]
+    command += ["--world", f"ros2:{setup_file}", "--vlm", "oracle", "--monitor", monitor]
     server = subprocess.Popen(
-        [*command, "--out", str(tmp_path / "episodes")],
+        [*command, "--out", str(out)],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
         env=os.environ.copy(),
     )
-    assert server.stdout is not None
-    assert "offered" in server.stdout.readline()
-    yield server
-    server.kill()
-    server.wait()
+    try:
+        assert server.stdout is not None
+        assert "offered" in server.stdout.readline()
+        yield server
+    finally:
+        server.kill()
+        server.wait()
+
+
+@pytest.fixture
+def loop(setup_file: Path, tmp_path: Path) -> "Iterator[subprocess.Popen[str]]":
+    """The loop on the robot of the setup file."""
+    change(setup_file, BY_ACTION)
+    with offered_loop(setup_file, tmp_path / "episodes", "belief") as server:
+        yield server
 
 
 def test_a_task_is_run_told_of_and_asked_about(
@@ -179,6 +191,7 @@ def test_a_task_is_cancelled_refused_and_ended_by_ctrl_c(
     wait_for(lambda: done(state)[-1][1] == "stood")
 
     handle = client.send()
+    assert handle.accepted
     got = handle.get_result_async()  # a server that has ended cannot be asked any more
     wait_for(lambda: len(done(state)) == 3, 90)
     loop.send_signal(signal.SIGINT)
@@ -191,3 +204,28 @@ def test_a_task_is_cancelled_refused_and_ended_by_ctrl_c(
     assert isinstance(last, Ended)
     assert last.because == "cancelled"
     wait_for(lambda: done(state)[-1][1] == "stood")
+
+
+def test_a_trial_goes_on_after_its_loop_was_killed(
+    start: Start, setup_file: Path, client: Client, state: Path, tmp_path: Path
+) -> None:
+    """Killed in a skill, and the episode resumed: a look comes before anything else."""
+    start(seconds=0.5)
+    change(setup_file, BY_ACTION)
+    with offered_loop(setup_file, tmp_path / "episodes", "tpvqa"):
+        assert client.send().accepted
+        wait_for(lambda: state.exists() and len(done(state)) >= 3)
+    (episode,) = (tmp_path / "episodes").iterdir()
+    restarted = time.time()
+    command = [str(Path(sys.executable).parent / "tpvqa"), "resume", str(episode)]
+    command += ["--world", f"ros2:{setup_file}", "--vlm", "oracle"]
+    resumed = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert resumed.returncode == 0, resumed.stdout + resumed.stderr
+    events = read_episode(episode)
+    assert isinstance(events[-1], Ended)
+    assert events[-1].completed
+    at = next(n for n, event in enumerate(events) if isinstance(event, Resumed))
+    assert min(stamps(until_next_action(events, at))) > restarted
+    check_looks(events)
+    begun = [action for action, what in done(state) if what == "begins"]
+    assert begun == [event.action.pddl() for event in events if isinstance(event, Acting)]

@@ -5,7 +5,9 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +16,14 @@ import pytest
 
 from tests_robot.conftest import Act
 from tests_robot.ros2.conftest import Open, Start, wait_for
+from tests_robot.ros2.standin import StandIn
 from tpvqa import Atom, Task
 from tpvqa.errors import ConfigError
+from tpvqa.observation import LateDepth, Observation
 from tpvqa.worlds import Report
 from tpvqa.worlds.capabilities import truth_of
 from tpvqa_robots.ros2.link import Link, said, seen
+from tpvqa_robots.ros2.server import SkillServer
 from tpvqa_robots.ros2.setup import load_setup
 
 
@@ -54,6 +59,37 @@ def test_pictures_depth_joints_and_facts_arrive(start: Start, open_world: Open, 
     later = world.observe()
     assert later.time > seen.time
     assert {fact.atom for fact in later.facts} == {Atom("hand_empty")}
+
+
+def test_what_nobody_hears_is_not_drawn(task: Task, state: Path) -> None:
+    """Of two cameras one is heard, and of that one the picture alone."""
+    from sensor_msgs.msg import CompressedImage
+
+    drawn: list[str] = []
+
+    class Watched(StandIn):
+        def look(self, view: str) -> Observation:
+            drawn.append(view)
+            frame = super().look(view).frames[view]
+            return Observation(frames={view: replace(frame, depth=LateDepth(self.measure))})
+
+        def measure(self) -> bytes:
+            drawn.append("depth")
+            return b""
+
+    server = SkillServer(Watched(task, state, set(), 0.05), task, ("overhead", "wrist"), rate=20.0)
+    serving, eye = threading.Thread(target=server.run), Link("eye")
+    try:
+        heard: list[Any] = []
+        eye.watch(CompressedImage, "/tpvqa/overhead/image", heard.append)
+        eye.start()
+        serving.start()
+        wait_for(lambda: len(heard) >= 3)
+    finally:
+        server.close()
+        serving.join(30)
+        eye.close()
+    assert set(drawn) == {"overhead"}
 
 
 @pytest.mark.parametrize("quality", [said, seen])

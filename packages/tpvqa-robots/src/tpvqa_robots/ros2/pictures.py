@@ -79,26 +79,39 @@ def intrinsics_of(message: Any) -> Intrinsics | None:
     return Intrinsics(k[0], k[4], k[2], k[5], int(message.width), int(message.height))
 
 
-def messages_of(frame: Frame, stamp: float, frame_id: str) -> tuple[Any, Any | None, Any | None]:
-    """`CompressedImage`, depth as `Image` in 32FC1, and `CameraInfo` of a frame."""
-    from sensor_msgs.msg import CameraInfo, CompressedImage
+def picture_message(frame: Frame, stamp: float, frame_id: str) -> Any:
+    """A frame's picture as `CompressedImage`."""
+    from sensor_msgs.msg import CompressedImage
+
+    message = set_stamp(CompressedImage(), stamp, frame_id)
+    message.format = frame.media_type.rpartition("/")[2]
+    message.data = frame.data
+    return message
+
+
+def depth_message(frame: Frame, stamp: float, frame_id: str) -> Any | None:
+    """Its depth as `Image` in 32FC1; None where it has none."""
     from sensor_msgs.msg import Image as ImageMessage
 
-    picture = set_stamp(CompressedImage(), stamp, frame_id)
-    picture.format = frame.media_type.rpartition("/")[2]
-    picture.data = frame.data
-    depth = info = None
-    if frame.depth is not None:
-        metres = np.ascontiguousarray(frame.depth.metres, np.float32)
-        depth = set_stamp(ImageMessage(), stamp, frame_id)
-        depth.height, depth.width = metres.shape
-        depth.encoding, depth.step = "32FC1", metres.shape[1] * 4
-        depth.data = metres.tobytes()
-    if frame.intrinsics is not None:
-        of = frame.intrinsics
-        info = set_stamp(CameraInfo(), stamp, frame_id)
-        info.width, info.height = of.width, of.height
-        info.distortion_model, info.d = "plumb_bob", [0.0] * 5
-        info.k = [of.fx, 0.0, of.cx, 0.0, of.fy, of.cy, 0.0, 0.0, 1.0]
-        info.p = [of.fx, 0.0, of.cx, 0.0, 0.0, of.fy, of.cy, 0.0, 0.0, 0.0, 1.0, 0.0]
-    return picture, depth, info
+    if frame.depth is None:
+        return None
+    metres = np.ascontiguousarray(frame.depth.metres, np.float32)
+    message = set_stamp(ImageMessage(), stamp, frame_id)
+    message.height, message.width = metres.shape
+    message.encoding, message.step = "32FC1", metres.shape[1] * 4
+    message.data = metres.tobytes()
+    return message
+
+
+def info_message(frame: Frame, stamp: float, frame_id: str) -> Any | None:
+    """Its pinhole as `CameraInfo`; None where it is not known."""
+    from sensor_msgs.msg import CameraInfo
+
+    if frame.intrinsics is None:
+        return None
+    of, message = frame.intrinsics, set_stamp(CameraInfo(), stamp, frame_id)
+    message.width, message.height = of.width, of.height
+    message.distortion_model, message.d = "plumb_bob", [0.0] * 5
+    message.k = [of.fx, 0.0, of.cx, 0.0, of.fy, of.cy, 0.0, 0.0, 1.0]
+    message.p = [of.fx, 0.0, of.cx, 0.0, 0.0, of.fy, of.cy, 0.0, 0.0, 0.0, 1.0, 0.0]
+    return message

@@ -23,7 +23,7 @@ from tpvqa_robots.ros2.job import Job, Standing, Teller, Wanted
 from tpvqa_robots.ros2.lease import Lease
 from tpvqa_robots.ros2.lifecycle import Stages, begin
 from tpvqa_robots.ros2.link import Link, said
-from tpvqa_robots.ros2.pictures import messages_of, set_stamp
+from tpvqa_robots.ros2.pictures import depth_message, info_message, picture_message, set_stamp
 from tpvqa_robots.skills.protocol import Robot
 
 ACTION = "execute_skill"
@@ -69,7 +69,7 @@ class SkillServer:
         self._job: Job | None = None
         self._stop, self._active, self._over = "", False, threading.Event()
         self._lock = threading.RLock()
-        self._cameras: Mapping[str, tuple[Any, Any, Any]] = {}
+        self._cameras: Mapping[str, Sequence[tuple[Any, Callable[..., Any]]]] = {}
         self._fronts: list[ByTopics | ByAction] = []
         stages = Stages(
             self._configure, self._activate, self._deactivate, self._cleanup, self.close
@@ -113,9 +113,9 @@ class SkillServer:
         self._true = link.speaker(String, f"{prefix}/{wire.TRUTH}", said(1))
         self._cameras = {
             view: (
-                link.speaker(CompressedImage, f"{prefix}/{view}/image", said(1)),
-                link.speaker(Image, f"{prefix}/{view}/depth", said(1)),
-                link.speaker(CameraInfo, f"{prefix}/{view}/camera_info", said(1)),
+                (link.speaker(Image, f"{prefix}/{view}/depth", said(1)), depth_message),
+                (link.speaker(CameraInfo, f"{prefix}/{view}/camera_info", said(1)), info_message),
+                (link.speaker(CompressedImage, f"{prefix}/{view}/image", said(1)), picture_message),
             )
             for view in self._views
         }
@@ -142,12 +142,15 @@ class SkillServer:
         self._link.clear()
 
     def _show(self) -> None:
-        """Publish what the robot sees and feels now."""
-        for view, (pictures, depths, infos) in self._cameras.items():
+        """Publish what the robot sees and feels now; what nobody hears is not even drawn."""
+        for view, camera in self._cameras.items():
+            heard = [each for each in camera if each[0].get_subscription_count()]
+            if not heard:
+                continue
             stamp = self._link.now()
             frame = self._robot.look(view).frames[view]
-            picture, depth, info = messages_of(frame, stamp, view)
-            for speaker, message in ((depths, depth), (infos, info), (pictures, picture)):
+            for speaker, made_of in heard:
+                message = made_of(frame, stamp, view)
                 if message is not None:
                     speaker.publish(message)
         stamp, felt = self._link.now(), self._robot.state()

@@ -175,8 +175,9 @@ class RunTaskServer:
                 broke, interrupted = "interrupted by the user", True
             finally:
                 self._running = None
+        if interrupted:
+            self._over.set()  # no other goal is taken
         self._finish(handle, ended, folder, broke)
-        self._busy = False
         if interrupted:
             raise KeyboardInterrupt
 
@@ -213,9 +214,11 @@ class RunTaskServer:
                 goal.canceled()
             else:
                 goal.abort()
+            self._busy = False  # whoever hears the result may send the next goal at once
             sent.set()
             return result
 
         handle.execute(finish)
         if not sent.wait(SETTLES):
+            self._busy = False
             print("the result of a goal could not be sent", file=sys.stderr)

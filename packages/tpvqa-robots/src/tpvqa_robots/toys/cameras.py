@@ -44,6 +44,7 @@ class Errors:
         return Errors(*(factor * error for error in astuple(self)))
 
 
+Draw = Callable[[Any, str], NDArray[Any]]
 NO_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -99,6 +100,7 @@ class Cameras:
         self._mj = mj = load_mujoco()
         self._model, self._errors = model, errors
         self._lock = threading.Lock()
+        self._latest: dict[tuple[str, str], tuple[NDArray[np.float64], NDArray[Any]]] = {}
         try:
             self._canvas = mj.Renderer(model, HEIGHT, WIDTH)
         except Exception as error:
@@ -146,18 +148,30 @@ class Cameras:
         errors, shape = self._errors, (HEIGHT, WIDTH)
 
         def draw() -> NDArray[np.uint8]:
-            rgb = self.picture(self._then(at), camera).astype(np.float64)
+            rgb = self._of(at, camera, self.picture).astype(np.float64)
             rgb += chance_array(*key).normal(0, 1, rgb.shape) * errors.colour
             return np.clip(np.rint(rgb), 0, 255).astype(np.uint8)
 
         def measure() -> NDArray[np.float64]:
-            depth, drawn = self._distances(self._then(at), camera), chance_array(*key)
+            depth = self._of(at, camera, self._distances).copy()
+            drawn = chance_array(*key)
             drawn.normal(0, 1, (*shape, 3))  # those of the colours
             depth += drawn.normal(0, 1, shape) * errors.depth * depth**2
             depth[drawn.random(shape) < errors.missing] = np.nan
             return depth
 
         return Shot(draw, measure, lambda depth: self._points(depth, here, turned, place), here)
+
+    def _of(self, qpos: NDArray[np.float64], camera: str, draw: Draw) -> NDArray[Any]:
+        """What is drawn of a camera's view with the joints so, without errors.
+
+        Pictures are mostly asked for while nothing moves: the latest of each kind is drawn once.
+        """
+        key = camera, draw.__name__
+        known = self._latest.get(key)
+        if known is None or not np.array_equal(known[0], qpos):
+            known = self._latest[key] = qpos, draw(self._then(qpos), camera)
+        return known[1]
 
     def _then(self, qpos: NDArray[np.float64]) -> Any:
         """The bodies, cameras and lights as they were with the joints so."""
