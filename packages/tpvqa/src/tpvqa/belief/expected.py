@@ -69,10 +69,16 @@ class Expected:
         """How many answers of this VLM it takes to notice a mistake."""
         return 1 + (self._to_be_sure() - 1) * max(0.0, 5 * self.settling().share - 4)
 
-    def exhausting(self) -> float:
-        """After how many answers in one scene a question has said what it can: as errors last, what
-        it has not settled then it never will."""
-        return EXHAUSTED * self._to_be_sure()
+    def exhausted(self, yeses: int, noes: int) -> bool:
+        """Whether a question has said what it can in one scene, by its answers there.
+
+        As errors last, what it has not settled then it never will: neither where many more answers
+        came than it takes, at what they are trusted now, nor where so many more agree than it
+        takes, at what the calibration says of them.
+        """
+        by_words = answers_to_be_sure(self.right)
+        many = yeses + noes >= EXHAUSTED * self._to_be_sure()
+        return many or abs(yeses - noes) >= 2 * EXHAUSTED * by_words
 
     def _to_be_sure(self) -> float:
         rates = self._calibration.whole.rates

@@ -77,10 +77,13 @@ class Asking:
 
     def unexhausted(self, questions: Sequence[FactQuestion]) -> list[FactQuestion]:
         """Those that may still say something in this scene."""
-        replies = self.now.replies
-        most = self._evidence.exhausting() * max(1, len(self._views))
-        told = {each for each, known in replies.items() if len(known.replies) >= most}
+        told = {family for family, known in self.now.replies.items() if self._exhausted(known)}
         return [each for each in questions if each.family not in told]
+
+    def _exhausted(self, known: Replies) -> bool:
+        scenes = max(1, len(self._views))
+        yeses, noes = (known.replies.count(each) // scenes for each in (Reply.YES, Reply.NO))
+        return self._evidence.exhausted(yeses, noes)
 
     def likely(self, question: FactQuestion) -> float:
         """The probability that yes is right."""
