@@ -11,7 +11,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Ended
 from tpvqa.events.events import Acting, Asked
-from tpvqa.pddl import Atom, load_task
+from tpvqa.pddl import Atom, load_task, task_from_text
 
 TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
 OF_MANY = 80
@@ -61,3 +61,37 @@ def test_what_was_held_may_be_nowhere_and_its_hand_is_free() -> None:
     assert len(lost) == 1
     assert lost[0] < 0.1 * sum(shares) + 1e-9
     assert all(Atom("hand_empty") in after for after in shares.values())
+
+
+def test_facts_of_no_object_and_hands_that_were_full_at_first_are_undone_too() -> None:
+    task = load_task(TOYS / "domain.pddl", TOYS / "collect.pddl")
+    blue = Atom("in_hand", ("blue_container",))
+    held = task.init - {Atom("hand_empty"), Atom("on", ("blue_container", "table"))} | {blue}
+    model = FaultModel(task)
+    model.begin(held)
+    begun = model.number(JointState(held))
+    placed = model.outcomes(task.action("place", ("blue_container", "table")))[begun].intended
+    assert placed is not None
+    for share, after in model.undone(placed):
+        assert 0 < share <= 1
+        state = model.state(after)
+        assert (blue in state) != (Atom("hand_empty") in state)
+
+
+def test_what_is_lost_is_not_held_twice() -> None:
+    """A hand that changed its tool takes the old one back only where that is free."""
+    task = task_from_text(
+        """(define (domain d) (:requirements :strips :typing) (:types tool)
+        (:predicates (rack ?t - tool) (held ?t - tool))
+        (:action swap :parameters (?t ?u - tool) :precondition (and (held ?t) (rack ?u))
+          :effect (and (held ?u) (rack ?t) (not (held ?t)) (not (rack ?u)))))""",
+        """(define (problem p) (:domain d) (:objects saw drill - tool)
+        (:init (held drill) (rack saw)) (:goal (held saw)))""",
+    )
+    model = FaultModel(task)
+    begun = model.number(JointState(task.init))
+    swapped = model.outcomes(task.action("swap", ("drill", "saw")))[begun].intended
+    assert swapped is not None
+    for _, after in model.undone(swapped):
+        for group in task.mutex_groups:
+            assert len(group.atoms & model.state(after)) <= 1

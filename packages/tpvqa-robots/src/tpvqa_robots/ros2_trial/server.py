@@ -197,7 +197,7 @@ class RunTaskServer:
         return run(running, self._topics.told(name, feedback), stopped_by)
 
     def _finish(self, handle: Any, ended: Ended | None, folder: Path, broke: str) -> None:
-        result, sent = self._kind.Result(message=broke), Flag()
+        result, sent, late = self._kind.Result(message=broke), Flag(), Flag()
         result.episode = str(folder) if folder.is_dir() else ""
         if ended is not None:
             reached = ended.believed_goal if ended.completed is None else ended.completed
@@ -214,11 +214,13 @@ class RunTaskServer:
                 goal.canceled()
             else:
                 goal.abort()
-            self._busy = False  # whoever hears the result may send the next goal at once
+            if not late.is_set():
+                self._busy = False  # whoever hears the result may send the next goal at once
             sent.set()
             return result
 
         handle.execute(finish)
         if not sent.wait(SETTLES):
+            late.set()
             self._busy = False
             print("the result of a goal could not be sent", file=sys.stderr)

@@ -201,6 +201,7 @@ class Chooser:
         choice = Choice(self.following[0], self._model.state(ranked[0][0]))
         sure = sum(weight for number, weight in ranked if self.ahead.is_goal(number)) > IDLE
         allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
+        allowed = allowed and self._worth_a_try(choice)
         if self.settles >= SETTLED or sure or not allowed:
             self._unseen.following = ()
         if not self.blind or not self.following:

@@ -96,7 +96,7 @@ class Expected:
         """How many times its price a question has to be worth.
 
         What decides between two actions is worth no more where a failed task costs more; so it is
-        not much, unless answers are probably worth nothing.
+        `DEARER` at most, unless answers are probably worth nothing.
 
         Args:
             times: How many times as much a failed task costs as it would if all could be seen.

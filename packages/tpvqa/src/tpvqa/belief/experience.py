@@ -6,7 +6,7 @@ Kept from one trial to the next, as one small JSON file.
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.trust import GRID, Trust
@@ -37,7 +37,7 @@ class Experience(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    version: Literal[1] = 1
+    version: Literal[1, 2] = 2
     failure: Cases
     disturbance: Cases
     trust: (
@@ -50,6 +50,14 @@ class Experience(BaseModel):
     vlm: str = ""
     calibration: str = ""
     trials: int = Field(default=0, ge=0)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_today(cls, data: object) -> object:
+        """Of a file of version 1 what it knows of failures: its factors were others."""
+        if isinstance(data, dict) and data.get("version") == 1:
+            return {**data, "version": 2, "trust": None}
+        return data
 
     @field_validator("trust")
     @classmethod

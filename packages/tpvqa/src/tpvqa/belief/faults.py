@@ -142,7 +142,7 @@ class FaultModel:
     Args:
         task: Gives the actions and the initial state.
         rules: What the world file says about faults; without one a disturbance puts a fact back
-            to what held before it.
+            to what held before it, or seldom loses a thing.
     """
 
     def __init__(self, task: Task, rules: FaultRules | None = None):

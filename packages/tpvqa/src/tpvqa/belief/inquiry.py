@@ -96,6 +96,7 @@ class Inquirer:
             picture: The latest one since the last action; None where there was none.
             views: From where a question may find an answer, the next one first.
             person: Whether a person can be asked.
+            dearer: How many times its price a question of the VLM has to be worth.
         """
         if budget.questions <= 0:
             return None

@@ -12,7 +12,7 @@ LOST = 0.1
 
 
 class BackToBefore:
-    """An undone fact gives way to what held before it in its groups.
+    """An undone fact gives way to what held before it in its groups, or a thing is lost.
 
     A thing that is no longer in the hand is where it was taken from; the hand is free again. A
     fact without an exactly-one group is false again. Numbers go with that as with the action that
@@ -115,11 +115,12 @@ class BackToBefore:
         """
         homes = self.homes(atom)
         holders = [number for number in homes if number not in self._places]
-        earlier = [before(number) for number in holders]
-        freed = {each for each in earlier if each and atom.arguments[0] not in each.arguments}
-        if len(holders) == len(homes) or None in earlier or not freed:
+        earlier, left = [before(number) for number in holders], state - {atom}
+        if not atom.arguments or len(holders) == len(homes) or None in earlier:
             return None
-        return state - {atom} | freed
+        freed = {each for each in earlier if each and atom.arguments[0] not in each.arguments}
+        free = all(left.isdisjoint(self._rivals_of(each)) for each in freed)
+        return left | freed if freed and free else None
 
     def _rivals_of(self, atom: Atom) -> State:
         """The facts that do not hold together with one."""

@@ -133,7 +133,8 @@ class Unseen:
             left = self._ended()[:, None]
             for action in reversed(self.following):
                 left = self._costs.action + self._back(action, left)
-            kept = left[self._steps.places([number for number, _ in led_states]), 0] - KEEPING
+            kept = left[self._steps.places([number for number, _ in led_states]), 0]
+            kept = kept - KEEPING * self._costs.action
             first, *rest = self.following
             found.setdefault(first, []).append(self._whole(np.maximum(kept, 0.0), ranked))
             self._after[first] = tuple(rest)

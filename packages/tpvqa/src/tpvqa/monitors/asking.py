@@ -75,16 +75,6 @@ class Asking:
             min(costs.looks_per_step - now.looks, looks),
         )
 
-    def unexhausted(self, questions: Sequence[FactQuestion]) -> list[FactQuestion]:
-        """Those that may still say something in this scene."""
-        told = {family for family, known in self.now.replies.items() if self._exhausted(known)}
-        return [each for each in questions if each.family not in told]
-
-    def _exhausted(self, known: Replies) -> bool:
-        scenes = max(1, len(self._views))
-        yeses, noes = (known.replies.count(each) // scenes for each in (Reply.YES, Reply.NO))
-        return self._evidence.exhausted(yeses, noes)
-
     def likely(self, question: FactQuestion) -> float:
         """The probability that yes is right."""
         return self._belief.probability(question.atom, question.alike)
@@ -92,11 +82,19 @@ class Asking:
     def open_views(self, question: FactQuestion) -> list[str | None]:
         """From where a question may still find an answer, the next one first.
 
-        They go round: another view repeats the last answer less than the same one does.
+        They go round: another view repeats the last answer less than the same one does. From none
+        where it has said since the last action what it can (`Evidence.exhausted`).
         """
+        if self._exhausted(question.text):
+            return []
         turn = self.now.looks % len(self._views) if self._views else 0
         views: list[str | None] = [*self._views[turn:], *self._views[:turn]]
         return [view for view in views or [None] if not self._evidence.silent(question.text, view)]
+
+    def _exhausted(self, text: str) -> bool:
+        heard, scenes = self.now.heard, max(1, len(self._views))
+        yeses, noes = (heard[text, each] // scenes for each in (Reply.YES, Reply.NO))
+        return self._evidence.exhausted(yeses, noes)
 
     def inquire(self, inquiry: Inquiry) -> Generator[Request, Any, None]:
         """Ask what was found to be worth asking."""
@@ -126,6 +124,7 @@ class Asking:
             answer = answers[0]
             self.questions += 1
             now.questions += 1
+            now.heard[question.text, answer.reply] += 1
             self._evidence.take(question, answer, now.picture, now.view)
         if answer.reply in (Reply.YES, Reply.NO):
             told = Replies(question.atoms, before)

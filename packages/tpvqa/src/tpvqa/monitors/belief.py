@@ -174,7 +174,7 @@ class BeliefMonitor(Learning, PlainArguments):
         """What is known now, for the next trial; None where nothing is learned."""
         if self.trust is None:
             return None
-        last = None if self._now.learned else self._now.action
+        last = None if self._now.learned or self._chooser.blind else self._now.action
         return Experience.of(self.chances.carried(last), self.trust, self._trials + 1)
 
     @property
@@ -329,9 +329,8 @@ class BeliefMonitor(Learning, PlainArguments):
         return self._errand is not None
 
     def _inquire(self, step: Step, table: Table) -> Inquiry | None:
-        asking = self._asking
-        budget, views, likely = asking.budget(), asking.open_views, asking.likely
-        questions = asking.unexhausted(self._about_needs(step.book))
+        budget, views = self._asking.budget(), self._asking.open_views
+        questions, likely = self._about_needs(step.book), self._asking.likely
         if self._asks_all and budget.questions > 0:
             new = (q for q in questions if q.family not in self._now.replies and views(q))
             if doubted := [each for each in new if DOUBT < likely(each) < 1 - DOUBT]:
@@ -345,7 +344,7 @@ class BeliefMonitor(Learning, PlainArguments):
             budget,
             picture=self._now.picture,
             views=views,
-            person=asking.person,
+            person=self._asking.person,
             dearer=self.evidence.dearer(self._chooser.ahead.dearer),
         )
         if found is None and self._chooser.settles >= TELLING and self._ways.closely(self._now):

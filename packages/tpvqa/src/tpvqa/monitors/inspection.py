@@ -1,5 +1,6 @@
 """What was seen and answered since the last action."""
 
+from collections import Counter
 from dataclasses import dataclass, field
 
 from tpvqa.belief.last_answer import Picture
@@ -51,6 +52,7 @@ class Inspection:
         questions: Questions so far.
         learned: Whether it was learned already how the action came out.
         replies: What was answered to each question.
+        heard: How often the VLM gave each answer to each text.
         noticed: What the robot's own skill and sensors told of facts.
     """
 
@@ -61,6 +63,7 @@ class Inspection:
     questions: int = 0
     learned: bool = False
     replies: dict[str, Replies] = field(default_factory=dict)
+    heard: Counter[tuple[str, Reply]] = field(default_factory=Counter)
     noticed: dict[Atom, Noticed] = field(default_factory=dict)
     _about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)
 
