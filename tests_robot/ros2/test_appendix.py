@@ -1,9 +1,7 @@
 """The trial of the paper's appendix as three processes over DDS, one of which is killed in it."""
 
 import json
-import os
 import subprocess
-import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -14,7 +12,7 @@ import pytest
 
 from tests_robot.ros2.conftest import BY_ACTION, change, wait_for
 from tests_robot.ros2.looks import check_looks, stamps, until_next_action
-from tests_robot.ros2.test_run_task import Client, offered_loop
+from tests_robot.ros2.test_run_task import Client, offered, offered_loop
 from tpvqa.episodes import read_episode
 from tpvqa.events import Ended, Event
 from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided
@@ -40,16 +38,9 @@ KILLED = "(pick_up cyan_container)"
 @contextmanager
 def offered_toys(kept: Path) -> "Iterator[subprocess.Popen[str]]":
     """`tpvqa skill-server` on the toys' table, once its topics are offered."""
-    command = [str(Path(sys.executable).parent / "tpvqa"), "skill-server", "collect_toys"]
-    command += ["--world", "toys:appendix", "--seed", "1", "--rate", "0.5", "--keep", str(kept)]
-    server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ.copy())
-    try:
-        assert server.stdout is not None
-        assert "offered" in server.stdout.readline()
+    words = ["--world", "toys:appendix", "--seed", "1", "--rate", "0.5", "--keep", str(kept)]
+    with offered("skill-server", "collect_toys", *words) as server:
         yield server
-    finally:
-        server.kill()
-        server.wait()
 
 
 def at_work(client: Client) -> list[str]:

@@ -88,10 +88,16 @@ def client(domain: int) -> Iterator[Client]:
 @contextmanager
 def offered_loop(setup_file: Path, out: Path, monitor: str) -> "Iterator[subprocess.Popen[str]]":
     """`tpvqa ros2-run` on the robot of a setup file, once its action is offered."""
-    command = [str(Path(sys.executable).parent / "tpvqa"), "ros2-run", "collect_toys"]
-    command += ["--world", f"ros2:{setup_file}", "--vlm", "oracle", "--monitor", monitor]
+    words = ["--world", f"ros2:{setup_file}", "--vlm", "oracle", "--monitor", monitor]
+    with offered("ros2-run", "collect_toys", *words, "--out", str(out)) as server:
+        yield server
+
+
+@contextmanager
+def offered(*words: str) -> "Iterator[subprocess.Popen[str]]":
+    """A server of `tpvqa`, once it says that something is offered; killed in the end."""
     server = subprocess.Popen(
-        [*command, "--out", str(out)],
+        [str(Path(sys.executable).parent / "tpvqa"), *words],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -99,7 +105,7 @@ def offered_loop(setup_file: Path, out: Path, monitor: str) -> "Iterator[subproc
     )
     try:
         assert server.stdout is not None
-        assert "offered" in server.stdout.readline()
+        assert any("offered" in line for line in server.stdout)
         yield server
     finally:
         server.kill()

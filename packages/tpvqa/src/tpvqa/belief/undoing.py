@@ -1,6 +1,7 @@
 """What a disturbance leads to where no world file says it."""
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 
 from tpvqa.belief.places import things
 from tpvqa.pddl import Atom, State, Task
@@ -27,13 +28,19 @@ class BackToBefore:
         self._groups: list[State] = []
         self._homes: dict[Atom, list[int]] = {}
         self._rivals: dict[Atom, State] = {}
-        places = {thing.places for thing in things(task)}
         for group in task.mutex_groups:
             if group.exactly_one:
                 for each in group.atoms:
                     self._homes.setdefault(each, []).append(len(self._groups))
                 self._groups.append(group.atoms)
-        self._places = {n for n, each in enumerate(self._groups) if any(p <= each for p in places)}
+
+    @cached_property
+    def _places(self) -> frozenset[int]:
+        """The groups that say where a thing is, by number. Only who believes needs them: they take
+        the task to be grounded."""
+        places = {thing.places for thing in things(self._task)}
+        groups = enumerate(self._groups)
+        return frozenset(number for number, each in groups if any(p <= each for p in places))
 
     @property
     def groups(self) -> int:

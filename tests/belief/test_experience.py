@@ -1,0 +1,35 @@
+"""What is kept from trial to trial, in files of today and of before."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tpvqa.belief.experience import Experience
+from tpvqa.belief.trust import GRID
+from tpvqa.errors import CalibrationError
+
+OLD = {"version": 1, "failure": [3.0, 9.0], "disturbance": [1.0, 2.0], "trials": 4}
+
+
+def test_of_a_file_of_before_failures_are_kept_and_not_what_answers_were_worth(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "old.json").write_text(json.dumps({**OLD, "trust": [1.0] * len(GRID)}))
+    known = Experience.load(tmp_path / "old.json")
+    assert known is not None
+    assert (known.failure, known.trials, known.trust) == ((3.0, 9.0), 4, None)
+    known.save(tmp_path / "new.json")
+    assert Experience.load(tmp_path / "new.json") == known
+
+
+def test_what_was_learned_of_answers_today_comes_back(tmp_path: Path) -> None:
+    known = Experience(failure=(3, 9), disturbance=(1, 2), trust=(1.0,) * len(GRID))
+    known.save(tmp_path / "new.json")
+    assert Experience.load(tmp_path / "new.json") == known
+
+
+def test_a_file_of_a_version_to_come_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "new.json").write_text(json.dumps({**OLD, "version": 3}))
+    with pytest.raises(CalibrationError, match="version"):
+        Experience.load(tmp_path / "new.json")
