@@ -34,6 +34,8 @@ SUSPECTED = 0.02
 """That chance where an action that rests on the fact seems never to work."""
 MANY = 48
 """Joint states from which on it saves time to leave out of them what is next to impossible."""
+ANYWAY = 0.25
+"""How often a picture shows what holds no more, where a file says that it may."""
 PERSON = 0.99
 """How often a person's answer is right."""
 PERSONS_VIEW = "a person's"
@@ -77,6 +79,7 @@ class Evidence(Expected):
         self._readings = Readings(belief, calibration.sensors)
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
+        self._affirmed: set[str] = set()
 
     def weigh(self, belief: Weighed) -> None:
         """Weigh something else from now on; what was answered before stays known."""
@@ -113,6 +116,7 @@ class Evidence(Expected):
         self._tell_apart()
         self._opened.clear()
         self._silent.clear()
+        self._affirmed.clear()
 
     def _take_report(self, action: str, *, failed: bool) -> None:
         known = of_action(self._skills, action)
@@ -185,8 +189,8 @@ class Evidence(Expected):
         self._silent.add((text, view))
 
     def silent(self, text: str, view: str | None) -> bool:
-        """Whether that was noted."""
-        return (text, view) in self._silent
+        """Whether that was noted, or a yes has said all that there is to it."""
+        return (text, view) in self._silent or text in self._affirmed
 
     @property
     def unseen(self) -> bool:
@@ -204,6 +208,8 @@ class Evidence(Expected):
         if answer.reply not in (Reply.YES, Reply.NO):
             self.silence(question.text, view)
             return 1.0
+        if question.still_shown and answer.reply is Reply.YES:
+            return self._take_affirmed(question)
         atoms = question.atoms
         last = self._hearing.last.get(question.text)
         if last is not None and picture in last.pictures:
@@ -241,6 +247,22 @@ class Evidence(Expected):
         self._weigh_answer(question, heard, cases, taken, said, rates, view)
         self._words.ask(question)
         return probable
+
+    def _take_affirmed(self, question: FactQuestion) -> float:
+        """Weigh the belief by a yes that may be right where the fact does not hold any more.
+
+        That belongs to the scene, so that a second yes says nothing more; and it says nothing of
+        the VLM.
+        """
+        if question.text in self._affirmed:
+            return 1.0
+        self._affirmed.add(question.text)
+        true = self._weighed.probability(question.atom, question.alike)
+        expected = self.worth.expect(self._rates(question))
+        if_true, wrongly = expected.yes_if_true, expected.yes_if_false
+        if_false = ANYWAY * if_true + (1 - ANYWAY) * wrongly
+        self._weighed.see(question.atoms, if_true, if_false)
+        return true * if_true + (1 - true) * if_false
 
     def _weigh_answer(
         self,

@@ -80,7 +80,11 @@ def in_vain(task: Task, given: Wordings, file: Path | None) -> Iterator[Finding]
                 line_of_entry(file, "predicates", name),
             )
     known = task.reachable_atoms | task.init
-    for section, patterns in (("never_asked", given.never_asked), ("in_doubt", given.in_doubt)):
+    for section, patterns in (
+        ("never_asked", given.never_asked),
+        ("in_doubt", given.in_doubt),
+        ("still_shown", given.still_shown),
+    ):
         for pattern in patterns:
             fact = pattern.fact
             idle = fact.predicate not in task.fluents | task.derived  # its reason may be that
