@@ -3,9 +3,9 @@
 A robot that does at random what its skills can do; a picture after every action, labelled by
 contacts and poses. Every episode is a table of its own, and a group: one of `--toys` stands on it,
 each in its turn, and with `--looks` its wood, its room and its light are drawn. Pictures for a test
-come from other episodes: `--first`. A problem with all toys, and questions in which each is called
-the same, "toy to collect", are written beside them; so what was taught with some can be asked about
-others.
+come from other episodes: `--first`. Whichever toy it is, the labels call it `toy`, the questions
+"toy to collect"; these and the problem with it lie beside the pictures. So what was taught with
+some toys can be asked about others, and about any task's toy in a trial with these questions.
 """
 
 import argparse
@@ -16,7 +16,7 @@ from pathlib import Path
 
 import yaml
 
-from tpvqa import Task, load_task
+from tpvqa import Atom, Task, load_task
 from tpvqa.chance import chance
 from tpvqa.tasks import find_task
 from tpvqa_robots import tasks
@@ -43,7 +43,7 @@ def main(folder: Path, count: int, first: int, toys: Sequence[str], looks: bool)
     episode = first
     while len(made) < count:
         task = of_toys[episode % len(of_toys)]
-        made += _episode(folder, task, episode, looks)
+        made += _episode(folder, task, episode, looks=looks)
         manifest = {"version": 1, "domain": task.domain_name, "pictures": made}
         (folder / "manifest.json").write_text(json.dumps(manifest, indent=1))
         print(f"{len(made)} pictures", flush=True)
@@ -57,9 +57,11 @@ def _task(toy: str) -> Task:
     return load_task(domain, domain.with_name(files.problem.name))
 
 
-def _episode(folder: Path, task: Task, episode: int, looks: bool) -> list[dict[str, object]]:
+def _episode(folder: Path, task: Task, episode: int, *, looks: bool) -> list[dict[str, object]]:
     actions, made = task.ground_actions(), []
-    seen = [atom.pddl() for atom in sorted(task.reachable_atoms) if atom.predicate != "hand_empty"]
+    seen = [
+        _called(atom) for atom in sorted(task.reachable_atoms) if atom.predicate != "hand_empty"
+    ]
     world = ToysWorld(task, mishaps=Mishaps(slip=0.15, bad=0.1), seed=SEED, episode=episode)
     if looks:
         _another_look(world, episode)
@@ -79,13 +81,19 @@ def _episode(folder: Path, task: Task, episode: int, looks: bool) -> list[dict[s
             {
                 "file": name,
                 "sha256": sha256(data).hexdigest(),
-                "state": sorted(atom.pddl() for atom in true),
+                "state": sorted(map(_called, true)),
                 "seen": seen,
                 "group": f"episode {episode}",
             }
         )
     world.close()
     return made
+
+
+def _called(atom: Atom) -> str:
+    """A fact as the labels have it: every toy is `toy`."""
+    names = ("toy" if name.startswith("toy_") else name for name in atom.arguments)
+    return Atom(atom.predicate, tuple(names)).pddl()
 
 
 def _another_look(world: ToysWorld, episode: int) -> None:
@@ -102,18 +110,18 @@ def _another_look(world: ToysWorld, episode: int) -> None:
 
 
 def _beside(folder: Path, task: Task) -> None:
-    """A problem with all toys, and questions in which they have one name."""
+    """The domain, a problem with one toy, and questions that call all toys the same."""
     own = Path(tasks.__file__).parent
-    things = " ".join(f"toy_{toy}" for toy in TOYS)
     (folder / "problem.pddl").write_text(
         f"(define (problem toys)\n  (:domain {task.domain_name})\n"
-        f"  (:objects blue_container cyan_container - container {things} - toy)\n"
-        "  (:init (found table) (hand_empty))\n  (:goal (hand_empty)))\n"
+        f"  (:objects blue_container cyan_container - container toy - toy)\n"
+        "  (:init (found table) (hand_empty) (on blue_container table) (on cyan_container table)\n"
+        "         (on toy table))\n  (:goal (hand_empty)))\n"
     )
     (folder / "domain.pddl").write_text((own / "domain.pddl").read_text())
     text = (own / "questions.yaml").read_text()
     questions = yaml.load(text, yaml.BaseLoader)  # where "on" is a word
-    questions["objects"] = {f"toy_{toy}": CALLED for toy in TOYS}
+    questions["objects"] = dict.fromkeys(("toy", *(f"toy_{toy}" for toy in TOYS)), CALLED)
     questions["never_asked"] += [
         {"fact": f"(found {place})", "because": "it is in every image"}
         for place in ("table", "goal_area")

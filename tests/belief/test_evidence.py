@@ -211,9 +211,12 @@ def test_what_is_still_shown_is_believed_a_little_once_and_says_nothing_of_the_v
     assert before < once < before / ANYWAY
     evidence.take(question, told(Reply.YES), 1, None)
     assert odds(belief) == once
-    assert evidence.silent(question.text, "any view")
+    other = replace(question, text="Are you near the plate?", wording=1, first=question.text)
+    assert evidence.affirmed(other)
+    assert evidence.take(other, Answer(other, Reply.YES), 1, None) == 1.0
+    assert odds(belief) == once
     assert isclose(evidence.worth.nothing, nothing)
     evidence.acted("find")
-    assert not evidence.silent(question.text, None)
+    assert not evidence.affirmed(question)
     evidence.take(question, told(Reply.NO), 2, None)
     assert odds(belief) < once

@@ -116,6 +116,8 @@ def test_a_file_says_what_a_picture_may_show_though_it_holds_no_more(
     assert not QuestionBook.load(None, task).fact(lit).still_shown
     with pytest.raises(QuestionsError, match=r"questions.yaml:1: .*no predicate 'powr'"):
         book_of(task, tmp_path, "still_shown: [(powr)]")
+    with pytest.raises(QuestionsError, match=r"questions.yaml:1: .*without 'not'"):
+        book_of(task, tmp_path, "still_shown: ['(not (lit ?l))']")
 
 
 def test_a_fact_of_objects_that_no_action_is_for_is_not_asked(tmp_path: Path) -> None:

@@ -189,8 +189,12 @@ class Evidence(Expected):
         self._silent.add((text, view))
 
     def silent(self, text: str, view: str | None) -> bool:
-        """Whether that was noted, or a yes has said all that there is to it."""
-        return (text, view) in self._silent or text in self._affirmed
+        """Whether that was noted."""
+        return (text, view) in self._silent
+
+    def affirmed(self, question: FactQuestion) -> bool:
+        """Whether a yes has said all that there is to it in this scene, in whatever words."""
+        return question.family in self._affirmed
 
     @property
     def unseen(self) -> bool:
@@ -254,9 +258,9 @@ class Evidence(Expected):
         That belongs to the scene, so that a second yes says nothing more; and it says nothing of
         the VLM.
         """
-        if question.text in self._affirmed:
+        if self.affirmed(question):
             return 1.0
-        self._affirmed.add(question.text)
+        self._affirmed.add(question.family)
         true = self._weighed.probability(question.atom, question.alike)
         expected = self.worth.expect(self._rates(question))
         if_true, wrongly = expected.yes_if_true, expected.yes_if_false

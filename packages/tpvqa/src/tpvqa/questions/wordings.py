@@ -159,7 +159,7 @@ def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None 
         of_objects=of_objects,
         never_asked=patterns("never_asked", _never_asked),
         in_doubt=patterns("in_doubt", _pattern),
-        still_shown=patterns("still_shown", _pattern),
+        still_shown=patterns("still_shown", _still_shown),
         ways=_ways(sections.get("ways")),
         notices=notices,
         numbers=named(
@@ -296,6 +296,15 @@ def _pattern(place: Place, task: Task) -> NeverAsked:
         return NeverAsked.parse(place.text(), task)
     except PDDLError as error:
         raise place.wrong(error.message) from None
+
+
+def _still_shown(place: Place, task: Task) -> NeverAsked:
+    pattern = _pattern(place, task)
+    if pattern.positive is False:
+        raise place.wrong(
+            f"name the fact itself that is still shown, without 'not': {pattern.fact}"
+        )
+    return pattern
 
 
 def _never_asked(place: Place, task: Task) -> NeverAsked:
