@@ -41,3 +41,25 @@ def test_what_nothing_shows_is_not_repeated_for_ever() -> None:
     """After many tries in a row the next one is predicted to fail, and changes no belief."""
     assert isfinite(cost_of_disinfecting(0.25))
     assert cost_of_disinfecting(0.9999) == inf
+
+
+def test_what_has_moved_nothing_is_not_done_again_for_what_is_hardly_so() -> None:
+    """Q-MDP, which takes all to be known after the next action, would do it for ever."""
+    model = FaultModel(TASK)
+    dirty = TASK.apply(TASK.init, OPEN)
+    clean = TASK.apply(dirty, DISINFECT)
+    belief, plan = Belief(model), (OPEN, DISINFECT, CLOSE)
+    belief.begin([(clean, 0.94), (dirty, 0.06)])
+    chooser = Chooser(model, Costs())
+    chooser.ahead.add(AnnotatedPlan(TASK, plan, regress(TASK, plan)))
+
+    def disinfecting() -> float:
+        table = chooser.table(belief, Rates(0.25, 0.0, 0.0), plan)
+        return float(table.expected[[each.action for each in table.choices].index(DISINFECT)])
+
+    assert isfinite(disinfecting())
+    chooser.acted(belief, DISINFECT)  # and the belief is what it was
+    assert disinfecting() == inf
+    belief.begin([(clean, 0.4), (dirty, 0.6)])
+    chooser.acted(belief, DISINFECT)
+    assert isfinite(disinfecting())

@@ -19,7 +19,7 @@ def unseen(task: Task, *, left: int | None = None) -> tuple[Chooser, Belief]:
     chooser, belief = Chooser(model, Costs()), Belief(model)
     needs = regress(task, tuple(plan), task.init)
     chooser.ahead.add(AnnotatedPlan(task, tuple(plan), needs))
-    chooser.settles = 0.0
+    chooser.settles, chooser.blind = 0.0, True
     chooser.ahead.allow(left)
     return chooser, belief
 
@@ -65,3 +65,33 @@ def test_what_is_certain_ends_what_is_followed() -> None:
         state = task.apply(state, action)
     belief.begin([(state, 1.0)])
     assert chooser.table(belief, Rates(), plan_of(task)).best.action is None
+
+
+def test_what_is_followed_is_decided_anew_where_something_else_is_noticed() -> None:
+    task = load_task("clean_dishes")
+    chooser, belief = unseen(task)
+    plan = tuple(plan_of(task))
+    first = chooser.table(belief, Rates(), plan).best.action
+    assert first is not None
+    chooser.acted(belief, first)
+    belief.act(first, Rates(0.25, 0.25, 0.0))
+    left = chooser.following
+    chooser.table(belief, Rates(), plan)
+    assert chooser.following == left
+    effect = next(e.literal.atom for e in first.effects if e.literal.positive)
+    belief.see((effect,), 0.01, 0.99)  # as by a sensor
+    chooser.table(belief, Rates(), plan)
+    assert len(chooser.following) > len(left)  # all of it, from the start
+
+
+def test_what_cannot_be_done_is_not_followed() -> None:
+    task = load_task("clean_dishes")
+    chooser, belief = unseen(task)
+    plan = tuple(plan_of(task))
+    assert chooser.table(belief, Rates(), plan).best.action is not None
+    second = next(a for a in chooser.following if a != plan[0])
+    while chooser.following[0] != second:
+        chooser.acted(belief, chooser.following[0])
+    belief.begin([(task.init, 1.0)])  # nothing of it has worked
+    assert not task.applicable(task.init, second)
+    assert chooser.table(belief, Rates(), plan).best.action != second

@@ -43,6 +43,7 @@ class Belief:
     Attributes:
         led: Where the last action has led; None before the first.
         outcome_weights: How it came out.
+        predicted: The weights after it, before anything was seen.
     """
 
     def __init__(
@@ -63,7 +64,7 @@ class Belief:
         self._masses: tuple[tuple[int, ...], Floats] | None = None
         self.led: Led | None = None
         self.outcome_weights: OutcomeWeights | None = None
-        self._predicted: dict[int, float] = {}
+        self.predicted: dict[int, float] = {}
         self._earlier: Earlier = (), np.zeros((0, 3, 0))
         self._likely: list[float] | None = None
         self._held: tuple[tuple[int, ...], Facts] | None = None
@@ -83,7 +84,7 @@ class Belief:
         self.weights = {numbers[number]: weight for number, weight in self.weights.items()}
         self._noise.renumbered(numbers)
         self.outcome_weights = None
-        self._predicted = {}
+        self.predicted = {}
         self._ranked = self._summed = self._masses = self._likely = self._held = None
         return numbers
 
@@ -237,7 +238,7 @@ class Belief:
         numbers = tuple(self.weights)
         noise = dict(zip(numbers, self._noise.rows(numbers), strict=True))
         scenes = {n: self.model.kind(n) for n in (*self.weights, *after)}
-        self._predicted = dict(after)
+        self.predicted = dict(after)
         self._become(after)
         self.led = Led.of(led, self.weights, noise, scenes, self.told)
         self._noise.take(self.led.after, self.led.mixed)
@@ -304,7 +305,7 @@ class Belief:
             return
 
         def likelihood(number: int) -> float:
-            whole = self._predicted[number]
+            whole = self.predicted[number]
             success = came.success.get(number, 0.0) / whole
             idle = came.achieved.get(number, 0.0) / whole
             return success * succeeded + idle * achieved + (1 - success - idle) * failed
@@ -367,7 +368,7 @@ class Belief:
         if self.outcome_weights is None:
             return {}
         now = self.weights if weights is None else weights
-        return self.outcome_weights.shares(now, self._predicted)
+        return self.outcome_weights.shares(now, self.predicted)
 
     def earlier_shares(
         self, weights: Mapping[int, float] | None = None
@@ -384,7 +385,7 @@ class Belief:
         if self.outcome_weights is None:
             return self._earlier[0], self._earlier[1][:LOOKED_BACK]
         numbers = tuple(self.weights)
-        came = self.outcome_weights.came(numbers, self._predicted)
+        came = self.outcome_weights.came(numbers, self.predicted)
         earlier = aligned(self._earlier[1], self._earlier[0], numbers)
         return numbers, np.concatenate([came[None], earlier])[:LOOKED_BACK]
 

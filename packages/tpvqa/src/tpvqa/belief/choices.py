@@ -10,7 +10,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.by_kind import Kinds
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.doing import IDLE, Doing
+from tpvqa.belief.doing import IDLE, Doing, moved
 from tpvqa.belief.falls import fallen
 from tpvqa.belief.far_off import FarOff
 from tpvqa.belief.faults import FaultModel, JointState, Rates
@@ -26,10 +26,10 @@ from tpvqa.pddl import Action, State, Task
 
 CHOICES = 6
 """Choices that are compared, at most."""
-BLIND = 0.3
-"""Where answers settle less, what was decided is followed to its end, as nothing new is seen."""
 SEVERAL = 40
 """Joint states of which it is worked out what they cost unseen; the rest is lost."""
+NEWS = 0.3
+"""What is followed unseen is decided anew where so much of the belief has moved since."""
 DISTURBED = 0.02
 """In joint states of at least this probability it is worked out what disturbances would cost."""
 
@@ -55,6 +55,7 @@ class Chooser:
         seeking: From where plans are wanted.
         settles: How far answers settle what is in doubt.
         finding: What it costs to ask so much.
+        blind: Whether answers say nothing, so that what was decided is followed to its end.
     """
 
     def __init__(
@@ -69,7 +70,8 @@ class Chooser:
         self.ahead = Outlook(model, costs, self._sight, task)
         self._commitments = Commitments(model, self.ahead, self._sight)
         self._unseen = Unseen(model, self.ahead, costs)
-        self.settles, self.finding = 1.0, 0.0
+        self.settles, self.finding, self.blind = 1.0, 0.0, False
+        self._decided: Mapping[int, float] | None = None
         self._going: dict[tuple[int, bool], float] = {}
         self._led: dict[Action, dict[tuple[int, bool], list[tuple[float, int, float]]]] = {}
         self._near: dict[Action, dict[int, float]] = {}
@@ -77,15 +79,10 @@ class Chooser:
         self._step = costs.action + min(checks, 0.1 * costs.action)
         self._far = FarOff(model, self.ahead, self._step)
         self._worked_out_for: tuple[int, Rates] | None = None
-        self._doing = Doing(self.ahead, self._far, self._sight)
+        self._doing = Doing(model, self.ahead, self._far, self._sight)
         self.seeking = Seeking(model, self.ahead, self._commitments)
         self.rounds = Rounds(costs.action)
         self.changes_left: int | None = None
-
-    @property
-    def blind(self) -> bool:
-        """Whether answers say so little that what was decided is followed to its end."""
-        return self.settles < BLIND
 
     @property
     def plans(self) -> Sequence[AnnotatedPlan]:
@@ -94,7 +91,9 @@ class Chooser:
 
     def acted(self, belief: Belief, action: Action) -> None:
         """Note that an action is executed, before the belief predicts what it leads to."""
+        self._decided = None
         self.seeking.acted()
+        self._doing.acted(action, belief.ranked())
         self.rounds.acted(belief.ranked()[0][0], action)
         state = self._model.state(belief.ranked()[0][0])
         if self.settles < SETTLED and not self.follows(action, state):
@@ -111,6 +110,7 @@ class Chooser:
         self._unseen.renumbered(model)
         self._near.clear()
         self._far.renumbered(model)
+        self._doing.renumbered(model, numbers)
         self.rounds.renumbered(numbers)
 
     def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
@@ -139,10 +139,11 @@ class Chooser:
                 known.clear()
             self._far.forget()
         ranked = belief.ranked()
-        followed = self._followed_now(ranked, current, barred)
+        kinds = np.array([self._model.kind(number) for number, _ in ranked], np.intp)
+        news = moved(ranked, belief.predicted if self._decided is None else self._decided)
+        followed = self._followed_now(ranked, kinds, current, barred, news)
         if followed is not None:
             return followed
-        kinds = np.array([self._model.kind(number) for number, _ in ranked], np.intp)
         self._commitments.unplanned.clear()
         choices = [
             each
@@ -188,25 +189,32 @@ class Chooser:
         table = Table(told, numbers, weights, costs, works)
         if self.blind and table.best.action is not None:
             self._unseen.follow(table.best.action)
-            return self._followed_now(ranked, current, barred) or table
+            self._decided = dict(ranked)
+            return self._followed_now(ranked, kinds, current, barred) or table
         return table
 
     def _followed_now(
-        self, ranked: Sequence[tuple[int, float]], current: Sequence[Action], barred: Action | None
+        self,
+        ranked: Sequence[tuple[int, float]],
+        kinds: Kinds,
+        current: Sequence[Action],
+        barred: Action | None,
+        news: float = 0.0,
     ) -> Table | None:
         """What is being followed unseen, as the only choice; None where nothing is, or where it
         need not, or may not, be followed any more."""
         if not self.following:
             return None
         choice = Choice(self.following[0], self._model.state(ranked[0][0]))
+        weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
         sure = sum(weight for number, weight in ranked if self.ahead.is_goal(number)) > IDLE
         allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
         allowed = allowed and self._worth_a_try(choice)
-        if self.settles >= SETTLED or sure or not allowed:
+        possible = allowed and float(self._doing.of(choice, ranked, kinds)[1] @ weights) >= 0
+        if self.settles >= SETTLED or sure or not possible or news > NEWS:
             self._unseen.following = ()
         if not self.blind or not self.following:
             return None
-        weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
         ones = np.ones((len(ranked), 1))
         return Table((choice,), numbers, weights, ones, ones[None])
 

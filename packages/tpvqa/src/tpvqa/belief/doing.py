@@ -1,18 +1,26 @@
 """What makes an action worth being a choice: that it would change something, and that it can."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from tpvqa.belief.by_kind import Kinds
 from tpvqa.belief.far_off import FarOff, Ranked
+from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import Outlook
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice
+from tpvqa.pddl import Action, State
 
 IDLE = 0.97
 """An action that changes nothing with this probability is no choice."""
 HIDDEN_IDLE = 0.99
 """The same where nothing shows what it does: what it costs tells how often it is worth doing."""
+AGAIN_IDLE = 0.5
+"""The same of an action that was just done, and moved nothing of the belief."""
+STILL = 0.02
+"""Where less of the belief has moved, nothing has."""
 FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
 
@@ -21,13 +29,25 @@ class Doing:
     """Says what choices have to do.
 
     Args:
+        model: Says which actions are one skill.
         ahead: How often skills fail.
         far: What actions do in joint states.
         sight: What can be seen.
     """
 
-    def __init__(self, ahead: Outlook, far: FarOff, sight: Sight):
-        self._ahead, self._far, self._sight = ahead, far, sight
+    def __init__(self, model: FaultModel, ahead: Outlook, far: FarOff, sight: Sight):
+        self._model, self._ahead, self._far, self._sight = model, ahead, far, sight
+        self._last: Action | None = None
+        self._before: Mapping[int, float] = {}
+
+    def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
+        """Go on with a model that gives joint states other numbers."""
+        self._model = model
+        self._before = {numbers.get(number, -1): w for number, w in self._before.items()}
+
+    def acted(self, action: Action, ranked: Ranked) -> None:
+        """Note that an action is executed, where joint states have some probabilities."""
+        self._last, self._before = action, dict(ranked)
 
     def of(self, choice: Choice, ranked: Ranked, kinds: Kinds) -> Floats:
         """What a choice has to do in the joint states: what it would change, and what it can, each
@@ -41,7 +61,25 @@ class Doing:
             hidden = self._sight.hidden(choice.action)
             works = 1 - self._ahead.skill(choice.action).failure if hidden else 1.0
             idle = HIDDEN_IDLE if hidden else IDLE
+            if self._again(choice.action, choice.state, ranked):
+                idle = AGAIN_IDLE
             undone, possible = self._far.does(choice.action, ranked, kinds).T[:2]
             found[0] = works * undone * possible - (1 - idle)
             found[1] = undone * (possible - FLOOR)
         return found
+
+    def _again(self, action: Action, state: State, ranked: Ranked) -> bool:
+        """Whether an action was just done, and moved nothing of the belief."""
+        if self._last is None or not self._model.same_skill(action, self._last, state):
+            return False
+        return moved(ranked, self._before) < STILL
+
+
+def moved(ranked: Ranked, before: Mapping[int, float]) -> float:
+    """How much of a belief has moved since it was another one.
+
+    Args:
+        ranked: The joint states with their probabilities.
+        before: Their probabilities then.
+    """
+    return sum(max(0.0, weight - before.get(number, 0.0)) for number, weight in ranked)

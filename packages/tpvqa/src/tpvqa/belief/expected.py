@@ -133,7 +133,7 @@ class Expected:
             each, known = expected or next(further), doubts.get(family)
             if known is None or settled(each) > settled(known[1]):
                 doubts[family] = true, each
-        return Settling.of(doubts.values(), new)
+        return Settling.of(doubts, new)
 
     def _rates(self, question: FactQuestion) -> Pair:
         rates = self._calibration.group(question).rates

@@ -1,14 +1,23 @@
 """What looking at another scene may come to, before an action: how much of the doubt it settles."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Container, Mapping
+from dataclasses import dataclass, field
 
 from tpvqa.belief.information import Reliability, answers_to_know, settled
 
 DOUBTED = 0.01
 """A fact whose probability times its contrary's is less is in no doubt."""
+ABLE = 0.5
+"""Where answers settle so much of a doubt, it is for later when it was not asked about."""
+IN_VAIN = 2.0
+"""How many times what a task would cost, if all were seen, may be done in vain."""
+WHOLE = 0.25
+"""The variance of a fact of which nothing is known."""
 SETTLED = 0.97
 """Where answers settle so much, what follows an action is taken to be seen."""
+
+Doubt = tuple[float, float]
+"""The variance of a fact, and how far answers settle it."""
 
 
 def in_doubt(likely: float) -> bool:
@@ -24,28 +33,30 @@ class Settling:
         share: How far answers settle the doubts there are: 1 where they do, 0 where they would say
             nothing, as they are worth nothing or only say the same again.
         answers: How many that takes.
-        doubt: How much is in doubt: the variances of the facts, together.
+        doubts: What is in doubt, by question.
     """
 
     share: float = 1.0
     answers: float = 0.0
-    doubt: float = 0.0
+    doubts: Mapping[str, Doubt] = field(default_factory=dict)
 
     @staticmethod
-    def of(facts: Iterable[tuple[float, Reliability]], new: Reliability) -> "Settling":
+    def of(facts: Mapping[str, tuple[float, Reliability]], new: Reliability) -> "Settling":
         """Of some facts.
 
         Args:
-            facts: Their probabilities, and what is expected of answers about them.
+            facts: Their probabilities, and what is expected of answers about them, by question.
             new: What is expected where nothing is in doubt.
         """
-        doubts = [each for each in facts if in_doubt(each[0])]
-        weights = [likely * (1 - likely) for likely, _ in doubts]
+        known = {name: each for name, each in facts.items() if in_doubt(each[0])}
+        doubts = {
+            name: (likely * (1 - likely), settled(each)) for name, (likely, each) in known.items()
+        }
         if not doubts:
-            return Settling(settled(new), 0.0)
-        told = sum(w * settled(each) for w, (_, each) in zip(weights, doubts, strict=True))
-        answers = sum(answers_to_know(likely, DOUBTED, each) for likely, each in doubts)
-        return Settling(told / sum(weights), answers, sum(weights))
+            return Settling(settled(new))
+        told = sum(variance * share for variance, share in doubts.values())
+        answers = sum(answers_to_know(likely, DOUBTED, each) for likely, each in known.values())
+        return Settling(told / sum(variance for variance, _ in doubts.values()), answers, doubts)
 
 
 @dataclass(slots=True)
@@ -53,32 +64,62 @@ class Settlings:
     """How far doubts were settled until now, where that is less than it may be thought.
 
     What is not worth asking now will not be worth it later. So how far answers are expected to
-    settle what is in doubt counts as often as they have.
+    settle what is in doubt counts as often as they have: a doubt that could be settled and was not
+    asked about is for later, and counts for nothing. And it counts less the more was done that
+    brought the goal no nearer.
 
     Attributes:
         expected: After how many actions what has come of it counts as much as what is expected.
+        dearer: How many times its price a question has to be worth, as more is expected of answers
+            than came of them: the root of how many times as much.
     """
 
     expected: float = 3.0
+    dearer: float = 1.0
     _settled: float = 0.0
     _left: float = 0.0
-    _first: float | None = None
-    _last: float = 0.0
+    _acted: int = 0
+    _whole: float | None = None
+    _first: Mapping[str, Doubt] | None = None
+    _last: Mapping[str, Doubt] = field(default_factory=dict)
 
-    def taken(self, found: Settling) -> float:
-        """How far answers can be expected to settle what is in doubt."""
-        if self._first is None:
-            self._first = found.doubt
-        self._last = found.doubt
+    def taken(self, found: Settling, ahead: float) -> float:
+        """How far answers can be expected to settle what is in doubt.
+
+        Args:
+            found: What looking may come to.
+            ahead: What the rest would cost if all were seen, in actions.
+        """
+        self._first = found.doubts if self._first is None else self._first
+        self._whole = ahead if self._whole is None else self._whole
+        self._last = found.doubts
+        self.dearer = 1.0
         if found.share >= SETTLED:
             return found.share
         so_far = self.expected + self._settled
-        return found.share * so_far / (so_far + self._left)
+        kept = self._nearer(ahead) * so_far / (so_far + self._left)
+        self.dearer = kept**-0.5
+        return found.share * kept
 
-    def acted(self) -> None:
-        """Note that there is an action: what is in doubt still was not settled."""
-        if self._first:
-            left = min(self._last / self._first, 1.0)
-            self._left += left
-            self._settled += 1 - left
+    def _nearer(self, ahead: float) -> float:
+        """How far what was done has brought the goal nearer."""
+        whole = max(self._whole or 0.0, 1.0)
+        nearer = min(max(whole - ahead, 0.0), self._acted)
+        return (IN_VAIN * whole + nearer) / (IN_VAIN * whole + self._acted)
+
+    def acted(self, asked: Container[str]) -> None:
+        """Note that there is an action: what is in doubt still was not settled.
+
+        Args:
+            asked: The questions that were asked since the last one.
+        """
+        self._acted += 1
+        first, last = self._first or {}, self._last
+        tried = [
+            name for name, each in {**first, **last}.items() if name in asked or each[1] < ABLE
+        ]
+        was, left = (sum(each[name][0] for name in tried if name in each) for each in (first, last))
+        whole = max(was, WHOLE)
+        self._left += min(left / whole, 1.0)
+        self._settled += max(was - left, 0.0) / whole
         self._first = None

@@ -75,6 +75,11 @@ class Ways:
         """The facts that the known plans need."""
         return frozenset[Atom]().union(*(plan.atoms() for plan in self.chooser.plans))
 
+    def left(self, belief: Belief) -> float:
+        """What the rest would cost from the most probable joint state if all were seen, in
+        actions."""
+        return self.chooser.ahead.to_go(belief.ranked()[0][0]) / self._costs.action
+
     def annotated(self, step: Step) -> AnnotatedPlan | None:
         """The plan that is followed, with what its steps need; None where it was not valid."""
         actions = step.plan.actions
