@@ -43,13 +43,13 @@ def test_what_nothing_shows_is_not_repeated_for_ever() -> None:
     assert cost_of_disinfecting(0.9999) == inf
 
 
-def test_what_has_moved_nothing_is_not_done_again_for_what_is_hardly_so() -> None:
+def test_what_was_done_and_promised_nothing_is_not_done_again() -> None:
     """Q-MDP, which takes all to be known after the next action, would do it for ever."""
     model = FaultModel(TASK)
     dirty = TASK.apply(TASK.init, OPEN)
     clean = TASK.apply(dirty, DISINFECT)
     belief, plan = Belief(model), (OPEN, DISINFECT, CLOSE)
-    belief.begin([(clean, 0.94), (dirty, 0.06)])
+    belief.begin([(clean, 0.4), (dirty, 0.6)])
     chooser = Chooser(model, Costs())
     chooser.ahead.add(AnnotatedPlan(TASK, plan, regress(TASK, plan)))
 
@@ -57,9 +57,13 @@ def test_what_has_moved_nothing_is_not_done_again_for_what_is_hardly_so() -> Non
         table = chooser.table(belief, Rates(0.25, 0.0, 0.0), plan)
         return float(table.expected[[each.action for each in table.choices].index(DISINFECT)])
 
+    def done(failure: float) -> float:
+        chooser.acted(belief, DISINFECT)
+        belief.act(DISINFECT, Rates(failure, 0.0, 0.0))
+        return disinfecting()
+
     assert isfinite(disinfecting())
-    chooser.acted(belief, DISINFECT)  # and the belief is what it was
-    assert disinfecting() == inf
-    belief.begin([(clean, 0.4), (dirty, 0.6)])
-    chooser.acted(belief, DISINFECT)
+    assert isfinite(done(0.9))
+    assert done(0.99) == inf
+    chooser.acted(belief, OPEN)  # another one
     assert isfinite(disinfecting())

@@ -89,9 +89,13 @@ def test_what_cannot_be_done_is_not_followed() -> None:
     chooser, belief = unseen(task)
     plan = tuple(plan_of(task))
     assert chooser.table(belief, Rates(), plan).best.action is not None
-    second = next(a for a in chooser.following if a != plan[0])
-    while chooser.following[0] != second:
-        chooser.acted(belief, chooser.following[0])
-    belief.begin([(task.init, 1.0)])  # nothing of it has worked
+    chooser.acted(belief, plan[0])
+    belief.act(plan[0], Rates(1.0, 0.0, 0.0))  # and it has not worked
+    left = chooser.following
+    while chooser.following[0] == plan[0]:
+        chooser.acted(belief, plan[0])
+        belief.act(plan[0], Rates(1.0, 0.0, 0.0))
+    second = chooser.following[0]
+    assert second in left
     assert not task.applicable(task.init, second)
     assert chooser.table(belief, Rates(), plan).best.action != second

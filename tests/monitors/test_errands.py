@@ -60,7 +60,7 @@ def gone(tmp_path_factory: pytest.TempPathFactory) -> tuple[Ended, list[Event]]:
         ended, events = run(folder, episode)
         if errands(events) and {Reply.YES, Reply.NO} & {*seen(events)}:
             return ended, events
-    raise AssertionError("nothing was gone back to in any of forty trials")
+    raise AssertionError("nothing was gone back to and seen in any of forty trials")
 
 
 def seen(events: list[Event]) -> list[Reply]:

@@ -95,7 +95,7 @@ class Belief:
         """
         self.model.begin(max(states, key=lambda each: each[1])[0])
         self.suppose(self.noise)
-        self.outcome_weights = self.led = None
+        self.outcome_weights, self.led, self.predicted = None, None, {}
         self._earlier = (), np.zeros((0, 3, 0))
         self._become({self.model.number(JointState(state)): weight for state, weight in states})
 

@@ -110,7 +110,7 @@ class Chooser:
         self._unseen.renumbered(model)
         self._near.clear()
         self._far.renumbered(model)
-        self._doing.renumbered(model, numbers)
+        self._doing.renumbered(model)
         self.rounds.renumbered(numbers)
 
     def way(self, state: State) -> tuple[int, AnnotatedPlan] | None:
@@ -140,6 +140,7 @@ class Chooser:
             self._far.forget()
         ranked = belief.ranked()
         kinds = np.array([self._model.kind(number) for number, _ in ranked], np.intp)
+        self._doing.predicted(belief.predicted)
         news = moved(ranked, belief.predicted if self._decided is None else self._decided)
         followed = self._followed_now(ranked, kinds, current, barred, news)
         if followed is not None:

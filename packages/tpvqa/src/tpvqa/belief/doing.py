@@ -11,16 +11,16 @@ from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import Outlook
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice
-from tpvqa.pddl import Action, State
+from tpvqa.pddl import Action
 
 IDLE = 0.97
 """An action that changes nothing with this probability is no choice."""
 HIDDEN_IDLE = 0.99
 """The same where nothing shows what it does: what it costs tells how often it is worth doing."""
-AGAIN_IDLE = 0.5
-"""The same of an action that was just done, and moved nothing of the belief."""
+AGAIN_IDLE = 0.1
+"""The same of an action that was just done, and of which nothing was expected any more."""
 STILL = 0.02
-"""Where less of the belief has moved, nothing has."""
+"""Nothing is expected of what moves less of the belief."""
 FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
 
@@ -39,15 +39,19 @@ class Doing:
         self._model, self._ahead, self._far, self._sight = model, ahead, far, sight
         self._last: Action | None = None
         self._before: Mapping[int, float] = {}
+        self._in_vain = False
 
-    def renumbered(self, model: FaultModel, numbers: Mapping[int, int]) -> None:
-        """Go on with a model that gives joint states other numbers."""
+    def renumbered(self, model: FaultModel) -> None:
+        """Go on with a model that gives joint states other numbers, before the next action."""
         self._model = model
-        self._before = {numbers.get(number, -1): w for number, w in self._before.items()}
 
     def acted(self, action: Action, ranked: Ranked) -> None:
         """Note that an action is executed, where joint states have some probabilities."""
-        self._last, self._before = action, dict(ranked)
+        self._last, self._before, self._in_vain = action, dict(ranked), False
+
+    def predicted(self, after: Mapping[int, float]) -> None:
+        """Note where that is expected to have led, before anything was seen of it."""
+        self._in_vain = bool(self._before) and moved(list(after.items()), self._before) < STILL
 
     def of(self, choice: Choice, ranked: Ranked, kinds: Kinds) -> Floats:
         """What a choice has to do in the joint states: what it would change, and what it can, each
@@ -61,18 +65,12 @@ class Doing:
             hidden = self._sight.hidden(choice.action)
             works = 1 - self._ahead.skill(choice.action).failure if hidden else 1.0
             idle = HIDDEN_IDLE if hidden else IDLE
-            if self._again(choice.action, choice.state, ranked):
-                idle = AGAIN_IDLE
+            if self._last and self._model.same_skill(choice.action, self._last, choice.state):
+                idle = AGAIN_IDLE if self._in_vain else idle
             undone, possible = self._far.does(choice.action, ranked, kinds).T[:2]
             found[0] = works * undone * possible - (1 - idle)
             found[1] = undone * (possible - FLOOR)
         return found
-
-    def _again(self, action: Action, state: State, ranked: Ranked) -> bool:
-        """Whether an action was just done, and moved nothing of the belief."""
-        if self._last is None or not self._model.same_skill(action, self._last, state):
-            return False
-        return moved(ranked, self._before) < STILL
 
 
 def moved(ranked: Ranked, before: Mapping[int, float]) -> float:

@@ -1,6 +1,6 @@
 """Answers as evidence: each weighs the belief by what it adds to those before."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import replace
 
 import numpy as np
@@ -191,6 +191,11 @@ class Evidence(Expected):
     def silent(self, text: str, view: str | None) -> bool:
         """Whether that was noted."""
         return (text, view) in self._silent
+
+    @property
+    def unanswered(self) -> Set[str]:
+        """The questions that were found to have no answer since the last action."""
+        return {text for text, _ in self._silent}
 
     def affirmed(self, question: FactQuestion) -> bool:
         """Whether a yes has said all that there is to it in this scene, in whatever words."""

@@ -29,6 +29,8 @@ DEARER = 2.0
 
 Pair = tuple[float, float]
 _NONE = np.zeros(0, bool)
+WORTHLESS = 0.1
+"""Answers that settle less of a doubt that was never asked about are worth nothing."""
 EXHAUSTED = 5.0
 """So many times the answers that it takes to be sure are asked for in one scene, at most."""
 
@@ -102,6 +104,10 @@ class Expected:
             times: How many times as much a failed task costs as it would if all could be seen.
         """
         return times if self.worth.nothing > 0.5 else min(times, DEARER)
+
+    def worthless(self, found: Settling) -> bool:
+        """Whether answers are probably worth nothing, or are known to be."""
+        return self.worth.nothing > 0.5 or found.new < WORTHLESS
 
     def settling(self, questions: Iterable[FactQuestion] = ()) -> Settling:
         """How far the answers in another scene would settle what is in doubt.

@@ -10,7 +10,7 @@ DOUBTED = 0.01
 ABLE = 0.5
 """Where answers settle so much of a doubt, it is for later when it was not asked about."""
 IN_VAIN = 2.0
-"""How many times what a task would cost, if all were seen, may be done in vain."""
+"""How many times the steps of a task may be done in vain."""
 WHOLE = 0.25
 """The variance of a fact of which nothing is known."""
 SETTLED = 0.97
@@ -34,11 +34,13 @@ class Settling:
             nothing, as they are worth nothing or only say the same again.
         answers: How many that takes.
         doubts: What is in doubt, by question.
+        new: How far answers would settle a doubt that was never asked about.
     """
 
     share: float = 1.0
     answers: float = 0.0
     doubts: Mapping[str, Doubt] = field(default_factory=dict)
+    new: float = 1.0
 
     @staticmethod
     def of(facts: Mapping[str, tuple[float, Reliability]], new: Reliability) -> "Settling":
@@ -53,10 +55,11 @@ class Settling:
             name: (likely * (1 - likely), settled(each)) for name, (likely, each) in known.items()
         }
         if not doubts:
-            return Settling(settled(new))
+            return Settling(settled(new), new=settled(new))
         told = sum(variance * share for variance, share in doubts.values())
         answers = sum(answers_to_know(likely, DOUBTED, each) for likely, each in known.values())
-        return Settling(told / sum(variance for variance, _ in doubts.values()), answers, doubts)
+        share = told / sum(variance for variance, _ in doubts.values())
+        return Settling(share, answers, doubts, settled(new))
 
 
 @dataclass(slots=True)
@@ -79,19 +82,19 @@ class Settlings:
     _settled: float = 0.0
     _left: float = 0.0
     _acted: int = 0
-    _whole: float | None = None
+    _whole: int = 1
     _first: Mapping[str, Doubt] | None = None
     _last: Mapping[str, Doubt] = field(default_factory=dict)
 
-    def taken(self, found: Settling, ahead: float) -> float:
+    def taken(self, found: Settling, ahead: int) -> float:
         """How far answers can be expected to settle what is in doubt.
 
         Args:
             found: What looking may come to.
-            ahead: What the rest would cost if all were seen, in actions.
+            ahead: How many steps the goal is away.
         """
         self._first = found.doubts if self._first is None else self._first
-        self._whole = ahead if self._whole is None else self._whole
+        self._whole = max(self._whole, ahead)
         self._last = found.doubts
         self.dearer = 1.0
         if found.share >= SETTLED:
@@ -101,11 +104,10 @@ class Settlings:
         self.dearer = kept**-0.5
         return found.share * kept
 
-    def _nearer(self, ahead: float) -> float:
+    def _nearer(self, ahead: int) -> float:
         """How far what was done has brought the goal nearer."""
-        whole = max(self._whole or 0.0, 1.0)
-        nearer = min(max(whole - ahead, 0.0), self._acted)
-        return (IN_VAIN * whole + nearer) / (IN_VAIN * whole + self._acted)
+        allowed, nearer = IN_VAIN * self._whole, min(self._whole - ahead, self._acted)
+        return (allowed + nearer) / (allowed + self._acted)
 
     def acted(self, asked: Container[str]) -> None:
         """Note that there is an action: what is in doubt still was not settled.

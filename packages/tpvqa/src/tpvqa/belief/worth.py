@@ -170,11 +170,6 @@ class Worth:
         return 0.0 if self.trust is None else self.trust.weights[0]
 
     @property
-    def worthless(self) -> bool:
-        """Whether answers are more probably worth nothing than not."""
-        return self.nothing > 0.5
-
-    @property
     def lasts(self) -> bool:
         """Whether errors may last at all, as far as is worth a thought."""
         return float(self._weights[self.shares > 0].sum()) > LASTS

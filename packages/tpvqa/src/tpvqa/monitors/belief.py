@@ -280,7 +280,7 @@ class BeliefMonitor(Learning, PlainArguments):
         for chooser in self._choosers:
             chooser.acted(self.belief, step.action)
         self.belief.act(step.action, self.chances.rates_of(step.action))
-        self._settlings.acted(self._now.replies)
+        self._settlings.acted(self._now.replies.keys() | self.evidence.unanswered)
         self._asking.begin(step.action)
         before = {atom: self.belief.probability(atom) for atom in self._now.effects}
         self.evidence.acted(step.action.name, failed=step.reported)
@@ -318,8 +318,8 @@ class BeliefMonitor(Learning, PlainArguments):
     def _settle(self, step: Step) -> None:
         """Work out how far it can be found out what is true, and what that costs."""
         found = self.evidence.settling(self._about_needs(step.book))
-        self._chooser.settles = self._settlings.taken(found, self._task_ways.left(self.belief))
-        self._chooser.blind = self.evidence.worth.worthless
+        self._chooser.settles = self._settlings.taken(found, self._task_ways.ahead(self.belief))
+        self._chooser.blind = self.evidence.worthless(found)
         self._chooser.finding = found.answers * self.costs.question + self.costs.look
 
     def _sets_out(self, step: Step) -> Generator[Request, Any, bool]:

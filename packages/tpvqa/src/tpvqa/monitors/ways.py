@@ -48,6 +48,7 @@ class Ways:
         self._towards = towards
         self.chooser, self._task, self._chances = chooser, task, chances
         self._costs = costs
+        self._ahead = 0
         self._plans: dict[State, Plan] = {}
         self._annotated: dict[State, AnnotatedPlan] = {}
         self._followed: Plan | None = None
@@ -75,10 +76,13 @@ class Ways:
         """The facts that the known plans need."""
         return frozenset[Atom]().union(*(plan.atoms() for plan in self.chooser.plans))
 
-    def left(self, belief: Belief) -> float:
-        """What the rest would cost from the most probable joint state if all were seen, in
-        actions."""
-        return self.chooser.ahead.to_go(belief.ranked()[0][0]) / self._costs.action
+    def ahead(self, belief: Belief) -> int:
+        """How many steps the goal is away from the most probable joint state; where no way is known
+        from there, as many as when one was."""
+        way = self.chooser.ahead.best(belief.ranked()[0][0])
+        if way is not None:
+            self._ahead = len(way[1].actions) - way[0]
+        return self._ahead
 
     def annotated(self, step: Step) -> AnnotatedPlan | None:
         """The plan that is followed, with what its steps need; None where it was not valid."""
