@@ -1,10 +1,12 @@
-"""Packs the finished rows of the belief bench, for others to check and to go on from.
+"""Packs the finished rows of a bench, for others to check and to go on from.
 
 python experiments/tools/publish.py bench-belief --out experiments/rows/belief
 tpvqa bench belief --rows experiments/rows/belief --only-tables --out bench-belief-again
+python experiments/tools/publish.py bench-abroad --whole abroad --out experiments/rows/abroad
 
 Several folders, of machines that ran different parts with the same settings, become one; what is
-published already stays.
+published already stays. Those of the belief bench become a file for every part; with `--whole`
+those of any bench one file.
 """
 
 import argparse
@@ -24,33 +26,40 @@ from tpvqa_experiments.belief.parts import Extent
 
 
 def main() -> None:
-    """Write one file for every part."""
+    """Write one file for every part, or one."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folders", nargs="+", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--parts", help="with commas; default: all")
+    parser.add_argument("--whole", metavar="NAME", help="all rows in one file of this name")
     given = parser.parse_args()
     parts = [Part(name) for name in given.parts.split(",")] if given.parts else list(Part)
     settings = _settings(given.folders)
     rows = merged(_all(given.folders, settings, given.out))
+    if given.whole:
+        _write(list(rows.values()), settings, given.out / f"{given.whole}.parquet")
+        return
     extent, written = Extent(), set[Cell]()
     for part in Part:
         cells = {cell for cell, _ in extent.cells(part)} - written
         written |= cells
         own = [row for (cell, _), row in rows.items() if cell in cells]
         if part in parts and own:
-            path = given.out / f"{part}.parquet"
-            count = write_published(own, settings, path)
-            print(f"{path}: {count:,} rows, {path.stat().st_size / 1e6:.2f} MB")
+            _write(own, settings, given.out / f"{part}.parquet")
     left = sum(cell not in written for cell, _ in rows)
     if left:
         print(f"{left:,} rows are of no cell of the bench's defaults, and were left out")
 
 
+def _write(rows: Sequence[EpisodeRow], settings: Mapping[str, Any], path: Path) -> None:
+    count = write_published(rows, settings, path)
+    print(f"{path}: {count:,} rows, {path.stat().st_size / 1e6:.2f} MB")
+
+
 def _settings(folders: Sequence[Path]) -> dict[str, Any]:
     for folder in folders:
         if not (folder / SETTINGS).is_file() or not (folder / ROWS).is_file():
-            raise BenchError(f"{folder} holds no bench. Name a folder of `tpvqa bench belief`")
+            raise BenchError(f"{folder} holds no bench. Name a folder of one")
     found: dict[str, Any] = json.loads((folders[0] / SETTINGS).read_text(encoding="utf-8"))
     return found
 

@@ -2,6 +2,8 @@
 
 import importlib.util
 import json
+import subprocess
+import sys
 import zipfile
 from hashlib import sha256
 from pathlib import Path
@@ -97,6 +99,20 @@ def test_a_bench_abroad_goes_on_where_it_was_stopped(tmp_path: Path) -> None:
     assert blind is not None
     assert blind > 1
     assert "| build_tower |" in (tmp_path / "abroad.md").read_text()
+
+
+def test_published_trials_of_the_bench_abroad_are_not_run_again(tmp_path: Path) -> None:
+    extent = Extent(tasks=("build_tower",), monitors=("blind:2",), episodes=2)
+    bench = AbroadBench(parts=(Part.SHIPPED,), extent=extent)
+    once, again, data = (tmp_path / name for name in ("once", "again", "data"))
+    run_abroad_bench(bench, once)
+    script = ROOT / "experiments/tools/publish.py"
+    told = [sys.executable, str(script), str(once), "--whole", "abroad", "--out", str(data)]
+    said = subprocess.run(told, capture_output=True, text=True, check=True).stdout
+    assert "4 rows" in said
+    run_abroad_bench(bench, again, published=data)
+    assert (again / "episodes.jsonl").read_text() == ""
+    assert (again / "abroad.md").read_text() == (once / "abroad.md").read_text()
 
 
 def test_repetition_costs_more_the_oftener_and_nothing_where_sensors_tell(tmp_path: Path) -> None:

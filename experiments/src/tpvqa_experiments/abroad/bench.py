@@ -9,6 +9,7 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.own_task import OwnTask, own_tasks
+from tpvqa.bench.published import version_of
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
@@ -61,8 +62,14 @@ class AbroadBench:
                     found[limit] = max(episodes, found.get(limit, 0))
         return found
 
-    def declared(self, folder: Path, calibrating: Progress) -> Bench:
-        """What the engine is given."""
+    def declared(self, folder: Path, calibrating: Progress, version: str | None = None) -> Bench:
+        """What the engine is given.
+
+        Args:
+            folder: Where calibrations are kept.
+            calibrating: Told how many calibrations are there and how many there will be.
+            version: That of rows of which only tables are made.
+        """
         extent = self.extent
 
         def told(missing: Sequence[Cell]) -> Mapping[Cell, Calibration]:
@@ -87,7 +94,10 @@ class AbroadBench:
             common=self.common,
             own=extent.tasks_of_files,
             calibrations=told,
-            more_settings={"trials of a calibration": self.calibration_episodes},
+            more_settings={
+                "trials of a calibration": self.calibration_episodes,
+                **({} if version is None else {"version": version}),
+            },
         )
 
 
@@ -100,6 +110,7 @@ def run_abroad_bench(
     calibrating: Progress = lambda done, total: None,
     progress: Progress = lambda done, total: None,
     only_tables: bool = False,
+    published: Path | None = None,
 ) -> dict[Part, dict[Cell, Sequence[EpisodeRow]]]:
     """Run what is missing, and write tables of the parts that were named.
 
@@ -110,7 +121,8 @@ def run_abroad_bench(
         scheduler: Address of a Dask scheduler to use instead.
         calibrating: Told how many calibrations are there and how many there will be.
         progress: Told how many episodes are done and how many there are.
-        only_tables: Run nothing.
+        only_tables: Run nothing; published rows may be of an earlier version.
+        published: Rows of this bench that count as finished: a Parquet file, or a folder of them.
 
     Returns:
         The episodes of every cell, by part; those of who sees all are among them.
@@ -118,7 +130,8 @@ def run_abroad_bench(
     Raises:
         TpvqaError: Something is not there, or the folder cannot be used.
     """
-    declared = bench.declared(folder, calibrating)
+    version = version_of(published) if only_tables and published is not None else None
+    declared = bench.declared(folder, calibrating, version)
     if not declared.wanted:
         raise BenchError(
             "There is nothing to run: none of these parts has a task. Name domains of others with "
@@ -130,10 +143,11 @@ def run_abroad_bench(
         workers=workers,
         scheduler=scheduler,
         progress=progress,
+        published=published,
     )
     limits = bench.limits()
     if not only_tables and any(ledger.missing(cell, count) for cell, count in limits.items()):
-        ledger = Ledger(folder, declared.settings)
+        ledger = Ledger(folder, declared.settings, published)
         try:
             for rows in _limits(bench, ledger, limits):
                 ledger.add(rows)

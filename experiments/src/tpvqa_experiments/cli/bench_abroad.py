@@ -57,6 +57,10 @@ def abroad(
     only_tables: Annotated[
         bool, typer.Option("--only-tables", help="Run nothing; write tables of what is finished.")
     ] = False,
+    rows: Annotated[
+        Path | None,
+        typer.Option(help="Published rows that count as finished, e.g. experiments/rows/abroad."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
 ) -> None:
     """Measure monitors on domains of others, and in worlds that are not as the problem says."""
@@ -104,6 +108,7 @@ def abroad(
             calibrating=bar,
             progress=progress,
             only_tables=only_tables,
+            published=rows,
         )
     if as_json:
         told = [
