@@ -53,6 +53,17 @@ def test_the_rate_is_found_from_probable_cases() -> None:
     assert chances.rates.disturbance == 0.25
 
 
+def test_what_works_loose_by_itself_is_learned_too() -> None:
+    chances = Chances(Rates(0.25, 0.25, 0.01))
+    for number in range(60):
+        lost = number % 5 == 0
+        chances.learn(
+            {"success": 1.0, "fell": 0.9 if lost else 0.0, "stayed": 0.1 if lost else 1.0}
+        )
+    assert 0.1 < chances.rates.spontaneous < 0.2
+    assert chances.rates.disturbance == 0.25
+
+
 @pytest.mark.parametrize("rate", [0.0, 1.0])
 def test_a_rate_that_was_believed_for_certain_can_be_kept(rate: float) -> None:
     known = Experience.of(Chances(Rates(rate, rate, 0.0)), Trust(), 1)

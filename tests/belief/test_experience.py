@@ -24,7 +24,10 @@ def test_of_a_file_of_before_failures_are_kept_and_not_what_answers_were_worth(
 
 
 def test_what_was_learned_of_answers_today_comes_back(tmp_path: Path) -> None:
-    known = Experience(failure=(3, 9), disturbance=(1, 2), trust=(1.0,) * len(GRID))
+    known = Experience(
+        failure=(3, 9), disturbance=(1, 2), spontaneous=(1, 20), trust=(1.0,) * len(GRID)
+    )
+    assert known.chances().rates.spontaneous == pytest.approx(1 / 21)
     known.save(tmp_path / "new.json")
     assert Experience.load(tmp_path / "new.json") == known
 

@@ -201,10 +201,10 @@ class Belief:
         came, remembered = OutcomeWeights(), self._remembered()
         led: list[tuple[int, int, float]] = []
 
-        def add(number: int, weight: float, kind: dict[int, float] | None = None) -> None:
+        def add(number: int, weight: float, *kinds: dict[int, float]) -> None:
             after[number] = after.get(number, 0.0) + weight
             led.append((begun, number, weight))
-            if kind is not None:
+            for kind in kinds:
                 kind[number] = kind.get(number, 0.0) + weight
 
         f, d, s = rates.failure, rates.disturbance, rates.spontaneous
@@ -214,26 +214,23 @@ class Belief:
             if outcomes.achieved:
                 add(number, weight, came.achieved)
                 continue
-            failing = weight
-            possible = outcomes.intended is not None
-            if outcomes.intended is not None:
-                failing = weight * f
-                falling = weight * (1 - f) * s
-                after_it = outcomes.undone_after if falling > self._smallest else ()
-                lasting = 1 - s if after_it else 1.0
-                add(outcomes.intended, weight * (1 - f) * lasting, came.success)
-                for share, other in after_it:
-                    add(other, falling * share, came.success)
+            failing, failure = weight, [came.failure]
+            if outcomes.intended is None:
+                failure = []
+            else:
+                failing, worked = weight * f, weight * (1 - f)
+                fallen = outcomes.undone_after if worked * s > self._smallest else ()
+                stays = (came.success, came.stayed) if fallen else (came.success,)
+                add(outcomes.intended, worked * (1 - s) if fallen else worked, *stays)
+                for share, other in fallen:
+                    add(other, worked * s * share, came.success, came.fell)
             undone = outcomes.undone if failing * d > self._smallest else ()
             if not undone:
-                add(number, failing, came.failure if possible else None)
+                add(number, failing, *failure)
                 continue
-            add(number, failing * (1 - d), came.failure if possible else None)
-            came.could_disturb[number] = came.could_disturb.get(number, 0) + failing * (1 - d)
+            add(number, failing * (1 - d), *failure, came.undisturbed)
             for share, other in undone:
-                mass = failing * d * share
-                add(other, mass, came.failure if possible else None)
-                came.disturbed[other] = came.disturbed.get(other, 0.0) + mass
+                add(other, failing * d * share, *failure, came.disturbed)
         self.outcome_weights = came
         numbers = tuple(self.weights)
         noise = dict(zip(numbers, self._noise.rows(numbers), strict=True))
@@ -361,9 +358,9 @@ class Belief:
             weights: Probabilities of the joint states; by default as they are believed.
 
         Returns:
-            Expected numbers, each between 0 and 1: "success", "failure", and of those in which
-            something could be disturbed, "disturbed" and "undisturbed". Empty before the first
-            action.
+            Expected numbers, each between 0 and 1: "success", "failure", and of what something
+            could be undone in: "disturbed" and "undisturbed" without a success, "fell" and "stayed"
+            with one. Empty before the first action.
         """
         if self.outcome_weights is None:
             return {}

@@ -69,7 +69,7 @@ class Chances:
         rates = rates or Rates()
         self.failure = Beta(rates.failure * strength, (1 - rates.failure) * strength)
         self.disturbance = Beta(rates.disturbance * strength, (1 - rates.disturbance) * strength)
-        self.spontaneous = rates.spontaneous
+        self.spontaneous = Beta(rates.spontaneous * strength, (1 - rates.spontaneous) * strength)
         self.skills = Skills()
         self._learned: dict[str, tuple[float, float]] = {}
         self._sure = rates.failure in (0.0, 1.0)
@@ -77,7 +77,7 @@ class Chances:
     @property
     def rates(self) -> Rates:
         """The expected rates."""
-        return Rates(self.failure.mean, self.disturbance.mean, self.spontaneous)
+        return Rates(self.failure.mean, self.disturbance.mean, self.spontaneous.mean)
 
     def skill(self, action: Action) -> SkillState:
         """What is known of how often an action fails."""
@@ -90,7 +90,7 @@ class Chances:
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
-        return Rates(self.skill(action).failure, self.disturbance.mean, self.spontaneous)
+        return Rates(self.skill(action).failure, self.disturbance.mean, self.spontaneous.mean)
 
     def tried(self) -> Iterable[Action]:
         """The actions that were tried."""
@@ -124,3 +124,4 @@ class Chances:
             gained = self.failure.yes - yes, self.failure.no - no
             self._learned[action.name] = before[0] + gained[0], before[1] + gained[1]
         self.disturbance.learn(shares.get("disturbed", 0.0), shares.get("undisturbed", 0.0))
+        self.spontaneous.learn(shares.get("fell", 0.0), shares.get("stayed", 0.0))

@@ -14,9 +14,10 @@ from tpvqa.belief.information import Floats
 from tpvqa.belief.last_answer import LastAnswer, Picture
 from tpvqa.belief.noise import NEVER
 from tpvqa.belief.other_words import Answered, OtherWords
-from tpvqa.belief.own_words import FAILED, SkillWorth, of_action
+from tpvqa.belief.own_words import SkillWorth, of_action
 from tpvqa.belief.readings import Readings
 from tpvqa.belief.repeats import learn_repeats
+from tpvqa.belief.reports import Reports
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.told_apart import ToldApart
 from tpvqa.belief.trust import Trust
@@ -59,6 +60,9 @@ class Evidence(Expected):
         skill: What the report of any skill is worth; by default what the calibration says.
         doubts: Chances that things were elsewhere from the start; none by default.
         words: How far the wordings of a question err alike.
+
+    Attributes:
+        reports: What skills' reports are worth.
     """
 
     def __init__(
@@ -74,7 +78,7 @@ class Evidence(Expected):
     ):
         super().__init__(belief, calibration, trust, words)
         self._unexplained, self._doubts = unexplained, doubts
-        self._skills = calibration.skills if skill is None else (skill,)
+        self.reports = Reports(calibration.skills if skill is None else (skill,))
         self._sensors = calibration.sensors
         self._readings = Readings(belief, calibration.sensors)
         self._opened: set[tuple[Atom, ...]] = set()
@@ -119,13 +123,10 @@ class Evidence(Expected):
         self._affirmed.clear()
 
     def _take_report(self, action: str, *, failed: bool) -> None:
-        known = of_action(self._skills, action)
-        if known is not None:
-            worked, not_worked = known.likelihoods(failed=failed)
-        elif failed:
-            worked, not_worked = FAILED
-        else:
+        likely = self.reports.take(action, failed=failed)
+        if likely is None:
             return
+        worked, not_worked = likely
         # A skill that finds nothing to do may call that a failure, or not.
         idle = (worked + not_worked) / 2 if failed else worked
         self._belief.weigh_outcome(succeeded=worked, failed=not_worked, achieved=idle)
@@ -135,7 +136,7 @@ class Evidence(Expected):
         were calibrated, and those that skills change which report their failures."""
         sensed = {each.predicate for each in self._sensors}
         for schema in task.schemas:
-            known = of_action(self._skills, schema.name)
+            known = of_action(self.reports.known, schema.name)
             if known is not None and known.notices >= NOTICED:
                 sensed |= {effect.literal.predicate for effect in schema.effects}
         return frozenset(sensed)

@@ -28,6 +28,8 @@ class Experience(BaseModel):
         version: Of the file.
         failure: Cases for and against an action failing, prior ones included.
         disturbance: Cases for and against a failure disturbing something.
+        spontaneous: Cases for and against something being undone after a success; None in files of
+            before it was learned.
         trust: Probabilities of the factors by which the VLM's answers are worth more or less than
             its calibration says (`trust.GRID`); None where nothing was learned of them.
         vlm: Which VLM that was.
@@ -40,6 +42,7 @@ class Experience(BaseModel):
     version: Literal[1, 2] = 2
     failure: Cases
     disturbance: Cases
+    spontaneous: Cases | None = None
     trust: (
         Annotated[
             tuple[Annotated[float, Field(ge=0)], ...],
@@ -72,6 +75,7 @@ class Experience(BaseModel):
         return Experience(
             failure=_cases(chances.failure),
             disturbance=_cases(chances.disturbance),
+            spontaneous=_cases(chances.spontaneous),
             trust=None if trust is None else trust.weights,
             trials=trials,
         )
@@ -80,13 +84,15 @@ class Experience(BaseModel):
         """The rates of faults to begin the next trial with.
 
         Args:
-            rates: Gives the rate of spontaneous changes, which is not learned.
+            rates: Give that of spontaneous changes, where a file does not tell it.
         """
         from tpvqa.belief.chances import Beta, Chances  # late, as numpy takes a while
 
         chances = Chances(rates)
         chances.failure = Beta(*self.failure)
         chances.disturbance = Beta(*self.disturbance)
+        if self.spontaneous is not None:
+            chances.spontaneous = Beta(*self.spontaneous)
         return chances
 
     def trusting(self) -> Trust | None:

@@ -72,7 +72,7 @@ class Learned:
         return Rates(
             sum(weight * each.failure for weight, each in told),
             sum(weight * each.disturbance for weight, each in told),
-            told[0][1].spontaneous,
+            sum(weight * each.spontaneous for weight, each in told),
         )
 
     def skill(self, action: Action) -> SkillState:

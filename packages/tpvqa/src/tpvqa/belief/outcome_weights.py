@@ -20,7 +20,9 @@ class OutcomeWeights:
     failure: dict[int, float] = field(default_factory=dict)
     disturbed: dict[int, float] = field(default_factory=dict)
     achieved: dict[int, float] = field(default_factory=dict)
-    could_disturb: dict[int, float] = field(default_factory=dict)
+    undisturbed: dict[int, float] = field(default_factory=dict)
+    fell: dict[int, float] = field(default_factory=dict)
+    stayed: dict[int, float] = field(default_factory=dict)
 
     def shares(self, now: Mapping[int, float], predicted: Mapping[int, float]) -> dict[str, float]:
         """See `Belief.outcome_shares`.
@@ -40,7 +42,9 @@ class OutcomeWeights:
                 ("failure", self.failure),
                 ("achieved", self.achieved),
                 ("disturbed", self.disturbed),
-                ("undisturbed", self.could_disturb),
+                ("undisturbed", self.undisturbed),
+                ("fell", self.fell),
+                ("stayed", self.stayed),
             )
         }
 

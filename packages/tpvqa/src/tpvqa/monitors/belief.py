@@ -89,8 +89,7 @@ class BeliefMonitor(Learning, PlainArguments):
         settings = settings or BeliefSettings()
         self.task, self.costs, self.name = task, settings.costs, name
         self.belief = belief_without(settings.without, model or FaultModel(task, rules))
-        rates = settings.rates
-        known = Chances(rates) if experience is None else experience.chances(rates)
+        known = (Chances if experience is None else experience.chances)(settings.rates)
         if calibration is None or settings.without == "calibration":
             calibration = Calibration.default()
         self._risk = bound_for(settings.risk, risk)
@@ -294,6 +293,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self._now.learned = True
             if not self._chooser.blind or self._now.noticed:  # else nothing was seen of it
                 self.chances.learn(action)
+                self.evidence.reports.learn(self.belief.outcome_shares())
         for chooser in self._choosers:
             chooser.ahead.learned(self.chances.skill, self.chances.rates)
 
