@@ -3,6 +3,8 @@
 from math import inf, isfinite
 from pathlib import Path
 
+import pytest
+
 from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.choices import Chooser
@@ -10,7 +12,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.skills import SkillState
-from tpvqa.pddl import load_task
+from tpvqa.pddl import Atom, load_task, task_from_text
 from tpvqa.planning.regression import regress
 
 FOLDER = Path(__file__).parents[1] / "fixtures" / "drawer"
@@ -67,3 +69,41 @@ def test_what_was_done_and_promised_nothing_is_not_done_again() -> None:
     assert done(0.99) == inf
     chooser.acted(belief, OPEN)  # another one
     assert isfinite(disinfecting())
+
+
+BOXES = task_from_text(
+    """(define (domain boxes) (:requirements :strips :typing) (:types thing box)
+  (:predicates (in ?x - thing ?b - box) (in_hand ?x - thing) (hand_empty))
+  (:action take :parameters (?x - thing ?b - box)
+    :precondition (and (in ?x ?b) (hand_empty))
+    :effect (and (in_hand ?x) (not (in ?x ?b)) (not (hand_empty))))
+  (:action put :parameters (?x - thing ?b - box) :precondition (in_hand ?x)
+    :effect (and (in ?x ?b) (not (in_hand ?x)) (hand_empty))))""",
+    """(define (problem egg) (:domain boxes) (:objects egg - thing red blue - box)
+  (:init (in egg red) (hand_empty)) (:goal (in egg blue)))""",
+)
+
+
+PUT = "put", ["egg", "blue"]
+
+
+@pytest.mark.parametrize(("likely", "reports"), [(0.75, True), (0.25, False)])
+def test_where_nothing_can_be_done_any_more_it_is_still_worth_knowing_how_it_ends(
+    likely: float, reports: bool
+) -> None:
+    """What fell beside the boxes is out of reach: the answer decides what is reported, no more."""
+    costs, plan = Costs(), tuple(BOXES.action(*each) for each in (("take", ["egg", "red"]), PUT))
+    model = FaultModel(BOXES)
+    belief = Belief(model)
+    there = BOXES.apply(BOXES.apply(BOXES.init, plan[0]), plan[1])
+    lost = there - {Atom("in", ("egg", "blue"))}
+    belief.begin([(there, likely), (lost, 1 - likely)])
+    chooser = Chooser(model, costs)
+    chooser.ahead.add(AnnotatedPlan(BOXES, plan, regress(BOXES, plan)))
+    table = chooser.table(belief, Rates(0.25, 0.0, 0.0), plan)
+    assert table.best.action is None
+    done, gave_up = (n for n, each in enumerate(table.choices) if each.action is None)
+    assert (table.expected[done] < table.expected[gave_up]) == reports
+    known = table.weights @ table.costs.min(axis=1)
+    worth = float(table.expected.min() - known)
+    assert worth == pytest.approx(min(likely, 1 - likely) * costs.misreport)

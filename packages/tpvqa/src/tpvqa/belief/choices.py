@@ -165,7 +165,7 @@ class Chooser:
         blind = self._blind(choices, ranked, rates) if self.settles < SETTLED else {}
         for each in choices:
             if each.action is None:
-                found.append((each, self._end(ranked), work[each]))
+                found += [(each, column, work[each]) for column in self._ends(ranked)]
                 continue
             more = 0.0 if self._in(each, current) else self._costs.replan
             dearer = self.rounds.dearer(each.action, ranked[0][0], self.ahead.progress)
@@ -245,9 +245,11 @@ class Chooser:
         told = list(zip(actions, led, strict=True))
         return self._unseen.columns(told, ranked) if told else {}
 
-    def _end(self, ranked: Sequence[tuple[int, float]]) -> Floats:
-        lost = self.ahead.failure
-        return np.array([0.0 if self.ahead.is_goal(number) else lost for number, _ in ranked])
+    def _ends(self, ranked: Sequence[tuple[int, float]]) -> tuple[Floats, Floats]:
+        """The costs of an end with the goal reported reached, and of one with it reported not."""
+        reached = np.array([self.ahead.is_goal(number) for number, _ in ranked])
+        lost, wrong = np.where(reached, 0.0, self.ahead.failure), self._costs.misreport
+        return lost + wrong * ~reached, lost + wrong * reached
 
     def _column(
         self, action: Action, ranked: Sequence[tuple[int, float]], kinds: Kinds, rates: Rates

@@ -12,7 +12,8 @@ class Costs(BaseModel):
         look: One more picture.
         replan: One change of plan.
         person: One question to a person; None where nobody is there.
-        failure: A trial that ends without its goal, or believing wrongly that it is reached.
+        failure: A trial that ends without its goal.
+        misreport: That a trial says of its end what is not so: that the goal is reached, or is not.
         questions_per_step: Most questions between two actions.
         questions_per_trial: Most questions in a trial; by default what a failed task costs.
         looks_per_step: Most looks between two actions.
@@ -27,6 +28,7 @@ class Costs(BaseModel):
     replan: float = Field(default=0.3, ge=0)
     person: float | None = Field(default=None, ge=0)
     failure: float = Field(default=50.0, gt=0)
+    misreport: float = Field(default=2.0, ge=0)
     questions_per_step: int = Field(default=1000, ge=0)
     questions_per_trial: int = Field(default=5000, ge=0)
     looks_per_step: int = Field(default=1000, ge=0)
