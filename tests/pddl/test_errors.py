@@ -324,3 +324,17 @@ def test_damaged_text_is_read_or_refused_with_a_reason(texts: tuple[str, str]) -
         task_from_text(*texts)
     except PDDLError as error:
         assert len(str(error)) > 20  # noqa: PT017  either outcome is fine
+
+
+@pytest.mark.parametrize(
+    ("types", "told"),
+    [
+        ("lamp - lamp", "a 'lamp'"),
+        ("lamp - thing thing - lamp", "a 'thing', which is a 'lamp'"),
+    ],
+)
+def test_a_type_that_is_a_kind_of_itself_is_told(types: str, told: str) -> None:
+    """The translator takes it in silence, and objects of it are then of no type or of all."""
+    assert "(:types lamp)" in DOMAIN
+    with pytest.raises(PDDLError, match=f"kind of itself: it is {told}"):
+        task_from_text(DOMAIN.replace("(:types lamp)", f"(:types {types})"), PROBLEM)

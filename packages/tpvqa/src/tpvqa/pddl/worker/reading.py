@@ -1,6 +1,6 @@
 """Two PDDL texts → the translator's task, and errors that say where and what was expected."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from types import TracebackType
 from typing import Any
 
@@ -228,6 +228,7 @@ def _check_types(task: Any, blocks: dict[str, Block]) -> None:
     known |= {kind.basetype_name for kind in task.types if kind.basetype_name}
     # A parent that is only ever named as a parent is a type too.
     declared = {kind.name for kind in task.types}
+    _check_order({kind.name: kind.basetype_name for kind in task.types}, blocks)
     for name in sorted(known - declared):
         task.types.append(pddl.Type(name))
         task.types[-1].supertype_names = []
@@ -254,6 +255,22 @@ def _check_types(task: Any, blocks: dict[str, Block]) -> None:
                     part,
                     line_of(name) or line,
                 )
+
+
+def _check_order(parents: Mapping[str, str | None], blocks: dict[str, Block]) -> None:
+    """No type is its own parent, nor its parents' parent: of such the translator makes anything."""
+    for name in parents:
+        way = [name]
+        while (above := parents.get(way[-1])) is not None and above not in way:
+            way.append(above)
+        if above == name != "object":
+            told = ", which is a ".join(repr(str(each)) for each in [*way[1:], name])
+            part, line = _place_of(name, blocks)
+            message = (
+                f"the type {str(name)!r} is a kind of itself: it is a {told}; expected parents "
+                "that lead to 'object'"
+            )
+            raise ReadingError(message, part, line_of(name) or line)
 
 
 def _check_derived(task: Any) -> None:
