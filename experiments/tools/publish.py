@@ -17,8 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.bench.cell import Cell
+from tpvqa.bench.engine import TASKS
 from tpvqa.bench.ledger import ROWS, SETTINGS, Ledger, merged
-from tpvqa.bench.published import read_published, write_published
+from tpvqa.bench.published import read_published, tasks_of, write_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError, TpvqaError
 from tpvqa_experiments.belief import Part
@@ -37,7 +38,10 @@ def main() -> None:
     settings = _settings(given.folders)
     rows = merged(_all(given.folders, settings, given.out))
     if given.whole:
-        _write(list(rows.values()), settings, given.out / f"{given.whole}.parquet")
+        if given.parts:
+            parser.error("--whole packs all parts; leave --parts out")
+        path = given.out / f"{given.whole}.parquet"
+        _write(list(rows.values()), settings, path, _tasks(given.folders, path))
         return
     extent, written = Extent(), set[Cell]()
     for part in Part:
@@ -51,15 +55,34 @@ def main() -> None:
         print(f"{left:,} rows are of no cell of the bench's defaults, and were left out")
 
 
-def _write(rows: Sequence[EpisodeRow], settings: Mapping[str, Any], path: Path) -> None:
-    count = write_published(rows, settings, path)
+def _write(
+    rows: Sequence[EpisodeRow],
+    settings: Mapping[str, Any],
+    path: Path,
+    tasks: Mapping[str, str] | None = None,
+) -> None:
+    count = write_published(rows, settings, path, tasks)
     print(f"{path}: {count:,} rows, {path.stat().st_size / 1e6:.2f} MB")
+
+
+def _tasks(folders: Sequence[Path], published: Path) -> dict[str, str]:
+    found = tasks_of(published) if published.exists() else {}
+    for folder in folders:
+        path = folder / TASKS
+        here = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        for name in found.keys() & here.keys():
+            if found[name] != here[name]:
+                raise BenchError(
+                    f"{folder}: the files of {name!r} say something else than elsewhere"
+                )
+        found |= here
+    return found
 
 
 def _settings(folders: Sequence[Path]) -> dict[str, Any]:
     for folder in folders:
         if not (folder / SETTINGS).is_file() or not (folder / ROWS).is_file():
-            raise BenchError(f"{folder} holds no bench. Name a folder of one")
+            raise BenchError(f"{folder} holds no bench. Name one that a `tpvqa bench` has filled")
     found: dict[str, Any] = json.loads((folders[0] / SETTINGS).read_text(encoding="utf-8"))
     return found
 

@@ -180,3 +180,18 @@ def test_shares_of_the_last_outcome_follow_the_evidence() -> None:
     belief.see((Atom("near", ("bread",)),), 0.05, 0.95)
     shares = belief.outcome_shares()
     assert isclose(shares["failure"], 0.25 * 0.95 / (0.25 * 0.95 + 0.75 * 0.05))
+
+
+def test_what_is_lost_after_a_success_is_told_from_what_a_failure_undoes() -> None:
+    """Else whoever drops what it carries is taken to have failed to go."""
+    belief = Belief(MODEL)
+    for action in plan_of(SERVE)[:2]:  # the bread is in the hand
+        belief.act(action, Rates(0.0, 0.0, 0.0))
+    belief.act(plan_of(SERVE)[2], Rates(0.25, 0.25, 0.0625))
+    shares = belief.outcome_shares()
+    fell, stayed = shares["fell"], shares["stayed"]
+    assert isclose(fell + stayed, shares["success"])
+    assert isclose(fell / (fell + stayed), 0.0625)
+    belief.see((Atom("in_hand", ("bread", "left")),), 0.001, 0.999)
+    belief.see((Atom("near", ("plate",)),), 0.999, 0.001)
+    assert belief.outcome_shares()["fell"] > 0.9

@@ -315,3 +315,22 @@ def test_parts_of_an_action_that_lasts_are_no_findings(tpvqa: Run) -> None:
     code, out, _ = tpvqa("check", files / "domain.pddl", files / "problem.pddl", "--strict")
     assert code == 0, out
     assert "can never be done" not in out
+
+
+def test_an_action_that_only_ends_what_never_holds_is_said_to_change_nothing(tpvqa: Run) -> None:
+    """Not that it cannot be done: nothing is wrong with its precondition."""
+    Path("domain.pddl").write_text(
+        """(define (domain dusting) (:requirements :strips :typing) (:types bench)
+        (:predicates (far ?b - bench) (near ?b - bench) (dusty ?b - bench))
+        (:action go :parameters (?b - bench) :precondition (far ?b)
+          :effect (and (near ?b) (not (far ?b))))
+        (:action dust :parameters (?b - bench) :precondition (near ?b) :effect (not (dusty ?b))))"""
+    )
+    Path("problem.pddl").write_text(
+        """(define (problem one) (:domain dusting) (:objects b - bench) (:init (far b))
+        (:goal (near b)))"""
+    )
+    _, out, _ = tpvqa("check", "domain.pddl", "problem.pddl")
+    assert "domain.pddl:5: warning: the action dust changes nothing" in out
+    assert "(dusty ?b), which never holds" in out
+    assert "can never be done" not in out

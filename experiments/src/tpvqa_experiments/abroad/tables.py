@@ -34,7 +34,7 @@ class Line:
         named: Of the trials in which a skill that never works was tried, the share in which it was
             called dead within `PATIENCE` tries; None where there are none.
         misnamed: Share of trials in which a skill that works was called dead.
-        seconds: Of an episode.
+        seconds: Of an episode that was run here; None where all are published, which tell no times.
         endings: How trials ended, the most frequent first.
     """
 
@@ -53,7 +53,7 @@ class Line:
     most_in: str
     named: float | None
     misnamed: float
-    seconds: float
+    seconds: float | None
     endings: str
 
     def flat(self) -> dict[str, Any]:
@@ -104,7 +104,7 @@ def _line(rows: Rows, vlm: str, condition: str, monitor: str) -> Line:
         most_in=most_in,
         named=_named([row for row in trials if row.dead]),
         misnamed=sum(bool(row.misnamed) for row in trials) / len(trials),
-        seconds=_sum(trials, "seconds") / len(trials),
+        seconds=_mean([row.seconds for row in trials if row.seconds]),
         endings=", ".join(f"{name} {count}" for name, count in endings),
     )
 
@@ -144,6 +144,10 @@ def paired_actions(own: Sequence[EpisodeRow], limit: Sequence[EpisodeRow]) -> li
 def asked(rows: Sequence[EpisodeRow]) -> float:
     """Questions an action, over all episodes of a cell."""
     return _sum(rows, "questions") / max(_sum(rows, "actions"), 1)
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return fmean(values) if values else None
 
 
 def _named(rows: Sequence[EpisodeRow]) -> float | None:
@@ -187,7 +191,7 @@ def _over_tasks(part: Part, rows: Rows) -> str:
             f"{each.typical:.1f}",
             f"{each.most:.1f} ({each.most_in})",
             rate(each.misnamed),
-            f"{each.seconds:.2f}",
+            "" if each.seconds is None else f"{each.seconds:.2f}",
             each.endings,
         ]
         for each in lines(rows)

@@ -220,10 +220,14 @@ class Belief:
             else:
                 failing, worked = weight * f, weight * (1 - f)
                 fallen = outcomes.undone_after if worked * s > self._smallest else ()
-                stays = (came.success, came.stayed) if fallen else (came.success,)
-                add(outcomes.intended, worked * (1 - s) if fallen else worked, *stays)
+                # Where some are dropped unseen, nothing is counted.
+                counts = bool(fallen) and worked * s * min(fallen)[0] > self._smallest
+                stayed, fell = ([came.stayed], [came.fell]) if counts else ([], [])
+                add(
+                    outcomes.intended, worked * (1 - s) if fallen else worked, came.success, *stayed
+                )
                 for share, other in fallen:
-                    add(other, worked * s * share, came.success, came.fell)
+                    add(other, worked * s * share, came.success, *fell)
             undone = outcomes.undone if failing * d > self._smallest else ()
             if not undone:
                 add(number, failing, *failure)

@@ -53,6 +53,8 @@ class Beta:
 
 LEAST = 0.5
 """Cases of either kind that the common rate is known from at least."""
+RARELY = 1e-3
+"""What works loose is taken to do so at least so often, unless that is believed never to happen."""
 FIRST = 3.0
 """Tries of one action that tell fully of the others."""
 
@@ -77,7 +79,7 @@ class Chances:
     @property
     def rates(self) -> Rates:
         """The expected rates."""
-        return Rates(self.failure.mean, self.disturbance.mean, self.spontaneous.mean)
+        return Rates(self.failure.mean, self.disturbance.mean, self._loose)
 
     def skill(self, action: Action) -> SkillState:
         """What is known of how often an action fails."""
@@ -90,7 +92,11 @@ class Chances:
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
-        return Rates(self.skill(action).failure, self.disturbance.mean, self.spontaneous.mean)
+        return Rates(self.skill(action).failure, self.disturbance.mean, self._loose)
+
+    @property
+    def _loose(self) -> float:
+        return max(self.spontaneous.mean, RARELY) if self.spontaneous.yes > 0 else 0.0
 
     def tried(self) -> Iterable[Action]:
         """The actions that were tried."""

@@ -57,7 +57,8 @@ class Evidence(Expected):
         calibration: What answers are worth.
         trust: Whether they are worth that; None to take the calibration at its word.
         unexplained: Chance that a fact changed without the action model knowing.
-        skill: What the report of any skill is worth; by default what the calibration says.
+        skill: What the report of any skill is worth; by default what the calibration says, or else
+            what is learned.
         doubts: Chances that things were elsewhere from the start; none by default.
         words: How far the wordings of a question err alike.
 
@@ -113,8 +114,7 @@ class Evidence(Expected):
             action: Its name.
             failed: Whether the robot's own skill reports a failure; None where it reports nothing.
         """
-        if failed is not None:
-            self._take_report(action, failed=failed)
+        self._take_report(action, failed)
         self._readings.acted()
         self._hearing.moved(self._belief.led)
         self._tell_apart()
@@ -122,7 +122,7 @@ class Evidence(Expected):
         self._silent.clear()
         self._affirmed.clear()
 
-    def _take_report(self, action: str, *, failed: bool) -> None:
+    def _take_report(self, action: str, failed: bool | None) -> None:
         likely = self.reports.take(action, failed=failed)
         if likely is None:
             return

@@ -75,7 +75,7 @@ class Experience(BaseModel):
         return Experience(
             failure=_cases(chances.failure),
             disturbance=_cases(chances.disturbance),
-            spontaneous=_cases(chances.spontaneous),
+            spontaneous=_cases(chances.spontaneous) if chances.spontaneous.yes > 0 else None,
             trust=None if trust is None else trust.weights,
             trials=trials,
         )

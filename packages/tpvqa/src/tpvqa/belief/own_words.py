@@ -11,7 +11,8 @@ from tpvqa.belief.bounds import BOUND, EDGE
 
 FAILED = (0.1, 0.9)
 """How probable it is that a skill reports a failure where it worked, and where it failed, as long
-as nothing is known of it; that it reports none says nothing then."""
+as nothing is known of it; that it reports none says nothing then, until one is reported
+(`reports`)."""
 READINGS = 15
 """Readings that a sensor's own word counts for, of what is true and of what is not."""
 REPORTS = 4

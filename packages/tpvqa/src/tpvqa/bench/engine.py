@@ -11,6 +11,7 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.checking import check
 from tpvqa.bench.ledger import REMEDY, Ledger
 from tpvqa.bench.own_task import OwnTask
+from tpvqa.bench.published import tasks_of
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.settings import common_settings
 from tpvqa.bench.stated_risk import TRIALS, bounds, check_risk
@@ -94,7 +95,8 @@ def run_bench(
     bench.check()
     ledger = Ledger(folder, bench.settings, published)
     try:
-        _keep_tasks(folder, bench, {cell.task for cell, _ in ledger.rows})
+        known = {} if published is None else tasks_of(published)
+        _keep_tasks(folder, bench, {cell.task for cell, _ in ledger.rows}, known)
         missing = {cell: len(ledger.missing(cell, n)) for cell, n in bench.wanted.items()}
         unfinished = [cell for cell, count in missing.items() if count]
         told = bench.calibrations(unfinished)
@@ -139,17 +141,19 @@ def run_bench(
     return ledger
 
 
-def _keep_tasks(folder: Path, bench: Bench, ran: set[str]) -> None:
-    """Note what the files of own tasks say; other files need another folder.
+def _keep_tasks(folder: Path, bench: Bench, ran: set[str], published: Mapping[str, str]) -> None:
+    """Note what the files of own tasks say, those of published rows, too; other files need another
+    folder.
 
     Raises:
         BenchError: A task was run with other files.
     """
     path = folder / TASKS
     try:
-        there = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        lie = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     except ValueError:
         raise BenchError(f"{path}: damaged. Remove the folder, or name another") from None
+    there = {**published, **lie}
     here = {name: own.fingerprint for name, own in bench.own.items()}
     for task in {cell.task for cell in bench.wanted} & ({*there} | ran):
         if there.get(task) != here.get(task):
@@ -157,5 +161,5 @@ def _keep_tasks(folder: Path, bench: Bench, ran: set[str]) -> None:
                 f"{folder} holds episodes of a task {task!r} whose files say something else. "
                 "Name another folder with --out"
             )
-    if here.keys() - there.keys():
+    if here.keys() - lie.keys():
         write_whole(path, f"{json.dumps(there | here, indent=1)}\n".encode(), remedy=REMEDY)

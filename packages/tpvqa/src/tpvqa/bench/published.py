@@ -18,16 +18,22 @@ from tpvqa.files import write_whole
 
 LEFT_OUT = ("seconds", "answers", "decisions")
 """Fields that are not kept."""
-_SETTINGS = b"tpvqa.bench"
+_SETTINGS, _TASKS = b"tpvqa.bench", b"tpvqa.tasks"
 
 
-def write_published(rows: Iterable[EpisodeRow], settings: Mapping[str, Any], path: Path) -> int:
+def write_published(
+    rows: Iterable[EpisodeRow],
+    settings: Mapping[str, Any],
+    path: Path,
+    tasks: Mapping[str, str] | None = None,
+) -> int:
     """Write finished rows, whole or not at all; those of failed episodes are left out.
 
     Args:
         rows: Of any cells.
         settings: Of their bench.
         path: A Parquet file.
+        tasks: What the files of own tasks say, as `OwnTask.fingerprint`, by name.
 
     Returns:
         How many rows it holds.
@@ -52,7 +58,8 @@ def write_published(rows: Iterable[EpisodeRow], settings: Mapping[str, Any], pat
             columns[name] = pa.array(values, pa.int64())
         else:
             columns[name] = pa.array(values)
-    table = pa.table(columns).replace_schema_metadata({_SETTINGS: json.dumps(dict(settings))})
+    told = {_SETTINGS: json.dumps(dict(settings)), _TASKS: json.dumps(dict(tasks or {}))}
+    table = pa.table(columns).replace_schema_metadata(told)
     data = pa.BufferOutputStream()
     parquet.write_table(table, data, compression="zstd", compression_level=19)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -98,6 +105,22 @@ def read_published(path: Path, settings: Mapping[str, Any]) -> Iterator[EpisodeR
             ) from None
 
 
+def tasks_of(path: Path) -> dict[str, str]:
+    """What the files of own tasks said that published rows were run with, by name.
+
+    Args:
+        path: A file that `write_published` wrote, or a folder of them.
+
+    Raises:
+        MissingExtraError: PyArrow is not installed.
+        BenchError: A file cannot be read.
+    """
+    found: dict[str, str] = {}
+    for file in sorted(path.glob("*.parquet")) if path.is_dir() else [path]:
+        found |= json.loads(_told(file).get(_TASKS, b"{}"))
+    return found
+
+
 def version_of(path: Path) -> str:
     """The version that ran published rows.
 
@@ -108,15 +131,19 @@ def version_of(path: Path) -> str:
         MissingExtraError: PyArrow is not installed.
         BenchError: There are none, or they do not say.
     """
-    pa, parquet = _pyarrow()
     file = next(iter(sorted(path.glob("*.parquet"))), None) if path.is_dir() else path
-    try:
-        told = (parquet.read_schema(file).metadata or {}).get(_SETTINGS) if file else None
-    except (OSError, pa.ArrowException) as error:
-        raise BenchError(f"{file}: cannot be read ({str(error).splitlines()[0]})") from error
+    told = _told(file).get(_SETTINGS) if file else None
     if told is None:
         raise BenchError(f"{path}: holds no published rows. Name a file or a folder of them")
     return str(json.loads(told).get("version"))
+
+
+def _told(file: Path) -> Mapping[bytes, bytes]:
+    pa, parquet = _pyarrow()
+    try:
+        return parquet.read_schema(file).metadata or {}
+    except (OSError, pa.ArrowException) as error:
+        raise BenchError(f"{file}: cannot be read ({str(error).splitlines()[0]})") from error
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> str:

@@ -41,6 +41,10 @@ def experience_from(folders: Iterable[Path | str]) -> Experience:
                 chances.disturbance.yes += disturbed
                 chances.disturbance.no += not disturbed
             achieved = achieved or worked
+            if achieved and event.truth.succeeded:
+                lost = event.truth.undone is not None
+                chances.spontaneous.yes += lost
+                chances.spontaneous.no += not lost
     if not known:
         raise CalibrationError(
             "No episode says what truly came of its actions, as in a simulated world it would. "

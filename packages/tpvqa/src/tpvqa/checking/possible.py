@@ -14,9 +14,11 @@ from tpvqa.planning import Plan, Planner, TimedOut, Unsolvable
 from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import TemporalPlanner
 
+UNMET = "no objects meet its whole precondition, even where nothing is ever undone"
+
 
 def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Finding]:
-    """Actions that can never be done, with what keeps them from it.
+    """Actions that can never be done, with what keeps them from it; and such as change nothing.
 
     Args:
         task: The task.
@@ -37,6 +39,16 @@ def of_actions(task: Task, undone: frozenset[str] = frozenset()) -> Iterator[Fin
             continue
         if schema.name not in reached or schema.name not in by_name:
             why = _never(task, schema, undone)
+            if why == UNMET and (idle := _idle(task, schema)):
+                yield Finding(
+                    "action-without-effect",
+                    Severity.WARNING,
+                    f"the action {schema.name} changes nothing in this problem: {idle}",
+                    "Mend its effect; if other problems need it, leave it.",
+                    named(task.domain_path),
+                    line_of_action(task, schema.name),
+                )
+                continue
         elif all(_excluded(action, proved, undone) for action in by_name[schema.name]):
             why = _excluded(by_name[schema.name][0], proved, undone)
         if why:
@@ -94,7 +106,17 @@ def _never(task: Task, schema: ActionSchema, undone: frozenset[str]) -> str:
             return f"it needs {said}, which never holds, and nothing brings it about"
     if undone & set(_predicates(schema.precondition)):
         return ""
-    return "no objects meet its whole precondition, even where nothing is ever undone"
+    return UNMET
+
+
+def _idle(task: Task, schema: ActionSchema) -> str:
+    """Why an action has no effect: it only ends what never holds; empty where that is not so."""
+    holding = {atom.predicate for atom in task.reachable_atoms | task.init}
+    ended = [effect.literal for effect in schema.effects]
+    if not ended or any(each.positive or each.predicate in holding for each in ended):
+        return ""
+    said = " and ".join(f"({' '.join((each.predicate, *each.arguments))})" for each in ended)
+    return f"it ends {said}, which never holds"
 
 
 def _needed(condition: ConditionSchema) -> Iterator[LiteralSchema]:

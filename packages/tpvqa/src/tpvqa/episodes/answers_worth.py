@@ -104,8 +104,8 @@ class AnswersWorth:
         then = answers_to_be_sure(right, self._repeat(right, known.repeat_same_view))
         saved = 1 - then / now
         said = (
-            f"{right:.2f} of the answers agreed with what was believed in the end; they were taken "
-            f"to be right in {taken:.2f}, and trusted as in {trusted:.2f}"
+            f"{right:.2f} of the answers agreed with what was believed before the next "
+            f"action; they were taken to be right in {taken:.2f}, and trusted as in {trusted:.2f}"
         )
         if saved >= LITTLE:
             return (

@@ -202,8 +202,7 @@ class BeliefMonitor(Learning, PlainArguments):
 
     @property
     def _choosers(self) -> list[Chooser]:
-        further = [] if self._errand is None else [self._errand.ways.chooser]
-        return [self._task_ways.chooser, *further]
+        return [self._task_ways.chooser, *([self._errand.ways.chooser] if self._errand else [])]
 
     @property
     def _now(self) -> Inspection:
@@ -281,7 +280,8 @@ class BeliefMonitor(Learning, PlainArguments):
         self.belief.act(step.action, self.chances.rates_of(step.action))
         self._settlings.acted(self._now.replies.keys() | self.evidence.unanswered)
         self._asking.begin(step.action)
-        before = {atom: self.belief.probability(atom) for atom in self._now.effects}
+        told = step.reported or not self._chooser.blind  # else its report says next to nothing
+        before = {atom: self.belief.probability(atom) for atom in self._now.effects if told}
         self.evidence.acted(step.action.name, failed=step.reported)
         for atom, was in before.items():
             self._now.notice(atom, was, self.belief.probability(atom), REPORTED)

@@ -26,7 +26,7 @@ class BeliefSettings:
     Attributes:
         costs: What things cost.
         rates: What is believed about faults beforehand.
-        skill: What the report of any skill is worth; None for what the calibration says.
+        skill: What the report of any skill is worth; None for what is calibrated, or else learned.
         without: One of `belief.ablations.PARTS`, to be left out.
         risk: The share of all trials that may end in "done" with the goal false; None for any.
         words: How often what lasts of the answers is the same in other words; None to learn it.

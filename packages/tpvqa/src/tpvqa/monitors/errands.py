@@ -114,7 +114,9 @@ class Errands:
                 continue
             self._gone[needed] += 1
             task = replace(self._task, goal=Conjunction(tuple(map(Literal, sorted(needed)))))
-            going = Chooser(belief.model, self._costs, sight, task)
+            # At its end nothing is reported.
+            costs = self._costs.model_copy(update={"misreport": 0.0})
+            going = Chooser(belief.model, costs, sight, task)
             going.ahead.learned(chances.skill, chances.rates)
             ways = Ways(task, going, chances, self._costs, towards=needed)
             ways.take(there, state)
