@@ -298,6 +298,17 @@ def test_a_problem_without_a_plan_is_refused_at_the_start(tpvqa: Run, tmp_path: 
     assert "lamp: there is no plan from the start: " in err
 
 
+def test_a_domain_may_stand_before_its_problems(tpvqa: Run, tmp_path: Path) -> None:
+    """As with every other command that takes a task."""
+    folder = own_blocks(tmp_path / "blocks")
+    (folder / "domain.pddl").rename(folder / "columns.pddl")
+    pair = [folder / "columns.pddl", folder / "row.pddl"]
+    words = ["--monitors", "tp", "--episodes", 1, "--workers", 1, "--json", "--out", "pair"]
+    code, out, err = tpvqa("bench", "run", *pair, *words)
+    assert code == 0, err
+    assert [row["task"] for row in json.loads(out)] == ["row"]
+
+
 def test_what_is_refused_is_not_advised_on_before(tpvqa: Run) -> None:
     words = [*OWN, "--vlm", "oracle:3", "--monitors", "belief"]
     code, _, err = tpvqa("bench", "run", *words)

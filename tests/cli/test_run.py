@@ -305,6 +305,7 @@ def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
     out, err = process.communicate(timeout=20)
     assert process.returncode == 130
     assert "Traceback" not in out + err
+    assert "tpvqa resume here" in out
     assert eventually(lambda: marked(mark) == [], 20)
     last = read_episode(tmp_path / "here")[-1]
     assert isinstance(last, Ended)

@@ -16,6 +16,7 @@ from tpvqa.text_files import read_text
 
 DOMAIN = "domain.pddl"
 _COMMENT = re.compile(r";[^\n]*")
+_IS_DOMAIN = re.compile(r"\(\s*define\s*\(\s*domain\b", re.IGNORECASE)
 _NAME = re.compile(r"\(\s*define\s*\(\s*problem\s+([^\s()]+)", re.IGNORECASE)
 
 
@@ -96,8 +97,8 @@ def own_tasks(
     as much of the problem's path as tells them apart.
 
     Args:
-        problems: Problem files, logic programs, and folders of them.
-        domain: Their domain; by default the `domain.pddl` beside each problem. A logic program is
+        problems: Problem files, logic programs, and folders of them; a domain may come first.
+        domain: Their domain; by default that, or the `domain.pddl` beside each problem. A logic program is
             its own.
         questions: Their questions; by default the `questions.yaml` beside problem or domain.
         world_file: How facts come undone; by default the `world.yaml` beside one of them.
@@ -105,6 +106,8 @@ def own_tasks(
     Raises:
         BenchError: A file is missing or cannot be read, or a folder holds no problem.
     """
+    if domain is None and len(problems) > 1 and _is_domain(problems[0]):
+        domain, problems = problems[0], problems[1:]
     found = [
         OwnTask.read(_files(path.resolve(), domain, questions, world_file))
         for path in dict.fromkeys(_expanded(problems, domain))
@@ -118,6 +121,10 @@ def own_tasks(
         else _end_of(each.origin.problem, paths): each
         for each in found
     }
+
+
+def _is_domain(path: Path) -> bool:
+    return path.is_file() and _IS_DOMAIN.match(_COMMENT.sub("", _text(path)).strip()) is not None
 
 
 def _end_of(path: Path, paths: Sequence[Path]) -> str:

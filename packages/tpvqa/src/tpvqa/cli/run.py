@@ -383,6 +383,8 @@ def _finish(ended: "Ended", folder: Path, lost: "WriteError | None", *, as_json:
     else:
         named = shlex.quote(str(folder))
         tell(f"episode: {folder}  (tpvqa show {named} · tpvqa report {named})")
+        if ended.because == "cancelled":
+            tell(f"go on:   tpvqa resume {named}")
     if lost is not None:
         raise lost
     if ended.because == "cancelled":
