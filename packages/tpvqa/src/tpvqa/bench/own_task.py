@@ -98,8 +98,8 @@ def own_tasks(
 
     Args:
         problems: Problem files, logic programs, and folders of them; a domain may come first.
-        domain: Their domain; by default that, or the `domain.pddl` beside each problem. A logic program is
-            its own.
+        domain: Their domain; by default that, or the `domain.pddl` beside each problem. A logic
+            program is its own.
         questions: Their questions; by default the `questions.yaml` beside problem or domain.
         world_file: How facts come undone; by default the `world.yaml` beside one of them.
 
