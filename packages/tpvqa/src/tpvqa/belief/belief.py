@@ -214,10 +214,8 @@ class Belief:
             if outcomes.achieved:
                 add(number, weight, came.achieved)
                 continue
-            failing, failure = weight, [came.failure]
-            if outcomes.intended is None:
-                failure = []
-            else:
+            failing, failure = weight, [] if outcomes.intended is None else [came.failure]
+            if outcomes.intended is not None:
                 failing, worked = weight * f, weight * (1 - f)
                 fallen = outcomes.undone_after if worked * s > self._smallest else ()
                 # Where some are dropped unseen, nothing is counted.
