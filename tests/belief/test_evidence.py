@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from tpvqa.belief import AnswerRates, Calibration, Group
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import ANYWAY, Evidence
+from tpvqa.belief.expected import LATE
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.heard import Heard
+from tpvqa.belief.information import answers_to_be_sure
 from tpvqa.belief.kinds import FRESH, KINDS
 from tpvqa.belief.trust import Trust
 from tpvqa.belief.worth import Said, Worth, by_truth
@@ -220,3 +222,11 @@ def test_what_is_still_shown_is_believed_a_little_once_and_says_nothing_of_the_v
     assert not evidence.affirmed(question)
     evidence.take(question, told(Reply.NO), 2, None)
     assert odds(belief) < once
+
+
+def test_a_vlm_is_not_asked_the_more_the_less_is_known_of_it() -> None:
+    unknown = Evidence(Belief(MODEL), Calibration.default(), Trust.after(0))
+    assert 1 < unknown.late <= LATE * answers_to_be_sure(unknown.right)
+    assert unknown.answers_to_be_sure() > 1.5 * unknown.late
+    _, known = found(0.0)
+    assert known.late == known.answers_to_be_sure()

@@ -99,3 +99,33 @@ def test_what_cannot_be_done_is_not_followed() -> None:
     assert second in left
     assert not task.applicable(task.init, second)
     assert chooser.table(belief, Rates(), plan).best.action != second
+
+
+def test_what_cannot_be_done_is_left_out_and_the_rest_followed() -> None:
+    task = load_task("clean_dishes")
+    chooser, belief = unseen(task)
+    plan = tuple(plan_of(task))
+    assert chooser.table(belief, Rates(), plan).best.action is not None
+    while chooser.following[0] == plan[0]:
+        chooser.acted(belief, plan[0])
+        belief.act(plan[0], Rates(1.0, 0.0, 0.0))
+    left = chooser.following
+    chooser.table(belief, Rates(), plan)
+    assert left[0] == plan[1]
+    assert chooser.following
+    assert chooser.following == left[len(left) - len(chooser.following) :]
+
+
+def test_what_is_followed_is_decided_anew_where_a_failed_task_costs_more() -> None:
+    task = load_task("clean_dishes")
+    chooser, belief = unseen(task)
+    chooser.settles = 0.9
+    plan = tuple(plan_of(task))
+    first = chooser.table(belief, Rates(), plan).best.action
+    assert first == plan[0]
+    cheap = chooser.following
+    chooser.acted(belief, first)
+    belief.act(first, Rates(0.25, 0.25, 0.0))
+    chooser.settles = 0.0
+    chooser.table(belief, Rates(), plan)
+    assert len(chooser.following) >= len(cheap)  # as thoroughly as what it is worth now

@@ -1,12 +1,15 @@
 """Things that fall where nothing that the task knows says that they are."""
 
 from collections import Counter
+from math import ceil
 from pathlib import Path
 
 import pytest
 
 from tpvqa.assembly import Trial
+from tpvqa.belief.expected import AGREEING
 from tpvqa.belief.faults import FaultModel, JointState
+from tpvqa.belief.information import answers_to_be_sure
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Ended
@@ -16,6 +19,9 @@ from tpvqa.pddl import Atom, load_task, task_from_text
 TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
 OF_MANY = 80
 """Five times the answers that settle a question where a VLM is trusted as in .65."""
+
+ALIKE = ceil(AGREEING * answers_to_be_sure(0.85))
+"""So many answers that agree say all that there is to it, where nothing is known of a VLM."""
 
 
 @pytest.mark.parametrize("vlm", ["oracle", "oracle:0.9"])
@@ -41,6 +47,33 @@ def test_a_container_that_falls_to_an_unknown_floor_is_given_up_for_another(vlm:
         elif isinstance(event, Asked):
             asked.update(question.text for question in event.questions)
             assert max(asked.values()) <= OF_MANY
+
+
+def test_what_is_answered_alike_is_not_asked_for_ever() -> None:
+    """Both containers fall to a floor that the task does not know: every *no* is right."""
+    files = {"domain": "domain.pddl", "problem": "collect.pddl", "questions": "questions.yaml"}
+    lost = Path(__file__).parents[1] / "proof" / "given" / "lost.yaml"
+    config = TrialConfig().but(
+        monitor="belief",
+        vlm="oracle",
+        world=f"scripted:{lost}",
+        task={name: str(TOYS / file) for name, file in files.items()},
+        limits={"actions": 20},
+    )
+    writer = MemoryWriter()
+    with Trial(config) as trial:
+        trial.run(writer)
+    end = writer.events[-1]
+    assert isinstance(end, Ended)
+    assert not end.believed_goal
+    asked, alike = Counter[str](), 0
+    for event in writer.events:  # its answers are all right, so that one scene's all agree
+        if isinstance(event, Acting):
+            asked.clear()
+        elif isinstance(event, Asked):
+            asked.update(question.text for question in event.questions)
+            alike = max(alike, *asked.values())
+    assert 3 < alike <= ALIKE
 
 
 def test_what_was_held_may_be_nowhere_and_its_hand_is_free() -> None:

@@ -204,16 +204,20 @@ class Chooser:
     ) -> Table | None:
         """What is being followed unseen, as the only choice; None where nothing is, or where it
         need not, or may not, be followed any more."""
-        if not self.following:
-            return None
-        choice = Choice(self.following[0], self._model.state(ranked[0][0]))
-        weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
         sure = sum(weight for number, weight in ranked if self.ahead.is_goal(number)) > IDLE
-        allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
-        allowed = allowed and self._worth_a_try(choice)
-        possible = allowed and float(self._doing.of(choice, ranked, kinds)[1] @ weights) >= 0
-        if self.settles >= SETTLED or sure or not possible or news > NEWS:
+        if self.settles >= SETTLED or sure or news > NEWS or self._unseen.dearer:
             self._unseen.following = ()
+        weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
+        state = self._model.state(ranked[0][0])
+        while self.following:
+            choice = Choice(self.following[0], state)
+            allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
+            if not allowed or not self._worth_a_try(choice):
+                self._unseen.following = ()
+            elif float(self._doing.of(choice, ranked, kinds)[1] @ weights) >= 0:
+                break
+            else:
+                self._unseen.skip()
         if not self.blind or not self.following:
             return None
         ones = np.ones((len(ranked), 1))

@@ -33,6 +33,11 @@ WORTHLESS = 0.1
 """Answers that settle less of a doubt that was never asked about are worth nothing."""
 EXHAUSTED = 5.0
 """So many times the answers that it takes to be sure are asked for in one scene, at most."""
+AGREEING = 6.0
+"""The same of those by which yeses outnumber noes, or noes yeses."""
+LATE = 1.5
+"""A mistake is noticed so many times as late as the calibration says, at most: else the less were
+known of a VLM, the more it would be asked."""
 
 
 class Expected:
@@ -69,7 +74,15 @@ class Expected:
 
     def answers_to_be_sure(self) -> float:
         """How many answers of this VLM it takes to notice a mistake."""
-        return 1 + (self._to_be_sure() - 1) * max(0.0, 5 * self.settling().share - 4)
+        return self._as_settled(self._to_be_sure())
+
+    @property
+    def late(self) -> float:
+        """How many answers later a mistake is taken to be noticed, where answers are priced."""
+        return self._as_settled(min(self._to_be_sure(), LATE * answers_to_be_sure(self.right)))
+
+    def _as_settled(self, answers: float) -> float:
+        return 1 + (answers - 1) * max(0.0, 5 * self.settling().share - 4)
 
     def exhausted(self, yeses: int, noes: int) -> bool:
         """Whether a question has said what it can in one scene, by its answers there.
@@ -80,7 +93,7 @@ class Expected:
         """
         by_words = answers_to_be_sure(self.right)
         many = yeses + noes >= EXHAUSTED * self._to_be_sure()
-        return many or abs(yeses - noes) >= 2 * EXHAUSTED * by_words
+        return many or abs(yeses - noes) >= AGREEING * by_words
 
     def _to_be_sure(self) -> float:
         rates = self._calibration.whole.rates

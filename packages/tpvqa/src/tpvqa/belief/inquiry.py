@@ -104,7 +104,7 @@ class Inquirer:
         work = table.weights[:, None] * table.work
         now = float(table.expected.min())
         # Q-MDP takes a mistake to be noticed at once; it is noticed so many answers later.
-        late = self._evidence.answers_to_be_sure()
+        late = self._evidence.late
         asking, looking = (
             dearer * self._costs.question / late,
             dearer * self._costs.look / late,

@@ -7,6 +7,7 @@ backward from the end, in every joint state, in the belief's own model.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import dropwhile
 from math import prod
 from typing import NamedTuple
 
@@ -35,6 +36,8 @@ BEST = 5
 """Ways to go on that are told of an action, those that are expected to cost least."""
 KEEPING = 1.0
 """By how many actions something else has to be better than what is being followed."""
+STAKES = 1.25
+"""What is followed is decided anew where a failed task costs so many times as much as then."""
 HORIZON = 14
 """Steps of a plan that are followed exactly; what comes after them is worked out roughly."""
 
@@ -73,6 +76,7 @@ class Unseen:
         self._known: dict[tuple[int, int, int, object], tuple[Floats, Floats]] = {}
         self._worked_out_for: tuple[int, int] = (-1, -1)
         self.following: tuple[Action, ...] = ()
+        self._stake = 0.0
         self._after: dict[Action, tuple[Action, ...]] = {}
 
     def renumbered(self, model: FaultModel) -> None:
@@ -89,6 +93,17 @@ class Unseen:
     def follow(self, action: Action) -> None:
         """Decide for an action, with what is best to come after it."""
         self.following = (action, *self._after.get(action, ()))
+        self._stake = self._ahead.failure
+
+    def skip(self) -> None:
+        """Leave out the action that comes next: it cannot be done."""
+        following = self.following
+        self.following = tuple(dropwhile(lambda each: each == following[0], following))
+
+    @property
+    def dearer(self) -> bool:
+        """Whether a failed task costs much more than when it was decided what to follow."""
+        return self._ahead.failure >= STAKES * self._stake
 
     def columns(
         self,
