@@ -14,13 +14,18 @@ from shutil import copy2
 from typing import Any
 
 import pytest
+import typer
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+from typer.core import TyperGroup
 
 import tpvqa
 from tests.lamps import make_set
-from tpvqa.distributions import EXPERIMENTS, HOUSEHOLD, ROBOTS
+from tpvqa.cli.app import app
+from tpvqa.distributions import EXPERIMENTS, HOUSEHOLD, ROBOTS, brought, remedy
+from tpvqa.plugins import Kind
 from tpvqa_household import DISTRIBUTION
+from tpvqa_household.tasks import task_files
 
 ROOT = Path(__file__).parents[1]
 TOYS = ROOT / "tests" / "fixtures" / "toys"
@@ -61,6 +66,26 @@ def test_each_ships_the_licence_of_the_repository() -> None:
         folder = FOLDERS[name]
         assert (folder / "LICENSE").read_bytes() == (ROOT / "LICENSE").read_bytes()
         assert (folder / "NOTICE").read_text().startswith(f"{name}\n")
+
+
+@pytest.mark.parametrize("name", [HOUSEHOLD, ROBOTS, EXPERIMENTS])
+def test_all_that_a_distribution_plugs_in_is_named_where_it_is_missing(name: str) -> None:
+    points = project(name)["entry-points"]
+    for kind in (Kind.VLM, Kind.WORLD, Kind.MONITOR, Kind.TRAINER):
+        assert set(points.get(kind.group, ())) == set(brought(name).get(kind.value, ()))
+        assert all(remedy(kind.value, each) for each in points.get(kind.group, ()))
+    assert remedy("world", "no-such") == ""
+
+
+def test_so_are_its_commands_and_tasks() -> None:
+    commands = typer.main.get_command(app)
+    assert isinstance(commands, TyperGroup)
+    context = typer.Context(commands)
+    assert {*brought(HOUSEHOLD)["command"]} <= {*commands.list_commands(context)}
+    bench = commands.get_command(context, "bench")
+    told = {f"bench {each}" for each in bench.commands}
+    assert told - {*brought(EXPERIMENTS)["command"]} == {"bench run"}
+    assert {*brought(HOUSEHOLD)["task"]} == {each.name for each in task_files()}
 
 
 @pytest.fixture(scope="module")

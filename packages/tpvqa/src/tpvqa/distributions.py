@@ -15,19 +15,31 @@ _FOLDERS: Mapping[str, str] = {
     ROBOTS: "packages/tpvqa-robots",
     EXPERIMENTS: "experiments",
 }
-_BROUGHT: Mapping[str, Mapping[str, str]] = {
-    "task": dict.fromkeys(
-        ("clean_dishes", "collect_toys", "eat_apple", "serve_breakfast"), HOUSEHOLD
-    ),
-    "VLM": {"embedded": HOUSEHOLD, "paper-table": EXPERIMENTS, "recorded-scenes": EXPERIMENTS},
-    "world": {"images": HOUSEHOLD, "kitchen": HOUSEHOLD, "toys": ROBOTS, "ros2": ROBOTS},
-    "command": {
-        "dataset": HOUSEHOLD,
-        "film": ROBOTS,
-        "skill-server": ROBOTS,
-        "bench paper": EXPERIMENTS,
-        "bench belief": EXPERIMENTS,
-        "bench viplan": EXPERIMENTS,
+_BROUGHT: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+    HOUSEHOLD: {
+        "task": ("clean_dishes", "collect_toys", "eat_apple", "serve_breakfast"),
+        "VLM": ("embedded",),
+        "trainer": ("embedded",),
+        "world": ("images", "kitchen"),
+        "command": ("dataset",),
+    },
+    ROBOTS: {
+        "task": (
+            *("collect_biplane", "collect_rubik", "collect_teddy", "collect_toys"),
+            *("collect_train", "collect_wood", "open_door", "sort_groceries"),
+        ),
+        "world": ("bins", "door", "ros2", "toys"),
+        "monitor": ("commanded",),
+        "command": (
+            *("bag", "build-interfaces", "film", "plansys2-performer"),
+            *("ros2-run", "skill-server"),
+        ),
+    },
+    EXPERIMENTS: {
+        "VLM": ("paper-table", "recorded-scenes"),
+        "command": tuple(
+            f"bench {part}" for part in ("abroad", "belief", "paper", "scenes", "viplan")
+        ),
     },
 }
 
@@ -44,12 +56,18 @@ def how_to_install(distribution: str, extra: str = "") -> str:
     return f"in a clone of the repository, pip install -e {target}"
 
 
+def brought(distribution: str) -> Mapping[str, tuple[str, ...]]:
+    """The names that a distribution of this repository brings, by kind."""
+    return _BROUGHT[distribution]
+
+
 def remedy(kind: str, name: str) -> str:
     """What to install for a missing task, VLM, world or command, as a sentence.
 
-    Empty where no distribution of this repository brings it.
+    Empty where no distribution of this repository brings it; of two that do the first one.
     """
-    distribution = _BROUGHT.get(kind, {}).get(name)
+    bringing = (each for each, kinds in _BROUGHT.items() if name in kinds.get(kind, ()))
+    distribution = next(bringing, None)
     if distribution is None:
         return ""
     return f"{name} comes with {distribution}. Install it: {how_to_install(distribution)}."
