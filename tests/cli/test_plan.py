@@ -151,6 +151,14 @@ def test_a_crash(folder: Path) -> None:
     process.stderr.close()
 
 
+def test_ctrl_c_while_the_command_is_loaded_is_no_traceback(tmp_path: Path) -> None:
+    (tmp_path / "typer.py").write_text("raise KeyboardInterrupt\n")
+    words = [sys.executable, "-m", "tpvqa", "--version"]
+    found = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(words, env=found, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "interrupted\n")
+
+
 def test_ctrl_c_leaves_nothing_behind(folder: Path) -> None:
     (folder / "domain.pddl").write_text(HARD_DOMAIN)
     (folder / "problem.pddl").write_text(hard_problem())
