@@ -79,6 +79,11 @@ SAID = {
     "(raining)": "Is it raining?",
     "(lying ?p - person)": "Is Anna lying?",
     "(clean ?p - plate)": "Is the plate clean?",
+    "(lies-on ?b - block ?t - table)": "Is the red block on the desk?",
+    "(hangs-from ?c - cup ?t - table)": "Is the mug hanging from the desk?",
+    "(stands-at ?r - robot ?t - table)": "Is the robot at the desk?",
+    "(belongs-to ?c - cup ?p - person)": "Does the mug belong to Anna?",
+    "(fits-in ?b - block ?d - drawer)": "Does the red block fit in the top drawer?",
 }  # fmt: skip
 
 

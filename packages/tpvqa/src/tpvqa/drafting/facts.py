@@ -109,6 +109,8 @@ class Facts:
             yield Clause(
                 "can", nouns[0], " ".join([*words[1:], *self._others(nouns[1:], plain=True)])
             )
+        elif words[-1] in PREPOSITIONS and len(nouns) > 1 and _does(words[0]):
+            yield from self._verb(words, nouns)
         elif words[-1] in PREPOSITIONS and (len(words) == 1 or len(nouns) > 1):
             yield from self._where(words, nouns, predicate)
         elif words[0] in PREPOSITIONS and len(words) > 1:
@@ -390,3 +392,9 @@ def _unknown(words: list[str], nouns: list[Noun]) -> Clause:
         return Clause("is", Noun("it"), f"true that {said}")
     rest = " and ".join(noun.said for noun in nouns[1:])
     return Clause("is", nouns[0], f"{said}{f' with {rest}' if rest else ''}")
+
+
+def _does(word: str) -> bool:
+    """Whether a word says what something does: lies, fits."""
+    _, form = verb_form(word) or ("", None)
+    return form is Form.THIRD

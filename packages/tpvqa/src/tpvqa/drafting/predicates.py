@@ -138,12 +138,16 @@ def _doing(
 def _does(
     phrases: Phrases, base: str, extra: str, nouns: list[Noun], others: Others
 ) -> Iterator[Clause]:
-    """contains(x, y), faces(x, y), lies(x, place), carry(x, gripper), runs(x)."""
+    """contains(x, y), faces(x, y), lies-on(x, place), carry(x, gripper), runs(x)."""
     things = phrases.things
     first, *rest = nouns
+    at = extra if extra in PREPOSITIONS and rest else None
+    extra = "" if at else extra
     if base in lexicon.POSTURES:
-        place = [phrases.placed(rest[0]), *others(rest[1:])] if rest else [extra]
-        if rest:
+        by = at == "at" and things.act(first.objects)  # a robot stands at what things lie on
+        where = f"{at} {rest[0].said}" if by else phrases.placed(rest[0], at) if rest else extra
+        place = [where, *others(rest[1:])]
+        if rest and at not in ("from", "by", "to", "with"):
             yield Clause("is", first, " ".join(place))
         yield Clause("is", first, f"{ing(base)} {' '.join(place)}".strip())
         return
@@ -155,10 +159,11 @@ def _does(
         )
         return
     second, *more = rest
-    if things.act(second.objects) and not things.act(first.objects):
+    if at is None and things.act(second.objects) and not things.act(first.objects):
         first, second = second, first
     tail = " ".join([second.said, *([extra] if extra else []), *others(more)])
-    joint = {"belong": "to ", "look": "at ", "lead": "to ", "connect": "to "}.get(base, "")
+    usual = {"belong": "to ", "look": "at ", "lead": "to ", "connect": "to "}.get(base, "")
+    joint = f"{at} " if at else usual
     if base in lexicon.STATIVE:
         yield Clause("does", first, f"{base} {joint}{tail}")
         if base in ("contain", "hold"):
