@@ -147,6 +147,15 @@ def test_an_episode_in_which_nothing_was_asked(tpvqa: Run) -> None:
     assert "Nothing was asked in quiet" in err
 
 
+def test_that_there_are_no_pictures_is_said(
+    tpvqa: Run, folders: list[str], seen: Path, typed: Typed
+) -> None:
+    for folder, bare in ((folders[0], True), (str(seen), False)):
+        typed("q\n")
+        _, _, err = tpvqa("label", folder)
+        assert ("nothing here was recorded with a picture" in err) == bare
+
+
 def test_single_keys_in_a_terminal(
     tpvqa: Run, folders: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

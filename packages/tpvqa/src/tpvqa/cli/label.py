@@ -62,6 +62,12 @@ def label(
     from tpvqa.labelling import Session
 
     with Session(episodes, vlm=vlm) as session:
+        if not any(asking.pictures for asking in session.order.askings):
+            tell(
+                "note: nothing here was recorded with a picture; label what you saw yourself. Of "
+                "simulated worlds `tpvqa calibrate` needs no labels: their logs hold the truth",
+                error=True,
+            )
         try:
             if page:
                 _serve(session, port=port, opened=open_)
