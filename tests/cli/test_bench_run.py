@@ -317,3 +317,17 @@ def test_what_is_refused_is_not_advised_on_before(tpvqa: Run) -> None:
     code, _, err = tpvqa("bench", "run", *OWN, *QUICK, "--conditions", "failure=7")
     assert code == 2
     assert "rates of faults from 0 to 1" in err
+
+
+def test_what_lies_in_the_folder_besides_is_named(tpvqa: Run) -> None:
+    words = ["build_tower", "--vlms", "oracle", "--worlds", "symbolic", "--episodes", 2]
+    words += ["--workers", 1, "--out", "bench"]
+    _, _, err = tpvqa("bench", "run", *words, "--monitors", "tp")
+    assert "episodes in" not in err
+    code, _, err = tpvqa("bench", "run", *words, "--monitors", "blind:2")
+    assert code == 0, err
+    assert "2 episodes in bench are of other tasks, monitors" in err
+    code, _, err = tpvqa("bench", "run", *words, "--monitors", "tp,blind:2")
+    assert code == 0, err
+    assert "episodes in" not in err
+    assert len(rows_of("bench")) == 4

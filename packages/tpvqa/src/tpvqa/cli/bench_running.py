@@ -52,6 +52,13 @@ def finish(results: "Results", out: Path, *, as_json: bool) -> None:
     else:
         print_results(results)
         tell(f"tables, figures and report: {out}/report.html")
+    if results.beside:
+        tell(
+            f"note: {results.beside:,} episodes in {out} are of other tasks, monitors, VLMs, "
+            "worlds or conditions, and in no table now. Name them all in one command: what is finished "
+            "runs no second time",
+            error=True,
+        )
     if results.errors:
         first = next(row for rows in results.rows.values() for row in rows if row.error)
         tell(

@@ -72,6 +72,7 @@ class Results:
         curves: Completion by task, monitor and accuracy.
         published: Accuracies that others measured, by way of asking and task, to stand beside.
         reference: The monitor that the others are compared with.
+        beside: Episodes in the same folder that are of other cells.
     """
 
     settings: Mapping[str, Any]
@@ -80,6 +81,7 @@ class Results:
     curves: Mapping[str, Mapping[str, Curve]] = field(default_factory=dict)
     published: Mapping[Way, Mapping[str, float]] = field(default_factory=dict)
     reference: str = REFERENCE
+    beside: int = 0
 
     @property
     def summaries(self) -> list[Summary]:
