@@ -55,8 +55,8 @@ def finish(results: "Results", out: Path, *, as_json: bool) -> None:
     if results.beside:
         tell(
             f"note: {results.beside:,} episodes in {out} are of other tasks, monitors, VLMs, "
-            "worlds or conditions, and in no table now. Name them all in one command: what is finished "
-            "runs no second time",
+            "worlds or conditions, and in no table now. Name them all in one command: what is "
+            "finished runs no second time",
             error=True,
         )
     if results.errors:
