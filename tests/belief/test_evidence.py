@@ -48,6 +48,7 @@ def found(
     belief.act(FIND, Rates(0.25, 0.25, 0.0))
     calibration = Calibration(
         vlm="",
+        rows=10**9,
         whole=Group(rates=AnswerRates(0.8, 0.2, 0, 0), rows=10**9),
         repeat_same_view=repeat,
         repeat_other_view=repeat / 2,
@@ -228,5 +229,6 @@ def test_a_vlm_is_not_asked_the_more_the_less_is_known_of_it() -> None:
     unknown = Evidence(Belief(MODEL), Calibration.default(), Trust.after(0))
     assert 1 < unknown.late <= LATE * answers_to_be_sure(unknown.right)
     assert unknown.answers_to_be_sure() > 1.5 * unknown.late
-    _, known = found(0.0)
-    assert known.late == known.answers_to_be_sure()
+    for repeat in (0.0, 0.5, 0.8):
+        _, known = found(repeat)
+        assert known.late == known.answers_to_be_sure()

@@ -70,3 +70,30 @@ def Action_(name: str) -> Action:  # noqa: N802
     from tpvqa.pddl import Conjunction
 
     return Action(name, (), Conjunction(()), ())
+
+
+@given(st.integers(0, 4), st.integers(0, 4))
+def test_to_do_again_what_is_done_is_no_failure(failed: int, again: int) -> None:
+    chances, action = Chances(), Action_("find")
+    for came in (*[FAILED] * failed, WORKED, *[{"achieved": 1.0}] * again):
+        chances.learn(came, action)
+    assert chances.skills.times(action) == pytest.approx((failed + 1, failed))
+
+
+def test_what_is_not_known_of_a_try_is_counted_by_halves() -> None:
+    chances, action = Chances(), Action_("find")
+    chances.learn({"failure": 0.5, "success": 0.5}, action)
+    chances.learn({"failure": 0.25, "success": 0.25, "achieved": 0.5}, action)
+    # Of four such, one failed twice, one the first time, and two worked at once.
+    assert chances.skills.times(action) == pytest.approx((0.5 * 2 + 0.5, 0.25 * 2 + 0.25))
+
+
+def test_tries_are_not_forgotten_once_an_action_could_not_be_done() -> None:
+    chances, action = Chances(), Action_("find")
+    for _ in range(3):
+        chances.learn(FAILED, action)
+    shares: list[dict[str, float]] = [FAILED]
+    for came, other in (({}, action), *((WORKED, Action_(f"go{each}")) for each in range(6))):
+        chances.learn(came, other, shares)
+        shares = [came, *shares]
+    assert chances.skills.times(action) == pytest.approx((3, 3))

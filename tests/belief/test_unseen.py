@@ -6,7 +6,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.pddl import Task, load_task
+from tpvqa.pddl import Action, Atom, Task, load_task, task_from_text
 from tpvqa.planning.regression import regress
 from tpvqa.tasks import find_task
 from tpvqa.worlds.world_file import load_world_file
@@ -129,3 +129,44 @@ def test_what_is_followed_is_decided_anew_where_a_failed_task_costs_more() -> No
     chooser.settles = 0.0
     chooser.table(belief, Rates(), plan)
     assert len(chooser.following) >= len(cheap)  # as thoroughly as what it is worth now
+
+
+def test_a_thing_at_one_of_many_places_is_looked_for_at_each_of_them() -> None:
+    """Nothing tells where it is; that a grasp at any one place will hardly do was reckoned with."""
+    places = [f"p{each}" for each in range(12)]
+    task = task_from_text(
+        """(define (domain d) (:requirements :typing) (:types place)
+        (:constants home - place) (:predicates (at ?p - place) (thing ?p - place) (holding) (done))
+        (:action go :parameters (?a ?b - place) :precondition (at ?a)
+          :effect (and (not (at ?a)) (at ?b)))
+        (:action pick :parameters (?p - place) :precondition (and (at ?p) (thing ?p))
+          :effect (and (not (thing ?p)) (holding)))
+        (:action drop :parameters (?p - place) :precondition (and (at ?p) (holding))
+          :effect (and (thing ?p) (not (holding))))
+        (:action put :parameters () :precondition (and (at home) (holding))
+          :effect (and (not (holding)) (done))))""",
+        f"""(define (problem p) (:domain d) (:objects {" ".join(places)} - place)
+        (:init (at home) (thing p0)) (:goal (done)))""",
+    )
+    model = FaultModel(task)
+    chooser, belief = Chooser(model, Costs()), Belief(model)
+    rest, states = task.init - {Atom("thing", ("p0",))}, []
+    plan: tuple[Action, ...] = ()
+    for place in places:
+        state = rest | {Atom("thing", (place,))}
+        words = (("go", "home", place), ("pick", place), ("go", place, "home"), ("put",))
+        plan = tuple(task.action(name, arguments) for name, *arguments in words)
+        chooser.ahead.add(AnnotatedPlan(task, plan, regress(task, plan, state)))
+        states.append((state, 1 / len(places)))
+    belief.begin(states)
+    chooser.settles, chooser.blind = 0.0, True
+    chooser.ahead.allow(None)
+    for _ in range(150):
+        action = chooser.table(belief, Rates(), plan).best.action
+        if action is None:
+            break
+        chooser.acted(belief, action)
+        belief.act(action, Rates(0.1, 0.0, 0.0))
+    else:
+        raise AssertionError("it goes round and round")
+    assert belief.where(task.goal_holds) > 0.8

@@ -323,11 +323,14 @@ def test_what_lies_in_the_folder_besides_is_named(tpvqa: Run) -> None:
     words = ["build_tower", "--vlms", "oracle", "--worlds", "symbolic", "--episodes", 2]
     words += ["--workers", 1, "--out", "bench"]
     _, _, err = tpvqa("bench", "run", *words, "--monitors", "tp")
-    assert "episodes in" not in err
+    assert "in no table" not in err
     code, _, err = tpvqa("bench", "run", *words, "--monitors", "blind:2")
     assert code == 0, err
-    assert "2 episodes in bench are of other tasks, monitors" in err
+    assert "2 of the finished episodes in bench are in no table now" in err
     code, _, err = tpvqa("bench", "run", *words, "--monitors", "tp,blind:2")
     assert code == 0, err
-    assert "episodes in" not in err
+    assert "in no table" not in err
+    words[words.index("--episodes") + 1] = 1
+    _, _, err = tpvqa("bench", "run", *words, "--monitors", "tp,blind:2")
+    assert "2 of the finished episodes in bench are in no table now" in err
     assert len(rows_of("bench")) == 4

@@ -82,6 +82,12 @@ SAID = {
     "(lies-on ?b - block ?t - table)": "Is the red block on the desk?",
     "(hangs-from ?c - cup ?t - table)": "Is the mug hanging from the desk?",
     "(stands-at ?r - robot ?t - table)": "Is the robot at the desk?",
+    "(lies-next-to ?b - block ?t - table)": "Is the red block next to the desk?",
+    "(in-front-of ?c - cup ?t - table)": "Is the mug in front of the desk?",
+    "(stands-in-front-of ?r - robot ?t - table)": "Is the robot in front of the desk?",
+    "(lies-on-top-of ?a ?b - block)": "Is the red block on top of the red block?",
+    "(lies-between ?a ?b ?c - table)": "Is the desk between the desk and the desk?",
+    "(sits-at ?r - robot ?s - room)": "Is the robot in the kitchen?",
     "(belongs-to ?c - cup ?p - person)": "Does the mug belong to Anna?",
     "(fits-in ?b - block ?d - drawer)": "Does the red block fit in the top drawer?",
 }  # fmt: skip

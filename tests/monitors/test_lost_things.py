@@ -1,15 +1,12 @@
 """Things that fall where nothing that the task knows says that they are."""
 
 from collections import Counter
-from math import ceil
 from pathlib import Path
 
 import pytest
 
 from tpvqa.assembly import Trial
-from tpvqa.belief.expected import AGREEING
 from tpvqa.belief.faults import FaultModel, JointState
-from tpvqa.belief.information import answers_to_be_sure
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Ended
@@ -20,7 +17,7 @@ TOYS = Path(__file__).parents[1] / "fixtures" / "toys"
 OF_MANY = 80
 """Five times the answers that settle a question where a VLM is trusted as in .65."""
 
-ALIKE = ceil(AGREEING * answers_to_be_sure(0.85))
+ALIKE = 14
 """So many answers that agree say all that there is to it, where nothing is known of a VLM."""
 
 

@@ -62,7 +62,7 @@ def brought(distribution: str) -> Mapping[str, tuple[str, ...]]:
 
 
 def remedy(kind: str, name: str) -> str:
-    """What to install for a missing task, VLM, world or command, as a sentence.
+    """What to install for a task, a command or a plug-in that is missing, as a sentence.
 
     Empty where no distribution of this repository brings it; of two that do the first one.
     """

@@ -10,7 +10,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.by_kind import Kinds
 from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.doing import IDLE, Doing, moved
+from tpvqa.belief.doing import BARELY, IDLE, Doing, moved
 from tpvqa.belief.falls import fallen
 from tpvqa.belief.far_off import FarOff
 from tpvqa.belief.faults import FaultModel, JointState, Rates
@@ -214,7 +214,7 @@ class Chooser:
             allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
             if not allowed or not self._worth_a_try(choice):
                 self._unseen.following = ()
-            elif float(self._doing.of(choice, ranked, kinds)[1] @ weights) >= 0:
+            elif self._doing.of(choice, ranked, kinds, floor=BARELY)[1] @ weights >= 0:
                 break
             else:
                 self._unseen.skip()

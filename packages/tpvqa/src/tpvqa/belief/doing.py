@@ -23,6 +23,8 @@ STILL = 0.02
 """Nothing is expected of what moves less of the belief."""
 FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
+BARELY = 0.02
+"""The same of what is followed unseen: that a thing is at one of many places was reckoned with."""
 
 
 class Doing:
@@ -53,7 +55,7 @@ class Doing:
         """Note where that is expected to have led, before anything was seen of it."""
         self._in_vain = bool(self._before) and moved(list(after.items()), self._before) < STILL
 
-    def of(self, choice: Choice, ranked: Ranked, kinds: Kinds) -> Floats:
+    def of(self, choice: Choice, ranked: Ranked, kinds: Kinds, *, floor: float = FLOOR) -> Floats:
         """What a choice has to do in the joint states: what it would change, and what it can, each
         less how probable that has to be; shape (2, states).
 
@@ -69,7 +71,7 @@ class Doing:
                 idle = AGAIN_IDLE if self._in_vain else idle
             undone, possible = self._far.does(choice.action, ranked, kinds).T[:2]
             found[0] = works * undone * possible - (1 - idle)
-            found[1] = undone * (possible - FLOOR)
+            found[1] = undone * (possible - floor)
         return found
 
 

@@ -79,7 +79,7 @@ class Expected:
     @property
     def late(self) -> float:
         """How many answers later a mistake is taken to be noticed, where answers are priced."""
-        return self._as_settled(min(self._to_be_sure(), LATE * answers_to_be_sure(self.right)))
+        return self._as_settled(min(self._to_be_sure(), LATE * self._said_to_be_sure()))
 
     def _as_settled(self, answers: float) -> float:
         return 1 + (answers - 1) * max(0.0, 5 * self.settling().share - 4)
@@ -91,9 +91,15 @@ class Expected:
         came than it takes, at what they are trusted now, nor where so many more agree than it
         takes, at what the calibration says of them.
         """
-        by_words = answers_to_be_sure(self.right)
         many = yeses + noes >= EXHAUSTED * self._to_be_sure()
-        return many or abs(yeses - noes) >= AGREEING * by_words
+        return many or abs(yeses - noes) >= AGREEING * self._said_to_be_sure()
+
+    def _said_to_be_sure(self) -> float:
+        """How many answers the calibration says it takes; that of a VLM of which nothing is known
+        only guesses how often an answer repeats the last one."""
+        calibration = self._calibration
+        repeat = calibration.repeat_same_view if calibration.rows else 0.0
+        return answers_to_be_sure(self.right, repeat)
 
     def _to_be_sure(self) -> float:
         rates = self._calibration.whole.rates

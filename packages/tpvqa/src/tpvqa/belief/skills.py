@@ -75,7 +75,7 @@ class _Run:
 
     Attributes:
         tries: How many.
-        possible: Probability that they could have worked.
+        needed: How many of them could have worked: none after the one that has.
         worked: Probability that one of them has.
         likelihood: Of what was seen, for every rate, shape (rates,).
     """
@@ -83,25 +83,30 @@ class _Run:
     def __init__(self, action: Action):
         self.action = action
         self.tries, self._all_fail = 0, 1.0
-        self.possible = self.worked = 0.0
+        self.needed = self.worked = 0.0
+        self._until = self._until_last = 0.0
         self.likelihood: Floats = np.ones_like(_RATES)
 
     def again(self, predicted: float) -> None:
         """Note one more try, of which a failure was predicted with some probability."""
         self.tries, self._all_fail = self.tries + 1, self._all_fail * predicted
+        self._until_last = self._until  # the one that has worked, if one of those before has
 
     def judge(self, shares: Mapping[str, float]) -> None:
         """Take in how the last try came out, as far as it was seen until now."""
-        failed, self.worked = shares.get("failure", 0.0), shares.get("success", 0.0)
-        if self.tries > 1:  # what an earlier try of the run has done is its success
-            self.worked += shares.get("achieved", 0.0)
-        self.possible = failed + self.worked
+        failed, succeeded = shares.get("failure", 0.0), shares.get("success", 0.0)
+        # What an earlier try of the run has done is its success.
+        earlier = shares.get("achieved", 0.0) if self.tries > 1 else 0.0
+        self.worked = succeeded + earlier
+        until = succeeded * self.tries + earlier * self._until_last
+        self._until = until / self.worked if self.worked > _EDGE else float(self.tries)
+        self.needed, possible = failed * self.tries + until, failed + self.worked
         # By how much what was seen speaks for a success, the belief in it beforehand taken out.
         speaks = (self.worked / (1 - self._all_fail)) / max(failed / self._all_fail, _EDGE)
         none = self.none
         likely = none + (1 - none) * speaks
         likely /= self._all_fail + (1 - self._all_fail) * speaks
-        self.likelihood = max(0.0, 1 - self.possible) + self.possible * likely
+        self.likelihood = max(0.0, 1 - possible) + possible * likely
 
     @property
     def none(self) -> Floats:
@@ -125,7 +130,7 @@ class Tried:
     @property
     def times(self) -> float:
         """Tries that could have worked."""
-        return sum(run.tries * run.possible for run in self.runs)
+        return sum(run.needed for run in self.runs)
 
     @property
     def failed(self) -> float:
@@ -146,7 +151,8 @@ class Tried:
     def as_if_failed(self) -> "Tried":
         """The same if all tries of the last run have failed."""
         last = _Run(self.runs[-1].action)
-        last.tries, last.possible = self.runs[-1].tries, 1.0
+        last.tries = self.runs[-1].tries
+        last.needed = float(last.tries)
         last.likelihood = last.none
         return Tried([*self.runs[:-1], last])
 
@@ -229,16 +235,17 @@ class Skills:
         possible = shares.get("failure", 0.0) + shares.get("success", 0.0)
         if self._run is not None:
             possible += shares.get("achieved", 0.0)
-        if possible >= 0.05 and 0 < predicted < 1:
+        counted = possible >= 0.05 and 0 < predicted < 1
+        if counted:
             if self._run is None:
                 self._run = _Run(action)
                 tried = self._tried.setdefault(action.name, {}).setdefault(action, Tried([]))
                 tried.runs.append(self._run)
             self._run.again(predicted)
             self._run.judge(shares)
-        # Of a run only its last try tells how it came out.
-        self._latest = [None if run is self._run else run for run in self._latest]
-        self._latest = [self._run, *self._latest][:LOOKED_BACK]
+            # Of a run only its last try tells how it came out.
+            self._latest = [None if run is self._run else run for run in self._latest]
+        self._latest = [self._run if counted else None, *self._latest][:LOOKED_BACK]
         self.learned += 1
         self._known.clear()
         self._shared.clear()

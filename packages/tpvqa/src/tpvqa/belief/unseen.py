@@ -7,7 +7,6 @@ backward from the end, in every joint state, in the belief's own model.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import dropwhile
 from math import prod
 from typing import NamedTuple
 
@@ -97,8 +96,7 @@ class Unseen:
 
     def skip(self) -> None:
         """Leave out the action that comes next: it cannot be done."""
-        following = self.following
-        self.following = tuple(dropwhile(lambda each: each == following[0], following))
+        self.following = self.following[1:]
 
     @property
     def dearer(self) -> bool:

@@ -61,7 +61,7 @@ def run_compared(
         },
         rows={cell: ledger.of(cell, episodes) for cell in cells},
         reference=grid.monitors[0],
-        beside=sum(cell not in cells for cell, _ in ledger.rows),
+        beside=sum(cell not in cells or at >= episodes for cell, at in ledger.rows),
     )
     write_tables(folder, results)
     write_bench_report(folder, results)

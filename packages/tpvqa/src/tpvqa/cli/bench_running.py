@@ -54,9 +54,9 @@ def finish(results: "Results", out: Path, *, as_json: bool) -> None:
         tell(f"tables, figures and report: {out}/report.html")
     if results.beside:
         tell(
-            f"note: {results.beside:,} episodes in {out} are of other tasks, monitors, VLMs, "
-            "worlds or conditions, and in no table now. Name them all in one command: what is "
-            "finished runs no second time",
+            f"note: {results.beside:,} of the finished episodes in {out} are in no table now: they "
+            "are of other tasks, monitors, VLMs, worlds or conditions, or beyond --episodes. Name "
+            "them all in one command: what is finished runs no second time",
             error=True,
         )
     if results.errors:

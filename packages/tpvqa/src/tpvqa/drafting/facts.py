@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases
 from tpvqa.drafting.facts_tables import HELD, ROADS, SAME, UNNAMED
-from tpvqa.drafting.forms import Form, participle, verb_form
+from tpvqa.drafting.forms import Form, does, participle, stands, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, word_set
 from tpvqa.drafting.predicates import of_noun, of_verb
 from tpvqa.drafting.things import Things, some
@@ -89,12 +89,13 @@ class Facts:
     # Which kind of name it is
 
     def _clauses(self, words: list[str], nouns: list[Noun], predicate: str) -> Iterator[Clause]:
-        if words[0] in ("is", "are", "was", "being") and len(words) > 1:
+        if len(words) > 1 and (words[0] in ("is", "are", "was", "being") or stands(words)):
             words = words[1:]
         if words[-1] == "top" and words[0] in PREPOSITIONS and len(nouns) > 1:
             words = [*words, "of"]
         if words[-1] == "of" and len(words) > 1 and len(nouns) > 1 and words[-2] != "top":
-            words = words[:-1] if verb_form(words[0]) is None else words
+            kept = words[0] in PREPOSITIONS or verb_form(words[0]) is not None  # in front of
+            words = words if kept else words[:-1]
         if not nouns:
             yield from self._of_nothing(words)
         elif (
@@ -109,7 +110,7 @@ class Facts:
             yield Clause(
                 "can", nouns[0], " ".join([*words[1:], *self._others(nouns[1:], plain=True)])
             )
-        elif words[-1] in PREPOSITIONS and len(nouns) > 1 and _does(words[0]):
+        elif words[-1] in PREPOSITIONS and len(nouns) > 1 and does(words):
             yield from self._verb(words, nouns)
         elif words[-1] in PREPOSITIONS and (len(words) == 1 or len(nouns) > 1):
             yield from self._where(words, nouns, predicate)
@@ -392,9 +393,3 @@ def _unknown(words: list[str], nouns: list[Noun]) -> Clause:
         return Clause("is", Noun("it"), f"true that {said}")
     rest = " and ".join(noun.said for noun in nouns[1:])
     return Clause("is", nouns[0], f"{said}{f' with {rest}' if rest else ''}")
-
-
-def _does(word: str) -> bool:
-    """Whether a word says what something does: lies, fits."""
-    _, form = verb_form(word) or ("", None)
-    return form is Form.THIRD

@@ -8,6 +8,7 @@ from tpvqa.drafting.lexicon import (
     INTRANSITIVE,
     IRREGULAR,
     POSTURES,
+    PREPOSITIONS,
     REGULAR,
     STATES,
     STATIVE,
@@ -107,3 +108,15 @@ def _doubles(base: str) -> bool:
     stem = base.removeprefix("un").removeprefix("re") if len(base) > 4 else base
     short = len(re.findall(r"[aeiou]+", stem)) == 1
     return short and re.search(r"[^aeiou][aeiou][^aeiouwxy]$", stem) is not None
+
+
+def does(words: list[str]) -> bool:
+    """Whether words say what something does, and where: lies on, fits in."""
+    return len(words) == 2 and (verb_form(words[0]) or ("", None))[1] is Form.THIRD
+
+
+def stands(words: list[str]) -> bool:
+    """Whether words say no more than where something is: lies next to, stands between."""
+    base, form = verb_form(words[0]) or ("", None)
+    further = words[1:] != [] and (len(words) > 2 or words[1] not in PREPOSITIONS - {"between"})
+    return further and base in POSTURES and form is Form.THIRD

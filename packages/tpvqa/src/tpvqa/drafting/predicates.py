@@ -144,7 +144,12 @@ def _does(
     at = extra if extra in PREPOSITIONS and rest else None
     extra = "" if at else extra
     if base in lexicon.POSTURES:
-        by = at == "at" and things.act(first.objects)  # a robot stands at what things lie on
+        # A robot stands at what things lie on.
+        by = (
+            at == "at"
+            and things.act(first.objects)
+            and all(things.place_of(each) == "on" for each in rest[0].objects)
+        )
         where = f"{at} {rest[0].said}" if by else phrases.placed(rest[0], at) if rest else extra
         place = [where, *others(rest[1:])]
         if rest and at not in ("from", "by", "to", "with"):

@@ -72,7 +72,7 @@ class Results:
         curves: Completion by task, monitor and accuracy.
         published: Accuracies that others measured, by way of asking and task, to stand beside.
         reference: The monitor that the others are compared with.
-        beside: Episodes in the same folder that are of other cells.
+        beside: Episodes in the same folder that are of other cells, or more than were asked for.
     """
 
     settings: Mapping[str, Any]
