@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from tpvqa.belief.belief import Belief
+from tpvqa.belief.biases import Biases
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.doubts import Doubts
 from tpvqa.belief.expected import Expected, Pair, answered_apart, unchanged
@@ -56,6 +57,7 @@ class Evidence(Expected):
         belief: What is believed.
         calibration: What answers are worth.
         trust: Whether they are worth that; None to take the calibration at its word.
+        biases: What was learned of single predicates; by default nothing.
         unexplained: Chance that a fact changed without the action model knowing.
         skill: What the report of any skill is worth; by default what the calibration says, or else
             what is learned.
@@ -71,13 +73,14 @@ class Evidence(Expected):
         belief: Belief,
         calibration: Calibration,
         trust: Trust | None,
+        biases: Biases | None = None,
         *,
         unexplained: float = UNEXPLAINED,
         skill: SkillWorth | None = None,
         doubts: Doubts | None = None,
         words: OtherWords | None = None,
     ):
-        super().__init__(belief, calibration, trust, words)
+        super().__init__(belief, calibration, trust, words, biases)
         self._unexplained, self._doubts = unexplained, doubts
         self.reports = Reports(calibration.skills if skill is None else (skill,))
         self._sensors = calibration.sensors
@@ -227,7 +230,9 @@ class Evidence(Expected):
         group = self._calibration.group(question)
         true = self._weighed.probability(question.atom, question.alike)
         yes, rates = answer.reply is Reply.YES, self._rates(question)
-        said = Said(yes, group.log_ratio(answer.reply, answer.p_yes))
+        said = Said(
+            yes, group.log_ratio(answer.reply, answer.p_yes) + self._bias(question, yes=yes)
+        )
         heard = self._heard_of(question, view) or Heard()
         cases = self._cases(question, heard)
         if last is not None:
@@ -257,6 +262,17 @@ class Evidence(Expected):
         self._weigh_answer(question, heard, cases, taken, said, rates, view)
         self._words.ask(question)
         return probable
+
+    def _bias(self, question: FactQuestion, *, yes: bool) -> float:
+        """What an answer is worth more than the calibration says, by what its predicate's were."""
+        if self._trust is None:
+            return 0.0
+        self.biases.hear(question, yes=yes)
+        return self.biases.shift(question, self._rates_said(question), yes=yes)
+
+    def leave(self) -> None:
+        """Note that an action comes next: what was right here is known as well as it will be."""
+        self.biases.leave(lambda each: self._belief.probability(each.atom, each.alike))
 
     def _take_affirmed(self, question: FactQuestion) -> float:
         """Weigh the belief by a yes that may be right where the fact does not hold any more.

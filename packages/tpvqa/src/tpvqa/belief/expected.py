@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from tpvqa.belief.belief import Belief
+from tpvqa.belief.biases import Biases
 from tpvqa.belief.calibration import Apart, Calibration
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.heard import Heard
@@ -48,9 +49,11 @@ class Expected:
         calibration: What answers are worth.
         trust: Whether they are worth that; None to take the calibration at its word.
         words: How far the wordings of a question err alike.
+        biases: What was learned of single predicates.
 
     Attributes:
         worth: What answers are worth, as far as they have shown it.
+        biases: What they have shown of single predicates, where trust is learned.
     """
 
     def __init__(
@@ -59,6 +62,7 @@ class Expected:
         calibration: Calibration,
         trust: Trust | None,
         words: OtherWords | None,
+        biases: Biases | None = None,
     ):
         self._belief, self._calibration, self._trust = belief, calibration, trust
         self._weighed: Weighed = belief
@@ -68,6 +72,7 @@ class Expected:
         }
         self._words = words or OtherWords()
         self._hearing = Hearing(self._words)
+        self.biases = biases or Biases()
         self.worth = Worth(trust, calibration.lasting)
         belief.suppose(self.worth.weights)
         self._likeliest: tuple[Floats, tuple[Floats, Columns, Places]] | None = None
@@ -161,6 +166,11 @@ class Expected:
         return Settling.of(doubts, new)
 
     def _rates(self, question: FactQuestion) -> Pair:
+        said = self._rates_said(question)
+        return said if self._trust is None else self.biases.rates(question, said)
+
+    def _rates_said(self, question: FactQuestion) -> Pair:
+        """By the calibration."""
         rates = self._calibration.group(question).rates
         return rates.yes_if_true, rates.yes_if_false
 

@@ -15,10 +15,12 @@ from tpvqa.errors import CalibrationError
 from tpvqa.files import read_plain
 
 if TYPE_CHECKING:
+    from tpvqa.belief.biases import Biases
     from tpvqa.belief.chances import Beta, Chances
     from tpvqa.belief.faults import Rates
 
 Cases = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
+Count = Annotated[float, Field(ge=0)]
 
 
 class Experience(BaseModel):
@@ -32,6 +34,8 @@ class Experience(BaseModel):
             before it was learned.
         trust: Probabilities of the factors by which the VLM's answers are worth more or less than
             its calibration says (`trust.GRID`); None where nothing was learned of them.
+        biases: By predicate, its yeses and answers where a fact holds, and where it does not
+            (`biases.Biases`); none in files of before it was learned.
         vlm: Which VLM that was.
         calibration: Which calibration (`Calibration.fingerprint`).
         trials: How many trials that is from.
@@ -50,6 +54,7 @@ class Experience(BaseModel):
         ]
         | None
     ) = None
+    biases: dict[str, tuple[Count, Count, Count, Count]] = Field(default_factory=dict)
     vlm: str = ""
     calibration: str = ""
     trials: int = Field(default=0, ge=0)
@@ -70,13 +75,16 @@ class Experience(BaseModel):
         return weights
 
     @staticmethod
-    def of(chances: "Chances", trust: Trust | None, trials: int) -> "Experience":
+    def of(
+        chances: "Chances", trust: Trust | None, trials: int, biases: "Biases | None" = None
+    ) -> "Experience":
         """What a monitor has learned by the end of a trial."""
         return Experience(
             failure=_cases(chances.failure),
             disturbance=_cases(chances.disturbance),
             spontaneous=_cases(chances.spontaneous) if chances.spontaneous.yes > 0 else None,
             trust=None if trust is None else trust.weights,
+            biases={} if biases is None else dict(biases.told),
             trials=trials,
         )
 
@@ -108,7 +116,7 @@ class Experience(BaseModel):
         far to trust it has to be learned anew."""
         known = {"vlm": vlm, "calibration": "" if calibration is None else calibration.fingerprint}
         same = self.trust is None or (self.vlm, self.calibration) == tuple(known.values())
-        return self.model_copy(update=known if same else {**known, "trust": None})
+        return self.model_copy(update=known if same else {**known, "trust": None, "biases": {}})
 
     @classmethod
     def load(cls, path: Path) -> "Experience | None":

@@ -6,6 +6,7 @@ from itertools import groupby
 from typing import Any
 
 from tpvqa.belief.ablations import belief_without
+from tpvqa.belief.biases import Biases
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Chooser
@@ -95,16 +96,14 @@ class BeliefMonitor(Learning, PlainArguments):
         self._risk = bound_for(settings.risk, risk)
         self._learns = settings.without != "learning"
         self._asks_all = settings.without == "relevance"
-        self.trust: Trust | None = None
-        if self._learns:
-            learned = None if experience is None else experience.trusting()
-            self.trust = learned or Trust.after(calibration.rows)
+        learned = None if experience is None else experience.trusting()
+        self.trust = (learned or Trust.after(calibration.rows)) if self._learns else None
+        told = Biases(None if experience is None else experience.biases)
         self._trials = 0 if experience is None else experience.trials
         self._priors = priors or Priors()
         doubts, words = Doubts(task, self._priors.elsewhere), settings.other_words
-        self.evidence = Evidence(
-            self.belief, calibration, self.trust, skill=settings.skill, doubts=doubts, words=words
-        )
+        asked = self.belief, calibration, self.trust, told
+        self.evidence = Evidence(*asked, skill=settings.skill, doubts=doubts, words=words)
         self.chances = Learned(known, self.belief, trusts=self.trust is not None)
         self._sight = Sight(self.belief.model)
         chooser = Chooser(self.belief.model, self.costs, self._sight)
@@ -174,7 +173,8 @@ class BeliefMonitor(Learning, PlainArguments):
         if self.trust is None:
             return None
         last = None if self._now.learned or self._chooser.blind else self._now.action
-        return Experience.of(self.chances.carried(last), self.trust, self._trials + 1)
+        chances, trials = self.chances.carried(last), self._trials + 1
+        return Experience.of(chances, self.trust, trials, self.evidence.biases)
 
     @property
     def goal_probability(self) -> float:
@@ -266,6 +266,7 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _acted(self, step: Step) -> None:
         self._learn(self._now.action)
+        self.evidence.leave()
         if self.belief.model.facts > MOST_FACTS:
             numbers = self.belief.renew()
             self.evidence.renumbered(numbers)
@@ -390,8 +391,7 @@ class BeliefMonitor(Learning, PlainArguments):
         )
         errand = "" if self._errand is None else f"{self._errand.why}; "
         why = errand + reason(grounds, decision, action, state, place)
-        moves = decision in (Decision.GO_ON, Decision.REPEAT, Decision.REPLAN)
-        if moves and (acted or place != step.index):
+        if action is not None and (acted or place != step.index):
             self._settled = action
         plan = self._ways.plan(state, action) if action and decision is Decision.REPLAN else None
         if action and decision is Decision.REPLAN and self._chooser.follows(action, state):
