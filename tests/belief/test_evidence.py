@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 from tpvqa.belief import AnswerRates, Calibration, Group
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import ANYWAY, Evidence
-from tpvqa.belief.expected import LATE
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.heard import Heard
-from tpvqa.belief.information import answers_to_be_sure
+from tpvqa.belief.information import LATE, answers_to_be_sure
 from tpvqa.belief.kinds import FRESH, KINDS
 from tpvqa.belief.trust import Trust
 from tpvqa.belief.worth import Said, Worth, by_truth

@@ -15,7 +15,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, PluginError
 
 DRAWER = Path(__file__).parents[1] / "fixtures" / "drawer"
-HASTY = "belief:failure=4:question=0.8"
+HASTY = "belief:failure=4:question=0.4"
 """Asks little, and is often wrong."""
 RISK = 0.1
 RISK_TRIALS, EPISODES = 19, 20

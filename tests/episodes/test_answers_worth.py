@@ -17,10 +17,17 @@ from tpvqa.episodes.report import render_report
 from tpvqa.events import Ended, Event, Started
 
 CONFIG = configured(
-    task="clean_dishes", world="symbolic", vlm="oracle:0.8", monitor="belief", episode=1
+    task="clean_dishes", world="symbolic", vlm="oracle:0.9", monitor="belief", episode=1
 )
-KNOWN = Calibration.default("oracle:0.8").model_copy(
-    update={"rows": 1200, "by_hand": 60, "repeat_same_view": 0.0}
+KNOWN = Calibration.default("oracle:0.9").model_copy(
+    update={
+        "whole": Group(rates=AnswerRates(0.9, 0.1, 0.0, 0.0), rows=1200),
+        "groups": (),
+        "ways": (),
+        "rows": 1200,
+        "by_hand": 60,
+        "repeat_same_view": 0.0,
+    }
 )
 
 
@@ -64,9 +71,9 @@ def test_the_default_is_named_and_what_it_costs() -> None:
         events = events_of(CONFIG.but(episode=episode))
         assert calibration_used(started(events)) == "default: nothing was known of this VLM"
         told = saves(events)
-        agreed = re.match(r"(0\.\d\d) of the answers agreed", told)
+        agreed = re.match(r"([01]\.\d\d) of the answers agreed", told)
         assert agreed is not None
-        assert abs(float(agreed[1]) - 0.8) < 0.2
+        assert abs(float(agreed[1]) - 0.9) < 0.15
         told_asked, told_less = asked_and_less(told)
         assert told_asked == questions(events)
         asked, less = asked + told_asked, less + told_less
@@ -78,11 +85,11 @@ def test_the_default_is_named_and_what_it_costs() -> None:
 def test_a_calibration_is_named_with_what_it_was_learnt_from() -> None:
     events = events_of(CONFIG, KNOWN)
     used = calibration_used(started(events))
-    assert used == f"of oracle:0.8, learnt from 1,200 answers, by 60 labels ({KNOWN.fingerprint})"
-    inferred = KNOWN.model_copy(update={"by_hand": 0, "inferred": 900, "vlm": "oracle:0.9"})
+    assert used == f"of oracle:0.9, learnt from 1,200 answers, by 60 labels ({KNOWN.fingerprint})"
+    inferred = KNOWN.model_copy(update={"by_hand": 0, "inferred": 900, "vlm": "oracle:0.8"})
     used = calibration_used(started(events_of(CONFIG, inferred)))
     assert "of which nobody said what was right" in used
-    assert used.endswith("; oracle:0.8 answered")
+    assert used.endswith("; oracle:0.9 answered")
 
 
 def test_answers_that_are_worse_than_believed_are_told() -> None:
@@ -114,7 +121,7 @@ def test_a_strangers_calibration_ends_nothing() -> None:
 def test_report_and_terminal_say_it() -> None:
     events = events_of(CONFIG)
     page = " ".join(render_report(events, Path()).split())
-    assert "calibration default: nothing was known of this VLM. 0." in page
+    assert "calibration default: nothing was known of this VLM." in page
     assert "questions less" in page
     console = Console(record=True, width=300, file=open("/dev/null", "w"))  # noqa: SIM115
     view = EpisodeView(console, live=False)

@@ -11,7 +11,7 @@ from tpvqa.belief.calibration import Apart, Calibration
 from tpvqa.belief.chances import Beta
 from tpvqa.belief.heard import Heard
 from tpvqa.belief.hearing import Hearing
-from tpvqa.belief.information import Floats, Reliability, answers_to_be_sure, settled
+from tpvqa.belief.information import LATE, Floats, Reliability, answers_to_be_sure, settled
 from tpvqa.belief.last_answer import LastAnswer
 from tpvqa.belief.lasting import EVERY, Columns
 from tpvqa.belief.led import Places
@@ -36,9 +36,6 @@ EXHAUSTED = 5.0
 """So many times the answers that it takes to be sure are asked for in one scene, at most."""
 AGREEING = 6.0
 """The same of those by which yeses outnumber noes, or noes yeses."""
-LATE = 1.5
-"""A mistake is noticed so many times as late as the calibration says, at most: else the less were
-known of a VLM, the more it would be asked."""
 
 
 class Expected:

@@ -18,6 +18,9 @@ Mixture = tuple[tuple[float, float], ...]
 TIMES = (1, 3, 8, 20, 60)
 """How often a question is thought to be asked in a row."""
 
+LATE = 1.5
+"""A mistake is noticed so many times as late as a calibration says, at most: else the less were
+known of a VLM, the more it would be asked."""
 CLOSED = 1e-12
 """A sum that is less negative than this is nought."""
 

@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
-from tpvqa.belief.information import answers_to_be_sure
+from tpvqa.belief.information import LATE, answers_to_be_sure
 from tpvqa.belief.trust import Trust
 from tpvqa.events import Ended, Event, Started, TrialState
 from tpvqa.events.events import Acting, Answered, QuestionRecord
@@ -85,7 +85,8 @@ class AnswersWorth:
         """What more labelled answers would save, in a sentence; empty where that is little.
 
         A plain estimate: how many answers it takes to be as sure of a fact as to act on it (Wald
-        1945), as the answers were trusted at the start, beside how many it would take if it were
+        1945), as the answers were trusted at the start (at most `LATE` times as many as the
+        calibration says, as questions are priced), beside how many it would take if it were
         known for certain how often they are right, and how often they only repeat the last one, as
         both were in this trial. Questions become fewer in that proportion.
         """
@@ -99,22 +100,23 @@ class AnswersWorth:
         taken = min(max((rates.yes_if_true + 1 - rates.yes_if_false) / 2, 0.51), 0.99)
         ratio = _trust(started, known).ratio(log(taken / (1 - taken)))
         trusted = min(1 / (1 + exp(-ratio)), taken)
-        now = answers_to_be_sure(trusted, known.repeat_same_view)
+        said = answers_to_be_sure(taken, known.repeat_same_view if known.rows else 0.0)
+        now = min(answers_to_be_sure(trusted, known.repeat_same_view), LATE * said)
         right = self._right / self._answers
         then = answers_to_be_sure(right, self._repeat(right, known.repeat_same_view))
         saved = 1 - then / now
-        said = (
+        told = (
             f"{right:.2f} of the answers agreed with what was believed before the next "
             f"action; they were taken to be right in {taken:.2f}, and trusted as in {trusted:.2f}"
         )
         if saved >= LITTLE:
             return (
-                f"{said}. If that were known for certain, {then:.1f} instead of {now:.1f} answers "
+                f"{told}. If that were known for certain, {then:.1f} instead of {now:.1f} answers "
                 f"to a question would do: about {round(saved * questions)} of the {questions} "
                 "questions less."
             )
         if right < taken - MISTAKEN:
-            return f"{said}: labels would say how far not to trust them."
+            return f"{told}: labels would say how far not to trust them."
         return ""
 
     def _repeat(self, right: float, otherwise: float) -> float:
