@@ -230,9 +230,8 @@ class Evidence(Expected):
         group = self._calibration.group(question)
         true = self._weighed.probability(question.atom, question.alike)
         yes, rates = answer.reply is Reply.YES, self._rates(question)
-        said = Said(
-            yes, group.log_ratio(answer.reply, answer.p_yes) + self._bias(question, yes=yes)
-        )
+        ratio = group.log_ratio(answer.reply, answer.p_yes)
+        said = Said(yes, self._biased(question, ratio, yes=yes))
         heard = self._heard_of(question, view) or Heard()
         cases = self._cases(question, heard)
         if last is not None:
@@ -263,16 +262,24 @@ class Evidence(Expected):
         self._words.ask(question)
         return probable
 
-    def _bias(self, question: FactQuestion, *, yes: bool) -> float:
-        """What an answer is worth more than the calibration says, by what its predicate's were."""
-        if self._trust is None:
-            return 0.0
-        self.biases.hear(question, yes=yes)
-        return self.biases.shift(question, self._rates_said(question), yes=yes)
+    def _biased(self, question: FactQuestion, ratio: float, *, yes: bool) -> float:
+        """What an answer is worth, by what those about its predicate were."""
+        if self._trust is None or question.still_shown:
+            return ratio
+        said = self._rates_said(question)
+        self.biases.hear(question, said, yes=yes)
+        return self.biases.worth(question, said, ratio, yes=yes)
 
     def leave(self) -> None:
         """Note that an action comes next: what was right here is known as well as it will be."""
-        self.biases.leave(lambda each: self._belief.probability(each.atom, each.alike))
+        self.biases.leave(self._likely_yes)
+
+    def carried(self) -> Biases:
+        """What the next trial may begin with of single predicates."""
+        return self.biases.after(self._likely_yes)
+
+    def _likely_yes(self, question: FactQuestion) -> float:
+        return self._belief.probability(question.atom, question.alike)
 
     def _take_affirmed(self, question: FactQuestion) -> float:
         """Weigh the belief by a yes that may be right where the fact does not hold any more.

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from tpvqa.belief.faults import Rates
 
 Cases = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
-Count = Annotated[float, Field(ge=0)]
+Count = Annotated[float, Field(ge=0, le=1e6)]
+Rate = Annotated[float, Field(gt=0, lt=1)]
 
 
 class Experience(BaseModel):
@@ -34,8 +35,8 @@ class Experience(BaseModel):
             before it was learned.
         trust: Probabilities of the factors by which the VLM's answers are worth more or less than
             its calibration says (`trust.GRID`); None where nothing was learned of them.
-        biases: By predicate, its yeses and answers where a fact holds, and where it does not
-            (`biases.Biases`); none in files of before it was learned.
+        biases: By predicate what its answers were like (`biases.Row`); none in files of before it
+            was learned.
         vlm: Which VLM that was.
         calibration: Which calibration (`Calibration.fingerprint`).
         trials: How many trials that is from.
@@ -54,7 +55,9 @@ class Experience(BaseModel):
         ]
         | None
     ) = None
-    biases: dict[str, tuple[Count, Count, Count, Count]] = Field(default_factory=dict)
+    biases: dict[str, tuple[tuple[Rate, Rate, Count, Count, Count], ...]] = Field(
+        default_factory=dict
+    )
     vlm: str = ""
     calibration: str = ""
     trials: int = Field(default=0, ge=0)
@@ -64,7 +67,7 @@ class Experience(BaseModel):
     def _of_today(cls, data: object) -> object:
         """Of a file of version 1 what it knows of failures: its factors were others."""
         if isinstance(data, dict) and data.get("version") == 1:
-            return {**data, "version": 2, "trust": None}
+            return {**data, "version": 2, "trust": None, "biases": {}}
         return data
 
     @field_validator("trust")
@@ -73,6 +76,15 @@ class Experience(BaseModel):
         if weights is not None and sum(weights) <= 0:
             raise ValueError("the probabilities add up to nothing")
         return weights
+
+    @field_validator("biases")
+    @classmethod
+    def _no_more_yeses_than_answers(
+        cls, told: dict[str, tuple[tuple[float, float, float, float, float], ...]]
+    ) -> dict[str, tuple[tuple[float, float, float, float, float], ...]]:
+        if any(row[2] > row[3] + row[4] + 1e-6 for rows in told.values() for row in rows):
+            raise ValueError("more yeses than answers")
+        return told
 
     @staticmethod
     def of(
@@ -115,7 +127,8 @@ class Experience(BaseModel):
         """What it says of a robot with this VLM: of another one, or with another calibration, how
         far to trust it has to be learned anew."""
         known = {"vlm": vlm, "calibration": "" if calibration is None else calibration.fingerprint}
-        same = self.trust is None or (self.vlm, self.calibration) == tuple(known.values())
+        nothing = self.trust is None and not self.biases
+        same = nothing or (self.vlm, self.calibration) == tuple(known.values())
         return self.model_copy(update=known if same else {**known, "trust": None, "biases": {}})
 
     @classmethod

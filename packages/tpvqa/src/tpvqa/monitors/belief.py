@@ -174,7 +174,7 @@ class BeliefMonitor(Learning, PlainArguments):
             return None
         last = None if self._now.learned or self._chooser.blind else self._now.action
         chances, trials = self.chances.carried(last), self._trials + 1
-        return Experience.of(chances, self.trust, trials, self.evidence.biases)
+        return Experience.of(chances, self.trust, trials, self.evidence.carried())
 
     @property
     def goal_probability(self) -> float:
