@@ -1,5 +1,6 @@
 """What labels, and what came before and after, teach."""
 
+from math import sqrt
 from pathlib import Path
 from statistics import fmean
 
@@ -43,7 +44,8 @@ def test_all_labels_are_the_truth(folders: list[Path], truths: Truths) -> None:
     assert calibration.by_hand == labels
     assert calibration.inferred == 0
     assert calibration.rows <= labels  # of many answers of a moment the first counts
-    assert abs(calibration.whole.rates.yes_if_true - 0.8) < 0.1
+    error = sqrt(0.8 * 0.2 / (calibration.rows / 2))  # some half of the answers are about facts
+    assert abs(calibration.whole.rates.yes_if_true - 0.8) < 3 * error < 0.2
 
 
 def test_some_labels_are_enough(folders: list[Path], truths: Truths) -> None:
