@@ -16,8 +16,8 @@ from tpvqa.questions.question import FactQuestion
 KNOWN = 20.0
 """Answers about facts that hold, and about such that do not, that the calibration counts for."""
 FIRST = 2
-"""So many answers about one fact in one scene count, the first ones: errors last, and whoever stops
-asking where answers agree hears the others oftener."""
+"""So many answers about one fact in one scene count, the first ones: errors last, and where answers
+agree it is asked no further, so that how many came says what they were."""
 KEPT = 200.0
 """Answers that are remembered of a predicate."""
 FURTHEST = 2.5

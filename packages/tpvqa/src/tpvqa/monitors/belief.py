@@ -102,8 +102,8 @@ class BeliefMonitor(Learning, PlainArguments):
         self._trials = 0 if experience is None else experience.trials
         self._priors = priors or Priors()
         doubts, words = Doubts(task, self._priors.elsewhere), settings.other_words
-        asked = self.belief, calibration, self.trust, told
-        self.evidence = Evidence(*asked, skill=settings.skill, doubts=doubts, words=words)
+        given = self.belief, calibration, self.trust, told
+        self.evidence = Evidence(*given, skill=settings.skill, doubts=doubts, words=words)
         self.chances = Learned(known, self.belief, trusts=self.trust is not None)
         self._sight = Sight(self.belief.model)
         chooser = Chooser(self.belief.model, self.costs, self._sight)
