@@ -205,7 +205,7 @@ class Chooser:
         """What is being followed unseen, as the only choice; None where nothing is, or where it
         need not, or may not, be followed any more."""
         sure = sum(weight for number, weight in ranked if self.ahead.is_goal(number)) > IDLE
-        if self.settles >= SETTLED or sure or news > NEWS or self._unseen.dearer:
+        if self.settles >= SETTLED or sure or news > NEWS or self._unseen.more_at_stake:
             self._unseen.following = ()
         weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
         state = self._model.state(ranked[0][0])

@@ -99,7 +99,7 @@ class Unseen:
         self.following = self.following[1:]
 
     @property
-    def dearer(self) -> bool:
+    def more_at_stake(self) -> bool:
         """Whether a failed task costs much more than when it was decided what to follow."""
         return self._ahead.failure >= STAKES * self._stake
 
