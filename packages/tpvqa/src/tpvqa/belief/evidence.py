@@ -264,7 +264,7 @@ class Evidence(Expected):
 
     def _biased(self, question: FactQuestion, ratio: float, *, yes: bool) -> float:
         """What an answer is worth, by what those about its predicate were."""
-        if self._trust is None or question.still_shown:
+        if not self._finds_biases or question.still_shown:
             return ratio
         said = self._rates_said(question)
         self.biases.hear(question, said, yes=yes)

@@ -164,7 +164,12 @@ class Expected:
 
     def _rates(self, question: FactQuestion) -> Pair:
         said = self._rates_said(question)
-        return said if self._trust is None else self.biases.rates(question, said)
+        return self.biases.rates(question, said) if self._finds_biases else said
+
+    @property
+    def _finds_biases(self) -> bool:
+        """Whether there are labelled rates that a predicate's may differ from."""
+        return self._trust is not None and self._calibration.rows > 0
 
     def _rates_said(self, question: FactQuestion) -> Pair:
         """By the calibration."""
