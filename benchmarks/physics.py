@@ -1,7 +1,11 @@
 """How many trials are completed where physics decides: monitors and answers side by side.
 
-.venv-robot/bin/python -m benchmarks.physics toys|bins|door FILE [TRIALS]  runs, writes rows
-.venv/bin/python -m benchmarks.physics toys|bins|door FILE --table  prints what is in the file
+.venv-robot/bin/python -m benchmarks.physics toys|far|bins|door FILE [TRIALS]  runs, writes rows
+.venv/bin/python -m benchmarks.physics toys|far|bins|door FILE --table  prints what is in the file
+
+python -m benchmarks.physics tables|strangers FILE TRIALS TAUGHT asks a network that was taught with
+pictures of these toys on other tables, or of other toys: TAUGHT has its questions.yaml, the folder
+network and calibration.json, see docs/robots.md. The household's package has to be installed, too.
 
 Every cell meets the same tables, slips and bad grasps by its seeds; a seed is run in all cells
 before the next. No limit but five times the actions of the plan.
@@ -23,6 +27,7 @@ from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Event
 from tpvqa.events.events import Acted, Acting, Asked, Ended
 
+TAUGHT = "embedded"
 ANSWERS = ("oracle:0.95:0:0.74", "oracle:0.8:0:0.74")
 
 
@@ -31,13 +36,13 @@ class Bench:
     """What is run.
 
     Attributes:
-        task: The task.
+        tasks: The tasks, one after the other by the seed.
         world: The world, with how often something is made to go wrong.
         cells: Monitors and VLMs.
         actions: Actions in a trial, at most.
     """
 
-    task: str
+    tasks: Sequence[str]
     world: str
     cells: Sequence[tuple[str, str]]
     actions: int
@@ -45,7 +50,7 @@ class Bench:
 
 BENCHES = {
     "toys": Bench(
-        "collect_toys",
+        ("collect_toys",),
         "toys:slip=0.25:bad=0.25",
         (
             *((monitor, "oracle") for monitor in ("none", "blind:2", "blind:3", "tpvqa")),
@@ -53,8 +58,26 @@ BENCHES = {
         ),
         45,
     ),
+    "far": Bench(
+        ("collect_toys",),
+        "toys:far=1:slip=0.1:bad=0.1",
+        (("tpvqa", "oracle"), *((monitor, ANSWERS[0]) for monitor in ("tpvqa", "belief"))),
+        45,
+    ),
+    "tables": Bench(
+        ("collect_toys",),
+        "toys:slip=0.25:bad=0.25",
+        (("tpvqa", TAUGHT), ("belief", TAUGHT)),
+        45,
+    ),
+    "strangers": Bench(
+        ("collect_rubik", "collect_biplane"),
+        "toys:slip=0.25:bad=0.25",
+        (("tpvqa", TAUGHT), ("belief", TAUGHT)),
+        45,
+    ),
     "bins": Bench(
-        "sort_groceries",
+        ("sort_groceries",),
         "bins:slip=0.1:bad=0.1",
         (
             *((monitor, "oracle") for monitor in ("none", "blind:2", "tpvqa")),
@@ -63,7 +86,7 @@ BENCHES = {
         40,
     ),
     "door": Bench(
-        "open_door",
+        ("open_door",),
         "door:slip=0.25:bad=0.25",
         (
             *((monitor, "oracle") for monitor in ("none", "blind:2", "tpvqa")),
@@ -74,17 +97,21 @@ BENCHES = {
 }
 
 
-def trial(bench: Bench, monitor: str, vlm: str, seed: int) -> dict[str, Any]:
+def trial(bench: Bench, monitor: str, vlm: str, seed: int, taught: Path = Path()) -> dict[str, Any]:
     """One trial, as a row."""
-    parts = {"world": bench.world, "monitor": monitor, "vlm": vlm}
-    config = TrialConfig.model_validate(
-        {
-            "task": bench.task,
-            "seed": seed,
-            "limits": dict.fromkeys(("actions", "repeats", "replans"), bench.actions),
-            **{name: {"spec": spec} for name, spec in parts.items()},
-        }
-    )
+    said: dict[str, dict[str, Any]] = {
+        "task": {"name": bench.tasks[seed % len(bench.tasks)]},
+        "world": {"spec": bench.world},
+        "monitor": {"spec": monitor},
+        "vlm": {"spec": vlm},
+        "limits": dict.fromkeys(("actions", "repeats", "replans"), bench.actions),
+    }
+    if vlm == TAUGHT:
+        said["vlm"]["spec"] = f"{TAUGHT}:{taught / 'network'}"
+        said["task"]["questions"] = taught / "questions.yaml"
+        if monitor == "belief":
+            said["monitor"]["calibration"] = taught / "calibration.json"
+    config = TrialConfig.model_validate({"seed": seed, **said})
     writer = MemoryWriter()
     with Trial(config) as made:
         made.run(writer)
@@ -174,7 +201,7 @@ def table(bench: Bench, rows: list[dict[str, Any]]) -> None:
         print(f"| `{action}` | {failed:.1f} of {times:.1f} | {fails} of {tries} |")
 
 
-def main(bench: Bench, file: Path, trials: int) -> None:
+def main(bench: Bench, file: Path, trials: int, taught: Path) -> None:
     """Run what is missing in a file."""
     rows = read(file)
     done = {(row["monitor"], row["vlm"], row["seed"]) for row in rows}
@@ -182,7 +209,7 @@ def main(bench: Bench, file: Path, trials: int) -> None:
         for seed in range(1, trials + 1):
             for monitor, vlm in bench.cells:
                 if (monitor, vlm, seed) not in done:
-                    row = trial(bench, monitor, vlm, seed)
+                    row = trial(bench, monitor, vlm, seed, taught)
                     gc.collect()  # Python does not see how much MuJoCo's models take
                     out.write(json.dumps(row) + "\n")
                     out.flush()
@@ -208,4 +235,5 @@ if __name__ == "__main__":
     if "--table" in sys.argv:
         table(chosen, read(rows_file))
     else:
-        main(chosen, rows_file, int(sys.argv[3]) if len(sys.argv) > 3 else 100)
+        words = dict(enumerate(sys.argv))
+        main(chosen, rows_file, int(words.get(3, 100)), Path(words.get(4, ".")))

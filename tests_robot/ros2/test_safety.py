@@ -140,6 +140,7 @@ def test_an_emergency_stop_ends_it_within_a_fifth_of_a_second(
         thread, came = in_thread(world, act(FIND))
         until_begun(state)
         wait_for(lambda: speaker.get_subscription_count() == 2)
+        assert world.halted() == ""
         with Lag() as lag:
             pressed, began = time.time(), time.monotonic()
             speaker.publish(Bool(data=True))
@@ -154,6 +155,7 @@ def test_an_emergency_stop_ends_it_within_a_fifth_of_a_second(
         again = world.execute(act(FIND))
         assert again.report is Report.UNAVAILABLE
         assert "emergency stop" in again.message
+        assert "emergency stop" in world.halted()  # so looks and questions end, too
     finally:
         button.close()
 

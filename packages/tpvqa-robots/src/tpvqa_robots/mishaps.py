@@ -17,6 +17,8 @@ class Mishaps:
         slip: Probability that the fingers give way while the base turns with a container.
         bad: Probability that a grasp is made 8 cm beside the thing.
         noise: A factor on all errors of the cameras.
+        far: Probability that the first toy stands at first where the arm reaches it only if the
+            base drives; it drives where this is not 0.
         appendix: The trial of the paper's appendix instead: the first container slips, the first
             grasp of the toy is bad, and nothing else.
     """
@@ -24,23 +26,26 @@ class Mishaps:
     slip: float = 0.0
     bad: float = 0.0
     noise: float = 1.0
+    far: float = 0.0
     appendix: bool = False
 
     @classmethod
     def read(cls, words: str, world: str = "toys") -> Self:
-        """Read `appendix` (also where nothing is said), or `slip=0.2:bad=0.1:noise=1`.
+        """Read `appendix` (also where nothing is said), or `slip=0.2:bad=0.1:noise=1:far=1`.
 
         Args:
             words: The words.
-            world: The world that they are for; named in errors. Only `toys` has an appendix.
+            world: The world that they are for; named in errors. Only `toys` has an appendix, and
+                something far away.
 
         Raises:
             PluginError: A word is not known, or no number from 0 to 1 (noise: 0 to 10) follows it.
         """
-        if world == "toys" and words in ("", APPENDIX):
+        toys = world == "toys"
+        if toys and words in ("", APPENDIX):
             return cls(appendix=True)
         said: dict[str, float] = {}
-        known = [field.name for field in fields(cls) if field.name != "appendix"]
+        known = {field.name for field in fields(cls)} - {"appendix"} - (set() if toys else {"far"})
         for word in words.split(":"):
             name, _, number = word.partition("=")
             try:
@@ -50,12 +55,17 @@ class Mishaps:
             if name not in known or not 0 <= value <= (10 if name == "noise" else 1):
                 raise PluginError(
                     f"The world {world!r} does not understand {word[:40]!r}. Write {world}, "
-                    + ("toys:appendix, " if world == "toys" else "")
-                    + f"or {world}:slip=0.2:bad=0.1:noise=1: two probabilities and a factor on "
-                    "the cameras' errors from 0 to 10."
+                    + ("toys:appendix, toys:far=1, " if toys else "")
+                    + f"or {world}:slip=0.2:bad=0.1:noise=1: probabilities, and of noise a "
+                    "factor on the cameras' errors from 0 to 10."
                 )
             said[name] = value
-        return cls(said.get("slip", 0.0), said.get("bad", 0.0), said.get("noise", 1.0))
+        return cls(
+            said.get("slip", 0.0),
+            said.get("bad", 0.0),
+            said.get("noise", 1.0),
+            said.get("far", 0.0),
+        )
 
 
 class Drawn:
@@ -85,6 +95,10 @@ class Drawn:
         if self._mishaps.appendix:
             return thing.startswith("toy") and count == 1
         return self._draw("bad grasp", thing, count) < self._mishaps.bad
+
+    def is_far(self) -> bool:
+        """Whether the first toy stands far from the robot at first."""
+        return self._draw("far") < self._mishaps.far
 
     def _draw(self, purpose: str, *key: object) -> float:
         return chance(self._seed, self._episode, purpose, *key).random()

@@ -170,6 +170,7 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         return {
             "physics": numbers.tolist(),
             "yaw": machine.yaw_target,
+            "place": list(machine.place_target),
             "reference": machine.reference.tolist(),
             "slips": [[slip.start, slip.seconds] for slip in machine.slips],
             "closing": machine.closing,
@@ -186,6 +187,7 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         mj.mj_setState(machine.model, machine.data, numbers, mj.mjtState.mjSTATE_INTEGRATION)
         machine.refresh()
         machine.yaw_target = snapshot["yaw"]
+        machine.place_target = tuple(snapshot.get("place", (0.0, 0.0)))
         machine.reference, machine.velocity = np.array(snapshot["reference"]), np.zeros(6)
         machine.closing = snapshot["closing"]
         machine.slips = [Slip(start, seconds) for start, seconds in snapshot["slips"]]

@@ -15,7 +15,7 @@ from tpvqa_robots.skills.simulated import SimulatedRobot
 from tpvqa_robots.toys.cameras import Cameras
 from tpvqa_robots.toys.machine import Machine
 from tpvqa_robots.toys.scans import SCANS
-from tpvqa_robots.toys.scene import ELSEWHERE, SPOTS, build
+from tpvqa_robots.toys.scene import ELSEWHERE, FAR, SPOTS, build
 from tpvqa_robots.toys.things import Spot
 from tpvqa_robots.toys.truth import CONTAINERS, KNOWN, true_state
 from tpvqa_robots.truth import atoms_of, see_known
@@ -72,7 +72,9 @@ class ToysWorld(PhysicalWorld):
 
     @classmethod
     def from_spec(cls, arguments: str, *, task: Task, seed: int, episode: int) -> "ToysWorld":
-        """The world of `toys`, `toys:appendix` or `toys:slip=0.2:bad=0.1:noise=1:grasps=ggcnn`.
+        """The world of `toys`, `toys:appendix` or `toys:slip=0.2:bad=0.1:noise=1:far=1`.
+
+        `grasps=ggcnn` may be among the words.
 
         Raises:
             PluginError: The words are not understood.
@@ -82,8 +84,9 @@ class ToysWorld(PhysicalWorld):
         return cls(task, mishaps=mishaps, grasps=grasps, seed=seed, episode=episode)
 
     def room(self, seed: int, episode: int) -> Any:
-        """The table, with things near where they usually stand."""
-        return build(_spots(self._things, seed, episode))
+        """The table, with things near where they usually stand, or a toy far from it."""
+        spots = _spots(self._things, seed, episode, far=self.drawn.is_far())
+        return build(spots, drives=self._mishaps.far > 0)
 
     def robot_of(self, machine: Machine, cameras: Cameras) -> SimulatedRobot:
         """The robot, which knows the things' colours; where they do not tell them apart, things."""
@@ -121,8 +124,10 @@ def _things_of(task: Task) -> tuple[str, ...]:
     return (*CONTAINERS, *toys)
 
 
-def _spots(things: Sequence[str], seed: int, episode: int) -> Mapping[str, Spot]:
+def _spots(things: Sequence[str], seed: int, episode: int, *, far: bool) -> Mapping[str, Spot]:
     drawn, usual = chance(seed, episode, "spots"), [*SPOTS.values(), ELSEWHERE]
+    if far:
+        usual[len(CONTAINERS)] = FAR
     found = {}
     for name, spot in zip(things, usual, strict=False):
         x, y = (v + drawn.uniform(-MOVED, MOVED) for v in (spot.x, spot.y))

@@ -15,6 +15,7 @@ TpvqaError
 │   └── BudgetError        one more request would go beyond what may be spent
 ├── CacheError             recorded answers cannot be read, or lack one that is asked for
 ├── WorldError             a world cannot do what it is asked to
+│   └── HaltedError        somebody stopped the robot: an emergency stop
 ├── PictureError           a picture cannot be read, is of another format, or is too large
 ├── PictureSetError        the set of pictures is incomplete or damaged
 ├── GeneratorError         pictures cannot be varied or generated (no key, say)
@@ -173,6 +174,10 @@ class PriorsError(PlacedError):
 
 class WorldError(TpvqaError):
     """A world cannot do what it is asked to."""
+
+
+class HaltedError(WorldError):
+    """Somebody stopped the robot while it was not acting: an emergency stop."""
 
 
 class PictureError(TpvqaError):

@@ -4,9 +4,10 @@ import numpy as np
 
 from tpvqa_robots.bins.scene import RIM, SOURCE, TARGETS
 from tpvqa_robots.bins.truth import middle_of
+from tpvqa_robots.skills.driving import AXIS
 from tpvqa_robots.skills.motions import Guard, Told
 from tpvqa_robots.skills.recognising import RecognisingRobot
-from tpvqa_robots.skills.simulated import AXIS, SkillError
+from tpvqa_robots.skills.simulated import SkillError
 from tpvqa_robots.toys.room import TABLE
 
 BINS = (SOURCE, *TARGETS)

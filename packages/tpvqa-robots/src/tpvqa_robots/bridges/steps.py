@@ -5,8 +5,8 @@ from threading import Event
 from typing import TYPE_CHECKING
 
 from tpvqa.drivers import Performer, SteppingTrial
+from tpvqa.drivers.early import EARLY, concluded
 from tpvqa.drivers.performing import Performed
-from tpvqa.errors import BudgetError
 from tpvqa.events import Ended, TrialState
 from tpvqa.events.events import Acted
 from tpvqa.events.records import answered_record
@@ -90,8 +90,8 @@ class PausableTrial:
         stepping.begun()
         try:
             stepping.send(self._paused(stepping.pending) or self._perform(stepping.pending))
-        except BudgetError as spent:
-            self.end(Conclusion("budget spent", str(spent)))
+        except EARLY as error:
+            self.end(concluded(error))
         else:
             self._end_if_over(stepping)
 

@@ -161,6 +161,11 @@ class Ros2World:
             self._ended = self._link.now()
             raise
 
+    def halted(self) -> str:
+        """Who stopped it, and where things are; empty where nobody did."""
+        stopped = self._stop or next((c.stopped for c in self._clients.values() if c.stopped), "")
+        return f"{stopped}; {self._where()}" if stopped else ""
+
     def close(self) -> None:
         """Give the robot back and end the node. Can be called twice."""
         for client in self._clients.values():

@@ -5,12 +5,14 @@ Least Squares Methods; on MuJoCo's own Jacobians. The gripper always points down
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tpvqa_robots.skills.driving import Stance
+from tpvqa_robots.toys.machine import wheels_of
 from tpvqa_robots.toys.mujoco import load_mujoco
 from tpvqa_robots.toys.scene import YAW_JOINT
 
@@ -23,6 +25,9 @@ APART = 0.02
 """Between two points of a straight line that are looked at, metres."""
 BUMP = 0.002
 """How deep a part may be in the table or in its own base, metres: meshes are convex hulls."""
+
+
+BEGUN = Stance(0.0, 0.0, 0.0)
 
 
 class OutOfReachError(Exception):
@@ -57,7 +62,7 @@ class Kinematics:
         model: The compiled scene.
         joints: Addresses of the arm's joints in `qpos`.
         dofs: The same in `qvel`.
-        yaw: Tells how far the base has turned, radians: what stands around it is elsewhere then.
+        stance: Tells where the base stands: what stands around it is elsewhere then.
     """
 
     def __init__(
@@ -66,13 +71,13 @@ class Kinematics:
         joints: NDArray[np.int64],
         dofs: NDArray[np.int64],
         *,
-        yaw: Callable[[], float] = lambda: 0.0,
+        stance: Callable[[], Stance] = lambda: BEGUN,
     ):
         self._mj = mj = load_mujoco()
         self._model, self._data = model, mj.MjData(model)
         self._joints, self._dofs = joints, dofs
-        self._yaw = yaw
-        self._yaw_joint = model.joint(YAW_JOINT).qposadr[0]
+        self._stance = stance
+        self._base = [*(w.joint for w in wheels_of(model)), model.joint(YAW_JOINT).qposadr[0]]
         self._site = model.site("arm_hand_grip_site").id
         self._foot = model.body("support").id
         self._range = model.jnt_range[[model.dof_jntid[dof] for dof in dofs]]
@@ -146,9 +151,10 @@ class Kinematics:
         self._mj.mj_comPos(self._model, self._data)
 
     def _see_free(self, arm: Vector) -> None:
-        self._data.qpos[self._yaw_joint] = self._yaw()
+        stance = astuple(self._stance())
+        self._data.qpos[self._base] = stance[-len(self._base) :]
         self._place(arm)
-        self._data.qpos[self._yaw_joint] = 0.0
+        self._data.qpos[self._base] = 0.0
         self._mj.mj_collision(self._model, self._data)
         for contact in self._data.contact[: self._data.ncon]:
             bodies = {int(self._model.geom_bodyid[geom]) for geom in contact.geom}

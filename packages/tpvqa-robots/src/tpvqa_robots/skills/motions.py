@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.worlds import Report
+from tpvqa_robots.skills.driving import Stance
 from tpvqa_robots.skills.kinematics import Grip, Kinematics
 from tpvqa_robots.toys.machine import TICK, Machine
 
@@ -106,6 +107,15 @@ class Motions:
             self._tick(guard)
         self.wait(SETTLE, guard)
 
+    def drive(self, stance: Stance, guard: Guard) -> None:
+        """Bring the base somewhere, then turn it, and wait until it stands."""
+        machine = self._machine
+        machine.place_target = stance.ahead, stance.aside
+        give_up = machine.time + 10
+        while _off(machine.place, machine.place_target) > 0.01 and machine.time < give_up:
+            self._tick(guard)
+        self.turn(stance.yaw, guard)
+
     def fingers(self, guard: Guard, *, shut: bool) -> None:
         """Close or open the fingers, and wait for them."""
         self._machine.fingers(shut=shut)
@@ -128,6 +138,10 @@ class Motions:
             if self._machine.time >= guard.until:
                 raise Stopped(Report.LATE)
         self._machine.tick()
+
+
+def _off(here: tuple[float, float], there: tuple[float, float]) -> float:
+    return float(np.hypot(here[0] - there[0], here[1] - there[1]))
 
 
 Told = Callable[[str], None]

@@ -16,6 +16,7 @@ from tpvqa.worlds import Execution, Report
 from tpvqa_robots.grasps.antipodal import antipodal
 from tpvqa_robots.grasps.grasp import Grasp
 from tpvqa_robots.grasps.methods import Method
+from tpvqa_robots.skills.driving import AXIS, Stance, in_reach, looking, stance_before
 from tpvqa_robots.skills.kinematics import Grip, Kinematics, OutOfReachError
 from tpvqa_robots.skills.motions import Guard, Motions, Stopped, Told
 from tpvqa_robots.skills.seeing import HUES, Seen, see
@@ -27,12 +28,8 @@ CARRY = Grip(0.36, 0.0, 0.98, np.pi / 2)
 """Where the gripper is while the base turns: before the table's edge, above its top."""
 START = np.array([-0.381, -1.951, 1.988, -1.608, -1.571, -1.952])
 """Joints near `CARRY`, from which the solver starts."""
-AXIS = -0.21
-"""Where the base turns, metres ahead of the arm's foot."""
-AHEAD = 0.06
+NEAR = 0.06
 """Radians off the middle at which a thing is near enough for the arm."""
-SCAN = (0.0, 0.55, -0.55, 0.95, -0.95)
-"""Where the base looks for what is not in sight, radians."""
 ABOVE = 0.14
 """Metres above a grasp from which the gripper comes straight down."""
 EMPTY = 0.003
@@ -94,7 +91,7 @@ class SimulatedRobot:
         self.machine, self.cameras = machine, cameras
         self._bad_grasp, self._grasps = bad_grasp, grasps
         self._kinematics = Kinematics(
-            machine.model, machine.qpos, machine.dofs, yaw=lambda: machine.yaw
+            machine.model, machine.qpos, machine.dofs, stance=lambda: self.stance
         )
         self._motions = Motions(machine, self._kinematics)
         self._lock = threading.Lock()
@@ -172,6 +169,11 @@ class SimulatedRobot:
         return self.machine.joints()
 
     @property
+    def stance(self) -> Stance:
+        """Where the base stands, by its wheels."""
+        return Stance(*self.machine.place, self.machine.yaw)
+
+    @property
     def closed_on_something(self) -> bool:
         """Whether the fingers are shut and something keeps them apart."""
         return self.shut and self.machine.width > EMPTY
@@ -215,15 +217,19 @@ class SimulatedRobot:
         if not self._knows(thing):
             raise SkillError(f"what {thing} looks like is not known")
         self._retreat(guard)
-        for yaw in (self.machine.yaw, *SCAN):
+        for stance in looking(self.stance, drives=self.machine.drives):
             feedback(f"looking for {thing}")
-            self._motions.turn(yaw, guard)
+            self._motions.drive(stance, guard)
             seen = self._see(thing)
+            if seen is not None and self.machine.drives and not in_reach(seen.x, seen.y):
+                feedback(f"driving to {thing}")
+                self._motions.drive(stance_before(seen.x, seen.y, self.stance), guard)
+                seen = self._see(thing)
             if seen is None:
                 continue
             for _ in range(3):
                 off = float(np.arctan2(seen.y, seen.x - AXIS))
-                if abs(off) < AHEAD and not seen.cut:
+                if abs(off) < NEAR and not seen.cut:
                     break
                 feedback(f"turning to {thing}")
                 self._motions.turn(self.machine.yaw + off, guard)

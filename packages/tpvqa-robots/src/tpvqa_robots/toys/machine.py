@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa_robots.toys.mujoco import load_mujoco
-from tpvqa_robots.toys.scene import ARM_JOINTS, FINGER_JOINTS, YAW_JOINT
+from tpvqa_robots.toys.scene import ARM_JOINTS, FINGER_JOINTS, WHEELS, YAW_JOINT
 
 Vector = NDArray[np.float64]
 
@@ -19,6 +19,8 @@ STIFFNESS, DAMPING = 1000.0, 63.0
 """Of the arm's joints once their inertia is taken out, 1/s² and 1/s."""
 TURNING, TURN_GAIN = 0.8, 6.0
 """The base's greatest speed, rad/s, and its speed for an error of one radian."""
+DRIVING, DRIVE_GAIN = 0.3, 3.0
+"""The same of its wheels along each of its ways, m/s, and for an error of one metre."""
 SHUT = 0.8
 """What the finger joints are told so as to close, radians."""
 OPEN_WIDTH = 0.085
@@ -39,6 +41,32 @@ class Slip:
     def at(self, time: float) -> bool:
         """Whether it lasts now."""
         return self.start <= time < self.start + self.seconds
+
+
+@dataclass(frozen=True, slots=True)
+class Wheel:
+    """One way in which the base drives: where its numbers stand in the model.
+
+    Attributes:
+        joint: In `qpos`.
+        dof: In `qvel`.
+        motor: In `ctrl`.
+    """
+
+    joint: int
+    dof: int
+    motor: int
+
+
+def wheels_of(model: Any) -> tuple[Wheel, ...]:
+    """The ways in which a model's base drives, ahead and to its left; none where it only turns."""
+    there = {model.joint(i).name for i in range(model.njnt)}
+    return tuple(
+        Wheel(int(joint.qposadr[0]), int(joint.dofadr[0]), model.actuator(f"actuator_{name}").id)
+        for name in WHEELS
+        if f"joint_{name}" in there
+        for joint in [model.joint(f"joint_{name}")]
+    )
 
 
 class Machine:
@@ -68,10 +96,11 @@ class Machine:
         self._finger_qpos = [model.joint(name).qposadr[0] for name in FINGER_JOINTS]
         self._yaw_qpos = model.joint(YAW_JOINT).qposadr[0]
         self._turner = model.actuator("actuator_mobile_yaw").id
+        self._wheels = wheels_of(model)
         self._inertia = np.zeros((model.nv, model.nv))
         self._of_arm = np.ravel_multi_index(np.ix_(self.dofs, self.dofs), self._inertia.shape)
         self._step, self._steps = model.opt.timestep, round(TICK / model.opt.timestep)
-        self.yaw_target = 0.0
+        self.yaw_target, self.place_target = 0.0, (0.0, 0.0)
         self.reference = np.zeros(6)
         self.velocity = np.zeros(6)
 
@@ -93,14 +122,28 @@ class Machine:
 
     @property
     def speed(self) -> float:
-        """Of the fastest joint, the base's included, rad/s."""
+        """Of the fastest joint, rad/s, or of the base's wheels, m/s."""
         moving = [*self.dofs, self.model.joint(YAW_JOINT).dofadr[0]]
+        moving += [wheel.dof for wheel in self._wheels]
         return float(np.abs(self.data.qvel[moving]).max())
 
     @property
     def yaw(self) -> float:
         """How far the base has turned, radians."""
         return float(self.data.qpos[self._yaw_qpos])
+
+    @property
+    def drives(self) -> bool:
+        """Whether the base drives, too."""
+        return bool(self._wheels)
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """How far the base has driven ahead and to its left, metres, as if it had not turned."""
+        if not self._wheels:
+            return 0.0, 0.0
+        ahead, aside = (float(self.data.qpos[wheel.joint]) for wheel in self._wheels)
+        return ahead, aside
 
     @property
     def width(self) -> float:
@@ -111,12 +154,14 @@ class Machine:
     def joints(self) -> Mapping[str, float]:
         """All joints that the robot reports."""
         found = dict(zip(ARM_JOINTS, map(float, self.arm), strict=True))
+        if self.drives:
+            found |= zip((f"joint_{wheel}" for wheel in WHEELS), self.place, strict=True)
         return found | {YAW_JOINT: self.yaw, "gripper": self.width}
 
     def hold(self) -> None:
         """Stand still where the arm and the base are."""
         self.reference, self.velocity = self.arm, np.zeros(6)
-        self.yaw_target = self.yaw
+        self.yaw_target, self.place_target = self.yaw, self.place
 
     def fingers(self, *, shut: bool) -> None:
         """Tell the fingers to close or to open; it takes them about half a second."""
@@ -151,5 +196,8 @@ class Machine:
         ctrl[self._motors] = torque
         turn = TURN_GAIN * (self.yaw_target - self.yaw)
         ctrl[self._turner] = min(max(turn, -TURNING), TURNING)
+        for wheel, target in zip(self._wheels, self.place_target, strict=False):
+            drive = DRIVE_GAIN * (target - data.qpos[wheel.joint])
+            ctrl[wheel.motor] = min(max(drive, -DRIVING), DRIVING)
         slips = bool(self.slips) and any(slip.at(self.time) for slip in self.slips)
         ctrl[self._fingers] = 0.0 if slips else self.closing

@@ -27,6 +27,8 @@ ARM_JOINTS = tuple(
     for name in ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
 )
 YAW_JOINT = "joint_mobile_yaw"
+WHEELS = ("mobile_forward", "mobile_side")
+"""What a base that drives has besides: how far it has gone ahead and to its left."""
 FINGER_JOINTS = ("arm_hand_finger_joint", "arm_hand_right_outer_knuckle_joint")
 FINGER_GAIN, FINGER_TORQUE = 60.0, 3.0
 """Of a finger's motor, Nm/rad and Nm: some 30 N between the pads."""
@@ -37,6 +39,8 @@ SPOTS: Mapping[str, Spot] = {
 }
 ELSEWHERE = Spot(0.56, 0.70, -0.4)
 """Where a second toy stands."""
+FAR = Spot(0.88, -0.44, 0.5)
+"""Where the arm reaches nothing unless the base drives."""
 
 _ASSETS = """
   <texture name="grain" type="2d" builtin="flat" rgb1=".66 .54 .40" width="200" height="200"
@@ -194,25 +198,27 @@ def gripper() -> Any:
     return _linked(part_of_robosuite(robosuite_models() / "grippers" / "robotiq_gripper_85.xml"))
 
 
-def build(spots: Mapping[str, Spot] = SPOTS) -> Any:
+def build(spots: Mapping[str, Spot] = SPOTS, *, drives: bool = False) -> Any:
     """The compiled model of the toys' table with the robot before it.
 
     Args:
         spots: Where the things stand: those of `things.MOVABLE` and `scans.SCANS` that are there.
+        drives: Whether the base drives, too.
 
     Raises:
         MissingExtraError: MuJoCo or robosuite is not installed.
     """
-    return with_robot(_room(spots))
+    return with_robot(_room(spots), drives=drives)
 
 
-def with_robot(room: Any, camera: Mast = OVER_THE_TABLE) -> Any:
+def with_robot(room: Any, camera: Mast = OVER_THE_TABLE, *, drives: bool = False) -> Any:
     """The compiled model: UR5e and Robotiq 85 on an Omron base that turns, as robosuite has them.
 
     Args:
         room: A spec in which the arm's foot is to stand over the origin; what the arm has to keep
             off is its body `table`.
         camera: Where the camera above it is.
+        drives: Whether the base drives, too.
 
     Raises:
         MissingExtraError: MuJoCo or robosuite is not installed.
@@ -220,10 +226,11 @@ def with_robot(room: Any, camera: Mast = OVER_THE_TABLE) -> Any:
     mj = load_mujoco()
     assets = robosuite_models()
     base = part_of_robosuite(assets / "bases" / "omron_mobile_base.xml")
-    for name in ("mobile_forward", "mobile_side", "torso_height"):
+    for name in ("torso_height",) if drives else (*WHEELS, "torso_height"):
         base.delete(base.actuator(f"actuator_{name}"))
         base.delete(base.joint(f"joint_{name}"))
-    base.joint("joint_mobile_yaw").frictionloss = 20
+    for name in (*WHEELS, "mobile_yaw") if drives else ("mobile_yaw",):
+        base.joint(f"joint_{name}").frictionloss = 20
     mast = mj.MjSpec.from_string(
         _MAST.format(end=camera.end, head=camera.head, eye=camera.eye, axes=camera.axes)
     )

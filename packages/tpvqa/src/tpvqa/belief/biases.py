@@ -9,7 +9,7 @@ answers right that it rests on.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from math import exp, log
+from math import exp, log, sqrt
 
 from tpvqa.questions.question import FactQuestion
 
@@ -20,6 +20,8 @@ FIRST = 2
 agree it is asked no further, so that how many came says what they were."""
 KEPT = 200.0
 """Answers that are remembered of a predicate."""
+CLEAR = 2.0
+"""Standard errors by which the yeses that came have to differ from those that were due."""
 FURTHEST = 2.5
 """By so much, in nats, the odds of a yes may be other than the calibration says."""
 STEP = 0.05
@@ -122,14 +124,22 @@ def _possible(said: Pair) -> bool:
 
 def _balanced(rows: Iterable[Row], said: Pair) -> float:
     """By how much odds have to be moved that as many yeses are expected as came."""
-    rows = (*rows, (*said, KNOWN * sum(said), KNOWN, KNOWN))
+    rows = tuple(rows)
     came = sum(row[2] for row in rows)
+    if abs(came - sum(t * a + f * b for a, b, _, t, f in rows)) < CLEAR * _error(rows):
+        return 0.0
+    rows, came = (*rows, (*said, KNOWN * sum(said), KNOWN, KNOWN)), came + KNOWN * sum(said)
     low, high = -FURTHEST, FURTHEST
     while high - low > STEP / 10:
         middle = (low + high) / 2
         due = sum(t * _odd(a, middle) + f * _odd(b, middle) for a, b, _, t, f in rows)
         low, high = (middle, high) if due < came else (low, middle)
     return STEP * round((low + high) / 2 / STEP)
+
+
+def _error(rows: Iterable[Row]) -> float:
+    """The standard error of how many yeses were due; a fact's answers in one scene are as one."""
+    return sqrt(FIRST * sum(t * a * (1 - a) + f * b * (1 - b) for a, b, _, t, f in rows))
 
 
 def _kept(rows: Iterable[Row]) -> tuple[Row, ...]:

@@ -4,9 +4,10 @@ import asyncio
 from collections.abc import AsyncIterator
 from typing import Self
 
+from tpvqa.drivers.early import EARLY, concluded
 from tpvqa.drivers.performing import Performed, Performer
 from tpvqa.drivers.stepping import SteppingTrial
-from tpvqa.errors import BudgetError, TpvqaError
+from tpvqa.errors import TpvqaError
 from tpvqa.events import Event
 from tpvqa.observation import Observation
 from tpvqa.trial import Act, Conclusion
@@ -104,8 +105,8 @@ class AsynchronousTrial:
             except asyncio.CancelledError:  # the loop is shut down: the robot is not left acting
                 performer.cancel.set()
                 performed, stopped = await doing, True
-            except BudgetError as spent:
-                conclusion = Conclusion("budget spent", str(spent))
+            except EARLY as error:
+                conclusion = concluded(error)
                 break
             async with self._seeing:  # a look that began while an action ran comes before its end
                 trial.send(performed)

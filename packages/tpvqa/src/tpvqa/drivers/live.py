@@ -1,8 +1,8 @@
 """A trial from its beginning, or from where it was interrupted, to its end."""
 
+from tpvqa.drivers.early import EARLY, concluded
 from tpvqa.drivers.performing import Performer
 from tpvqa.drivers.stepping import SteppingTrial
-from tpvqa.errors import BudgetError
 from tpvqa.events import Ended
 from tpvqa.trial import Conclusion
 
@@ -42,8 +42,8 @@ def run(trial: SteppingTrial, performer: Performer) -> Ended:
             trial.begun()
             trial.send(performer.perform(trial.pending))
         conclusion = trial.conclusion
-    except BudgetError as spent:
-        conclusion = Conclusion("budget spent", str(spent))
+    except EARLY as error:
+        conclusion = concluded(error)
     except KeyboardInterrupt:
         if trial.replaying:  # the log is right as it is
             raise

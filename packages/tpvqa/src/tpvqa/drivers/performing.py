@@ -6,6 +6,7 @@ from threading import Event as Flag
 from typing import Any
 
 from tpvqa.drivers.freshness import Freshness
+from tpvqa.drivers.halting import unless_halted
 from tpvqa.drivers.plugged import MALFORMED, called, malformed
 from tpvqa.drivers.sensed import checked
 from tpvqa.errors import PlannerError, PluginError
@@ -31,7 +32,7 @@ from tpvqa.vlm.checking import checked_answers
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.vlm.usage import Usage
 from tpvqa.worlds import Execution, Report, Restorable, World
-from tpvqa.worlds.capabilities import Telling
+from tpvqa.worlds.capabilities import Halting, Telling
 from tpvqa.worlds.goal import goal_holds
 from tpvqa.worlds.outcome import Outcome
 
@@ -90,13 +91,20 @@ class Performer:
         self._metered = metered(parts.vlm)
         self._counted = Usage() if self._metered is None else self._metered.usage
         self._telling = parts.world if isinstance(parts.world, Telling) else None
+        self._halting = parts.world if isinstance(parts.world, Halting) else None
 
     def perform(self, pending: Pending) -> Performed:
         """Do what is pending.
 
         Raises:
+            HaltedError: Somebody stopped the robot while it was not acting.
             TpvqaError: A plug-in broke, or returned what it must not.
         """
+        if self._halting is None or isinstance(pending.request, Act | Wait):
+            return self._perform(pending)
+        return unless_halted(self._halting, lambda: self._perform(pending))
+
+    def _perform(self, pending: Pending) -> Performed:
         match pending.request:
             case Look(view):
                 return self.look(view, pending.look)

@@ -75,6 +75,14 @@ class Timed(Protocol):
         """
 
 
+@runtime_checkable
+class Halting(Protocol):
+    """Somebody may stop it, whatever the trial is about: looks, questions and plans end, too."""
+
+    def halted(self) -> str:
+        """Why it stands still, and where things are; empty where nobody stopped it."""
+
+
 class Simulated:
     """Declares that a world is simulated: it is given a `Simulation` to keep its true state in.
 
