@@ -108,9 +108,9 @@ def trial(bench: Bench, monitor: str, vlm: str, seed: int, taught: Path = Path()
     }
     if vlm == TAUGHT:
         said["vlm"]["spec"] = f"{TAUGHT}:{taught / 'network'}"
-        said["task"]["questions"] = taught / "questions.yaml"
+        said["task"]["questions"] = str(taught / "questions.yaml")
         if monitor == "belief":
-            said["monitor"]["calibration"] = taught / "calibration.json"
+            said["monitor"]["calibration"] = str(taught / "calibration.json")
     config = TrialConfig.model_validate({"seed": seed, **said})
     writer = MemoryWriter()
     with Trial(config) as made:

@@ -3,9 +3,10 @@
 A calibration may be wrong about one predicate alone: yes is said too readily of what lies where.
 That shows where answers contradict each other and the actions. So it is learned without any truth,
 by what is believed of each fact once a scene is left, as expectation maximisation does for raters
-of whom nobody knows when they were right (Dawid and Skene 1979). Only the odds of a yes are moved;
-how far yes where a fact holds and yes where it does not lie apart is left as it is: a belief finds
-answers right that it rests on.
+of whom nobody knows when they were right (Dawid and Skene 1979). It is believed from the next trial
+on: one alone is too short to tell it from chance and from errors that last. Only the odds of a yes
+are moved; how far yes where a fact holds and yes where it does not lie apart is left as it is: a
+belief finds answers right that it rests on.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -37,17 +38,17 @@ class Biases:
     """By how much the odds of a yes differ from the calibration's, by predicate.
 
     Args:
-        told: What was learned before, by predicate.
+        told: What was learned in earlier trials, by predicate: by this it is judged.
     """
 
     def __init__(self, told: Mapping[str, Iterable[Row]] | None = None):
-        self._told = {predicate: _kept(rows) for predicate, rows in (told or {}).items()}
+        self._known = self._told = {name: _kept(rows) for name, rows in (told or {}).items()}
         self._heard: dict[str, tuple[FactQuestion, Pair, list[bool]]] = {}
         self._moved: dict[tuple[str, Pair], float] = {}
 
     @property
     def told(self) -> Mapping[str, tuple[Row, ...]]:
-        """What was learned, by predicate."""
+        """What was learned, by predicate, in this trial, too."""
         return self._told
 
     def hear(self, question: FactQuestion, said: Pair, *, yes: bool) -> None:
@@ -70,7 +71,6 @@ class Biases:
         """
         self._told = dict(self.after(likely).told)
         self._heard.clear()
-        self._moved.clear()
 
     def after(self, likely: Callable[[FactQuestion], float]) -> "Biases":
         """What would be known if this scene were left; argument as that of `leave`."""
@@ -108,7 +108,7 @@ class Biases:
 
     def _by(self, question: FactQuestion, said: Pair) -> float:
         predicate = question.atom.predicate
-        rows = self._told.get(predicate, ())
+        rows = self._known.get(predicate, ())
         if not rows or question.still_shown or not _possible(said):
             return 0.0
         known = self._moved.get((predicate, said))
