@@ -72,7 +72,7 @@ class Unseen:
         self._steps = Steps(model)
         self._walks: dict[AnnotatedPlan, dict[tuple[int, int], tuple[int, ...] | None]] = {}
         self._repeats: dict[tuple[int, int], int] = {}
-        self._known: dict[tuple[int, int, int, object], tuple[Floats, Floats]] = {}
+        self._known: dict[tuple[int, int, object], list[tuple[Floats, Floats]]] = {}
         self._worked_out_for: tuple[int, int] = (-1, -1)
         self.following: tuple[Action, ...] = ()
         self._stake = 0.0
@@ -199,7 +199,7 @@ class Unseen:
         ended = self._ended()[:, None]
         numbered = [(number, times) for number in range(len(ways)) for times in TIMES]
         told = [_Sequence(None), *(_Sequence(*each) for each in numbered)]
-        once = [self._followed(ways[n], times, ended, None) for n, times in numbered]
+        once = [each for way in ways for each in self._followed(way, ended, None)]
         costs = [float(whole @ begun[places, 0]) for begun, _ in once]
         best = sorted(range(len(once)), key=lambda each: round(costs[each], 9))[: ENDINGS - 1]
         parts = [(ended, ended), *once]
@@ -207,17 +207,18 @@ class Unseen:
             seconds = np.concatenate([once[each][0] for each in best], axis=1)
             then = tuple(told[1 + each] for each in best)
             which = tuple((*ways[n], times) for n, times in (numbered[each] for each in best))
+            for way in ways:
+                parts += self._followed(way, seconds, which)
             for number, times in numbered:
-                parts.append(self._followed(ways[number], times, seconds, which))
                 told += [_Sequence(number, times, each) for each in then]
         begun, less = (np.concatenate([each[side] for each in parts], axis=1) for side in (0, 1))
         return told, begun, less
 
-    def _followed(self, way: Way, times: int, after: Floats, then: object) -> tuple[Floats, Floats]:
-        """What a way costs from every joint state, each step repeated, by what is left to pay after
-        it; and with its first step once less."""
+    def _followed(self, way: Way, after: Floats, then: object) -> list[tuple[Floats, Floats]]:
+        """What a way costs from every joint state, each step done each of `TIMES`, by what is left
+        to pay after it; and with its first step once less."""
         place, plan = way
-        key = place, id(plan), times, then
+        key = place, id(plan), then
         known = self._known.get(key)
         if known is not None:
             return known
@@ -225,12 +226,16 @@ class Unseen:
         if stop < len(plan.actions):
             rest = [*(self._rest(plan, stop, n) for n in self._steps.numbers), self._ahead.failure]
             after = np.repeat(np.array(rest)[:, None], after.shape[1], axis=1)
-        values = before = after
+        wide = after.shape[1]  # of what is done so often, the most often first: one call for all
+        values = np.tile(after, len(TIMES))
+        before = values.copy()
         for action in reversed(plan.actions[place:stop]):
-            for _ in range(times):
-                before = values
-                values = self._costs.action + self._back(action, values)
-        found = self._known[key] = values, before
+            for often in range(1, TIMES[-1] + 1):
+                these = slice(0, wide * sum(times >= often for times in TIMES))
+                before[:, these] = values[:, these]
+                values[:, these] = self._costs.action + self._back(action, values[:, these])
+        parts = np.hsplit(values, len(TIMES)), np.hsplit(before, len(TIMES))
+        found = self._known[key] = list(zip(*parts, strict=True))[::-1]
         return found
 
     def _back(self, action: Action, after: Floats) -> Floats:
