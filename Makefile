@@ -73,13 +73,13 @@ gl:
 	    echo "installing libosmesa6 (software rendering) …"; \
 	    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq libosmesa6 > /dev/null; \
 	  else \
-	    echo "The rendering tests need Mesa's off-screen library. Install it, then run make test again:"; \
+	    echo "Rendering needs Mesa's off-screen library. Install it, then run make again:"; \
 	    echo "  sudo apt-get install libosmesa6"; exit 1; \
 	  fi; }
 
 # The robot has an environment of its own: MuJoCo is pinned there. Of robosuite only its models are
 # read, so it is installed without what its own Python needs.
-robot: robot-env
+robot: robot-env gl
 	@rm -rf $(ROBOT_DEMO)
 	@$(ROBOT_BIN)/tpvqa film --seed 1 --out $(ROBOT_DEMO)
 	@$(ROBOT_BIN)/tpvqa report $(ROBOT_DEMO) > /dev/null

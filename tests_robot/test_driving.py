@@ -2,6 +2,7 @@
 
 import json
 from math import atan2, cos, hypot, sin
+from threading import Event
 
 import pytest
 from hypothesis import given
@@ -13,6 +14,7 @@ from tpvqa.errors import PluginError
 from tpvqa.worlds import Report
 from tpvqa_robots.mishaps import Mishaps
 from tpvqa_robots.skills.driving import AHEAD, ALONG, AXIS, Stance, in_reach, stance_before
+from tpvqa_robots.toys.machine import TICK
 from tpvqa_robots.world import ToysWorld
 
 stances = st.builds(Stance, st.floats(0, AHEAD), st.floats(-ALONG, ALONG), st.floats(-1.5, 1.5))
@@ -79,3 +81,36 @@ def test_only_the_toys_have_something_far_away() -> None:
     assert Mishaps.read("far=0.5:slip=0.1") == Mishaps(slip=0.1, far=0.5)
     with pytest.raises(PluginError, match="'far=1'"):
         Mishaps.read("far=1", "bins")
+
+
+@pytest.mark.parametrize("ticks", [15, 40, 70])
+def test_cancelled_while_it_drives_the_base_stands_within_a_fifth_of_a_second(
+    task: Task, act: Act, never: Event, ticks: int
+) -> None:
+    world = ToysWorld(task, mishaps=Mishaps(far=1.0), seed=1)
+    try:
+        machine, speeds, count = world.robot.machine, list[float](), 0
+        places = list[tuple[float, float]]()
+
+        def watch() -> None:
+            nonlocal count
+            if never.is_set():
+                speeds.append(machine.speed)
+                places.append(machine.place)
+            elif max(abs(machine.place[0]), abs(machine.place[1])) > 0.01:
+                count += 1
+                if count == ticks:
+                    never.set()
+
+        machine.on_tick = watch
+        done = world.execute(act("find toy_eggplant table"), cancel=never)
+        assert done.report is Report.CANCELLED
+        assert len(speeds) == round(0.2 / TICK)
+        assert speeds[-1] < 0.02
+        assert hypot(*(a - b for a, b in zip(places[-1], places[0], strict=True))) < 0.03
+        machine.tick()
+        for _ in range(25):
+            machine.tick()
+        assert machine.place == pytest.approx(places[-1], abs=0.002)  # nor is it driven back
+    finally:
+        world.close()

@@ -74,6 +74,22 @@ def test_what_slips_falls_to_the_floor_and_the_gripper_feels_it(task: Task, act:
         world.close()
 
 
+def test_the_fingers_give_way_when_an_experiment_says_so(task: Task, act: Act) -> None:
+    whole = ToysWorld(task, mishaps=Mishaps(), seed=2)
+    for said in ("find blue_container table", "pick_up blue_container"):
+        whole.execute(act(said))
+    held, when = whole.truth.holds(atom("in_hand blue_container")), whole.robot.machine.time
+    whole.close()
+    assert held
+    world = ToysWorld.from_spec(f"slip_at={when - 0.5:.2f}", task=task, seed=2, episode=0)
+    try:
+        for said in ("find blue_container table", "pick_up blue_container"):
+            world.execute(act(said))
+        assert not world.truth.holds(atom("in_hand blue_container"))
+    finally:
+        world.close()
+
+
 def test_a_bad_grasp_closes_on_nothing(task: Task, act: Act) -> None:
     world = ToysWorld(task, mishaps=Mishaps(bad=1.0), seed=1)
     try:
@@ -109,6 +125,34 @@ def test_a_cancelled_skill_leaves_the_arm_standing_within_a_fifth_of_a_second(
     assert machine.time - start <= ticks * TICK + 0.2 + 1e-6
     assert len(speeds) == round(0.2 / TICK)
     assert speeds[-1] < STANDING
+
+
+@pytest.mark.parametrize("cancelled", [False, True])
+def test_what_failed_may_be_stopped_while_the_arm_goes_back(
+    task: Task, act: Act, never: Event, cancelled: bool
+) -> None:
+    world = ToysWorld(task, mishaps=Mishaps(slip=1.0), seed=2)
+    try:
+        for said in (
+            "find blue_container table",
+            "pick_up blue_container",
+            "find goal_area blue_container",
+        ):
+            world.execute(act(said))
+        count = 0
+
+        def watch() -> None:
+            nonlocal count
+            count += 1
+            if cancelled and count == 10:
+                never.set()
+
+        world.robot.machine.on_tick = watch
+        late = world.execute(act("place blue_container goal_area"), deadline=0.5, cancel=never)
+        assert late.report is (Report.CANCELLED if cancelled else Report.LATE)
+        assert world.robot.machine.speed < STANDING
+    finally:
+        world.close()
 
 
 def test_another_thread_looks_meanwhile_and_stops_it(

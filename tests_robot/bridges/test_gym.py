@@ -14,6 +14,7 @@ from tpvqa.events.events import Answered, Ended, Started
 from tpvqa.pddl import Action, Atom, load_task
 from tpvqa.pddl.conditions import literals
 from tpvqa.tasks import find_task
+from tpvqa.worlds.symbolic import SymbolicWorld
 from tpvqa_robots.bridges.commanded import Command
 from tpvqa_robots.bridges.gym import FAILED, GroundedTask
 
@@ -93,4 +94,29 @@ def test_gymnasium_finds_it_by_name_and_the_robot_sees() -> None:
     seen, _ = env.reset(seed=1)
     assert env.observation_space.contains(seen)
     assert len(np.unique(seen["picture"])) > 50
+    spent = 0.0
+    for command in (0, *(len(env.unwrapped.questions) for _ in range(3))):
+        seen, reward, over, cut, _ = env.step(np.int64(command))
+        assert env.observation_space.contains(seen)
+        assert not over
+        assert not cut
+        spent += float(reward)
+    assert spent < 0
     env.close()
+
+
+def test_who_stops_the_robot_ends_the_episode_and_the_log_says_why(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pressed = [""]
+    monkeypatch.setattr(SymbolicWorld, "halted", lambda self: pressed[0], raising=False)
+    env = tower(folder=tmp_path)
+    env.reset(seed=1)
+    pressed[0] = "emergency stop; the robot stands"
+    _, _, over, cut, info = env.step(env.command(Command.GO_ON))
+    assert (over, cut, info["because"], info["completed"]) == (True, False, "world refused", False)
+    env.close()
+    (folder,) = tmp_path.iterdir()
+    ended = list(read_episode(folder))[-1]
+    assert isinstance(ended, Ended)
+    assert ended.message == pressed[0]

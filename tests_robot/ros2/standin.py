@@ -63,6 +63,9 @@ class StandIn:
         state, done = self._read()
         self._write(state, [*done, [action.pddl(), "begins", time.time()]])
         feedback("moves")
+        if "breaks" in self.faults:
+            self.faults.discard("breaks")
+            raise OSError("the gripper does not answer")
         endless = "endless" in self.faults
         while endless or time.monotonic() - began < self.seconds:
             self.moving = time.time()
@@ -100,7 +103,7 @@ class StandIn:
         """It stands as soon as `perform` sees that it is cancelled."""
 
     def state(self) -> Mapping[str, float]:
-        return {"shoulder": 0.5, "gripper": 0.0 if HAND_EMPTY in self.true() else 0.02}
+        return {"shoulder": self.moving, "gripper": 0.0 if HAND_EMPTY in self.true() else 0.02}
 
 
 def main() -> None:

@@ -1,6 +1,7 @@
 """What goes wrong around a robot, each injected: nothing moves on, and it is said why."""
 
 import json
+import re
 import threading
 import time
 from collections.abc import Iterator
@@ -89,6 +90,18 @@ def test_a_server_that_goes_in_the_middle_is_told_of(
     assert len(done(state)) == 1
 
 
+def test_a_skill_that_breaks_is_reported_and_the_server_goes_on(
+    start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    start("breaks")
+    world = open_world()
+    assert world.observe().frames
+    broke = world.execute(act(FIND))
+    assert broke.report is Report.FAILED
+    assert "the gripper does not answer" in broke.message
+    assert world.execute(act(FIND)).report is Report.DONE
+
+
 @pytest.mark.parametrize("deaf", [False, True])
 def test_a_skill_that_never_returns_is_stopped(
     deaf: bool, start: Start, open_world: Open, act: Act, state: Path
@@ -150,12 +163,38 @@ def test_an_emergency_stop_ends_it_within_a_fifth_of_a_second(
         assert took < lag.allows(0.2)
         assert last(state)[2] - pressed < lag.allows(0.2)
         assert came[0].report is Report.UNAVAILABLE
-        for part in ("emergency stop", "(find blue_container table)", "gripper 0.000"):
+        for part in ("emergency stop", "(find blue_container table)", "gripper 0.000", "it feels"):
             assert part in came[0].message
+        (shoulder,) = re.findall(r"shoulder ([\d.]+)", came[0].message)
+        assert float(shoulder) > pressed - lag.allows(0.4)  # joints are told in a motion, too
         again = world.execute(act(FIND))
         assert again.report is Report.UNAVAILABLE
         assert "emergency stop" in again.message
         assert "emergency stop" in world.halted()  # so looks and questions end, too
+    finally:
+        button.close()
+
+
+def test_a_trial_that_is_stopped_ends_and_says_why(
+    start: Start, setup_file: Path, state: Path, tmp_path: Path
+) -> None:
+    from std_msgs.msg import Bool
+
+    start("endless")
+    button = Link("button")
+    try:
+        speaker = button.speaker(Bool, "/tpvqa/stop", said())
+        button.start()
+        trial = run(setup_file, tmp_path / "episode")
+        until_begun(state)
+        speaker.publish(Bool(data=True))
+        text, _ = trial.communicate(timeout=60)
+        assert trial.returncode == 1, text
+        stopped = json.loads((tmp_path / "episode" / "episode.jsonl").read_text().splitlines()[-1])
+        assert stopped["because"] == "world refused"
+        for part in ("emergency stop", "(find blue_container table)", "joints"):
+            assert part in stopped["message"]
+        assert len(done(state)) == 2  # begun and stood, once
     finally:
         button.close()
 

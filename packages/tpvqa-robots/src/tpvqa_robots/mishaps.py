@@ -1,12 +1,14 @@
 """What goes wrong on the toys' table besides what physics and cameras do by themselves."""
 
-from dataclasses import dataclass, fields
-from typing import Self
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
 
 from tpvqa.chance import chance
 from tpvqa.errors import PluginError
 
 APPENDIX = "appendix"
+MOST = {"noise": 10.0, "slip_at": 3600.0}
+"""The greatest number that a word may have; 1 of all others, which are probabilities."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +19,8 @@ class Mishaps:
         slip: Probability that the fingers give way while the base turns with a container.
         bad: Probability that a grasp is made 8 cm beside the thing.
         noise: A factor on all errors of the cameras.
+        slip_at: Seconds of the robot's time at which the fingers give way once, whatever they hold;
+            0 for never.
         far: Probability that the first toy stands at first where the arm reaches it only if the
             base drives; it drives where this is not 0.
         appendix: The trial of the paper's appendix instead: the first container slips, the first
@@ -26,6 +30,7 @@ class Mishaps:
     slip: float = 0.0
     bad: float = 0.0
     noise: float = 1.0
+    slip_at: float = 0.0
     far: float = 0.0
     appendix: bool = False
 
@@ -39,12 +44,13 @@ class Mishaps:
                 something far away.
 
         Raises:
-            PluginError: A word is not known, or no number from 0 to 1 (noise: 0 to 10) follows it.
+            PluginError: A word is not known, or no number from 0 to 1 (noise: 0 to 10, slip_at: 0
+                to 3600) follows it.
         """
         toys = world == "toys"
         if toys and words in ("", APPENDIX):
             return cls(appendix=True)
-        said: dict[str, float] = {}
+        said: dict[str, Any] = {}
         known = {field.name for field in fields(cls)} - {"appendix"} - (set() if toys else {"far"})
         for word in words.split(":"):
             name, _, number = word.partition("=")
@@ -52,20 +58,16 @@ class Mishaps:
                 value = float(number)
             except ValueError:
                 value = -1.0
-            if name not in known or not 0 <= value <= (10 if name == "noise" else 1):
+            if name not in known or not 0 <= value <= MOST.get(name, 1.0):
                 raise PluginError(
                     f"The world {world!r} does not understand {word[:40]!r}. Write {world}, "
                     + ("toys:appendix, toys:far=1, " if toys else "")
                     + f"or {world}:slip=0.2:bad=0.1:noise=1: probabilities, and of noise a "
-                    "factor on the cameras' errors from 0 to 10."
+                    f"factor on the cameras' errors from 0 to 10; {world}:slip_at=12 has the "
+                    "fingers give way once, so many seconds from the start."
                 )
             said[name] = value
-        return cls(
-            said.get("slip", 0.0),
-            said.get("bad", 0.0),
-            said.get("noise", 1.0),
-            said.get("far", 0.0),
-        )
+        return replace(cls(), **said)
 
 
 class Drawn:

@@ -109,6 +109,8 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
             raise WorldError(f"The world {self.name!r} is closed.")
         model = self.room(self._seed, self._episode)
         machine = Machine(model, self._on_tick)
+        if self._mishaps.slip_at:
+            machine.slips.append(Slip(self._mishaps.slip_at))
         errors = Errors().times(self._mishaps.noise)
         cameras = Cameras(model, errors, seed=self._seed, episode=self._episode)
         robot = self.robot_of(machine, cameras)
@@ -170,7 +172,7 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         return {
             "physics": numbers.tolist(),
             "yaw": machine.yaw_target,
-            "place": list(machine.place_target),
+            "place": machine.place_target,
             "reference": machine.reference.tolist(),
             "slips": [[slip.start, slip.seconds] for slip in machine.slips],
             "closing": machine.closing,
@@ -187,7 +189,8 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         mj.mj_setState(machine.model, machine.data, numbers, mj.mjtState.mjSTATE_INTEGRATION)
         machine.refresh()
         machine.yaw_target = snapshot["yaw"]
-        machine.place_target = tuple(snapshot.get("place", (0.0, 0.0)))
+        place = snapshot.get("place")
+        machine.place_target = None if place is None else (place[0], place[1])
         machine.reference, machine.velocity = np.array(snapshot["reference"]), np.zeros(6)
         machine.closing = snapshot["closing"]
         machine.slips = [Slip(start, seconds) for start, seconds in snapshot["slips"]]

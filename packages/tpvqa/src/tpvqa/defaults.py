@@ -29,14 +29,21 @@ def looks(vlm: str) -> bool:
     return not is_noise_model(load_spec(Kind.VLM, vlm))
 
 
-def default_vlm(*, pictures: bool = True) -> str:
-    """Specification of the VLM: the oracle without pictures, else the embedded network.
+def default_vlm(files: TaskFiles | None = None, *, pictures: bool = True) -> str:
+    """Specification of the VLM: the oracle without pictures, else a shipped task's own, else the
+    embedded network.
+
+    Args:
+        files: The shipped task; None for a user's own domain.
+        pictures: Whether the world has pictures.
 
     Raises:
         PluginError: There are pictures, and the embedded network is not installed.
     """
     if not pictures:
         return ORACLE
+    if files is not None and files.default_vlm:
+        return files.default_vlm
     if EMBEDDED not in names(Kind.VLM):
         raise PluginError(
             "No VLM is named that looks at the pictures. Name one, e.g. --vlm openai:MODEL, or "

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from tpvqa import Trial, TrialConfig
 from tpvqa.belief.costs import Costs
 from tpvqa.drivers import Performer, SteppingTrial
+from tpvqa.drivers.early import EARLY, concluded
 from tpvqa.drivers.performing import Performed
 from tpvqa.episodes import EpisodeWriter, MemoryWriter
 from tpvqa.errors import MissingExtraError, TpvqaError
 from tpvqa.monitors import Ask, Look
 from tpvqa.pictures import decoded
-from tpvqa.trial import Act
+from tpvqa.trial import Act, Conclusion
 from tpvqa_robots.bridges.commanded import Command, Commanded
 
 try:
@@ -119,6 +120,7 @@ class GroundedTask(gymnasium.Env[Observed, np.int64]):
         self._stepping: SteppingTrial = trial.stepping(writer)
         self._performer: Performer = trial.performer(writer)
         self._held: Performed | None = None
+        self._early: Conclusion | None = None
         self._stepping.begin()
         self._go_on()
         return self._observed(), {"said": ""}
@@ -138,10 +140,10 @@ class GroundedTask(gymnasium.Env[Observed, np.int64]):
         self._stepping.send(held)
         spent = self._go_on()
         self._steps += 1
-        over = self._stepping.pending is None
+        over = self._early is not None or self._stepping.pending is None
         info: dict[str, Any] = {"said": self._said, "commanded": str(commanded)}
         if over:
-            ended = self._stepping.end(goal_holds=self._performer.goal_holds())
+            ended = self._stepping.end(self._early, goal_holds=self._performer.goal_holds())
             info |= {"because": ended.because, "completed": bool(ended.completed)}
             spent += 0.0 if ended.completed else FAILED
         truncated = not over and self._steps >= self._most
@@ -161,7 +163,11 @@ class GroundedTask(gymnasium.Env[Observed, np.int64]):
         while trial.pending is not None:
             trial.begun()
             request = trial.pending.request
-            done = self._performer.perform(trial.pending)
+            try:
+                done = self._performer.perform(trial.pending)
+            except EARLY as error:
+                self._early = concluded(error)
+                return spent
             if isinstance(request, Look):
                 monitor.looked(done.value)
                 self._show(done)
@@ -208,7 +214,7 @@ class GroundedTask(gymnasium.Env[Observed, np.int64]):
             self._stepping.journal.write(self._held.event)
             self._held = None
         if self._stepping.state.ended is None:
-            self._stepping.end(goal_holds=self._performer.goal_holds())
+            self._stepping.end(self._early, goal_holds=self._performer.goal_holds())
         self._log.close()
         trial.close()
 

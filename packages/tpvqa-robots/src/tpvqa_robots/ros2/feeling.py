@@ -52,8 +52,9 @@ class Joints:
                 facts.append(SensedFact(rule.atom, rule.sure if holds else 1 - rule.sure))
         return tuple(facts)
 
-    def said(self) -> str:
-        """Where the joints are, for people."""
+    def said(self, now: float) -> str:
+        """Where the joints are, and how long ago they were so, for people."""
         if not self.positions:
             return "its joints are not known"
-        return "joints " + ", ".join(f"{name} {x:.3f}" for name, x in self.positions.items())
+        joints = ", ".join(f"{name} {x:.3f}" for name, x in self.positions.items())
+        return f"joints {max(0.0, now - self.stamp):.1f} s ago: {joints}"

@@ -153,14 +153,19 @@ class SkillServer:
                 message = made_of(frame, stamp, view)
                 if message is not None:
                     speaker.publish(message)
-        stamp, felt = self._link.now(), self._robot.state()
-        joints = set_stamp(self._joint_state(), stamp, "")
-        joints.name, joints.position = list(felt), [float(x) for x in felt.values()]
-        self._joints.publish(joints)
+        self._feel()
+        stamp = self._link.now()
         if self._truth is not None:
             facts = sorted(atom.pddl() for atom in self._truth())
             text = json.dumps({"stamp": stamp, "facts": facts})
             self._true.publish(self._string(data=text))
+
+    def _feel(self) -> None:
+        """Publish where the joints are."""
+        stamp, felt = self._link.now(), self._robot.state()
+        joints = set_stamp(self._joint_state(), stamp, "")
+        joints.name, joints.position = list(felt), [float(x) for x in felt.values()]
+        self._joints.publish(joints)
 
     def _perform(self, job: Job) -> None:
         try:
@@ -170,8 +175,11 @@ class SkillServer:
                 cancelled=job.cancelled,
                 feedback=job.teller.feedback,
             )
-        except TpvqaError as error:
-            done = Execution(Report.FAILED, monotonic() - job.began, str(error))
+        except Exception as error:  # noqa: BLE001 — a robot that breaks must not end its server
+            self._robot.stop()
+            known = isinstance(error, TpvqaError)
+            said = str(error) if known else f"the skill broke: {type(error).__name__}: {error}"
+            done = Execution(Report.FAILED, monotonic() - job.began, said)
         if done.report is Report.CANCELLED and monotonic() - job.began > job.deadline:
             done = replace(done, report=Report.LATE, message=f"stopped after {job.deadline:g} s")
         with self._lock:
@@ -263,3 +271,5 @@ class SkillServer:
             stands = Standing(self._me, self._lease.holder, running, self._stopped)
         for front in self._fronts:
             front.stands(stands)
+        if job is not None:  # else whoever shows pictures tells them
+            self._feel()

@@ -24,6 +24,8 @@ TICK = 0.02
 """Seconds between two looks at what has changed."""
 ENDS = 1.0
 """Seconds in which a cancelled skill has to say that it ended."""
+FEELS = 0.1
+"""Seconds in which a robot that is told to stand may say where its joints are then."""
 DEPTH = 1.0
 """Seconds that a picture waits for its depth; then it counts without."""
 
@@ -162,9 +164,8 @@ class Ros2World:
             raise
 
     def halted(self) -> str:
-        """Who stopped it, and where things are; empty where nobody did."""
-        stopped = self._stop or next((c.stopped for c in self._clients.values() if c.stopped), "")
-        return f"{stopped}; {self._where()}" if stopped else ""
+        """Whether there was an emergency stop, and where things are; empty where there was none."""
+        return f"{self._stop}; {self._where()}" if self._stop else ""
 
     def close(self) -> None:
         """Give the robot back and end the node. Can be called twice."""
@@ -192,9 +193,10 @@ class Ros2World:
             stopped = self._stopped(client)
             if stopped:
                 client.cancel(doing)
+                self._feel_again()
+                said, facts = f"{stopped} in {action.pddl()}; {self._where()}", self._facts(())
                 self._ended = self._link.now()
-                said = f"{stopped} in {action.pddl()}; {self._where()}"
-                return Execution(Report.UNAVAILABLE, took, said, self._facts(()))
+                return Execution(Report.UNAVAILABLE, monotonic() - began, said, facts)
             result = doing.result
             if result is not None:
                 self._ended, self._told = result.ended, tuple(result.facts)
@@ -278,10 +280,19 @@ class Ros2World:
         return (*told, *(fact for fact in felt if fact.atom not in own))
 
     def _where(self) -> str:
-        """Where things are, as far as the robot feels it."""
-        joints = "its joints are not known" if self._joints is None else self._joints.said()
+        """Where things are, as far as the robot feels it, and how long ago it did."""
+        said = "its joints are not known"
+        if self._joints is not None:
+            said = self._joints.said(self._link.now())
         felt = ", ".join(f"{f.atom.pddl()} {f.probability:.2f}" for f in self._facts(()))
-        return f"the robot stands; {joints}" + (f"; it feels {felt}" if felt else "")
+        return f"the robot is told to stand; {said}" + (f"; it feels {felt}" if felt else "")
+
+    def _feel_again(self) -> None:
+        """Wait a moment for joints of after now."""
+        joints, now, until = self._joints, self._link.now(), monotonic() + FEELS
+        with self._changed:
+            while joints is not None and joints.stamp <= now and monotonic() < until:
+                self._changed.wait(TICK)
 
     def _stopped(self, client: Client) -> str:
         return self._stop or client.stopped

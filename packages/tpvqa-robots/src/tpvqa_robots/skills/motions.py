@@ -21,6 +21,8 @@ LEAST = 0.3
 """Seconds that the shortest motion takes."""
 SETTLE, FINGERS = 0.2, 0.8
 """Seconds that the arm is given to come to rest, and the fingers to close or open."""
+ROUGHLY, PATIENCE = 0.01, 10.0
+"""Metres or radians by which the base may miss its aim, and seconds that it has to get there."""
 STOPPING = 0.2
 """Seconds within which the arm stands when it is told to stop."""
 
@@ -35,6 +37,10 @@ class Stopped(Exception):  # noqa: N818 — no error: what was wished for
     def __init__(self, report: Report):
         super().__init__(report.value)
         self.report = report
+
+
+class NotThereError(Exception):
+    """The base does not get where it was sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,22 +105,37 @@ class Motions:
         self.wait(SETTLE, guard)
 
     def turn(self, yaw: float, guard: Guard) -> None:
-        """Turn the base, and wait until it stands."""
+        """Turn the base, and wait until it stands.
+
+        Raises:
+            NotThereError: It does not turn so far.
+            Stopped: The skill has to stop.
+        """
         machine = self._machine
         machine.yaw_target = yaw
-        give_up = machine.time + 10
-        while abs(machine.yaw - yaw) > 0.01 and machine.time < give_up:
-            self._tick(guard)
+        self._until(lambda: abs(machine.yaw - yaw) <= ROUGHLY, "turn so far", guard)
         self.wait(SETTLE, guard)
 
     def drive(self, stance: Stance, guard: Guard) -> None:
-        """Bring the base somewhere, then turn it, and wait until it stands."""
-        machine = self._machine
-        machine.place_target = stance.ahead, stance.aside
-        give_up = machine.time + 10
-        while _off(machine.place, machine.place_target) > 0.01 and machine.time < give_up:
-            self._tick(guard)
+        """Bring the base somewhere, then turn it, and wait until it stands.
+
+        Raises:
+            NotThereError: It does not get there.
+            Stopped: The skill has to stop.
+        """
+        machine, there = self._machine, (stance.ahead, stance.aside)
+        if machine.drives:
+            machine.place_target = there
+            self._until(lambda: _off(machine.place, there) <= ROUGHLY, "get there", guard)
         self.turn(stance.yaw, guard)
+
+    def _until(self, reached: Callable[[], bool], what: str, guard: Guard) -> None:
+        give_up = self._machine.time + PATIENCE
+        while not reached():
+            if self._machine.time >= give_up:
+                self._machine.hold()
+                raise NotThereError(f"the base does not {what} within {PATIENCE:g} s")
+            self._tick(guard)
 
     def fingers(self, guard: Guard, *, shut: bool) -> None:
         """Close or open the fingers, and wait for them."""

@@ -47,4 +47,5 @@ class Robot(Protocol):
         """Have the arm stand still within 0.2 s."""
 
     def state(self) -> Mapping[str, float]:
-        """Joints in radians, by name, and the gripper's opening in metres as `gripper`."""
+        """Joints in radians, by name, and the gripper's opening in metres as `gripper`; also while
+        a skill runs, from another thread."""

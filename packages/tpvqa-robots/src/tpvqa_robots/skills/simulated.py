@@ -18,7 +18,7 @@ from tpvqa_robots.grasps.grasp import Grasp
 from tpvqa_robots.grasps.methods import Method
 from tpvqa_robots.skills.driving import AXIS, Stance, in_reach, looking, stance_before
 from tpvqa_robots.skills.kinematics import Grip, Kinematics, OutOfReachError
-from tpvqa_robots.skills.motions import Guard, Motions, Stopped, Told
+from tpvqa_robots.skills.motions import Guard, Motions, NotThereError, Stopped, Told
 from tpvqa_robots.skills.seeing import HUES, Seen, see
 from tpvqa_robots.toys.cameras import CAMERAS, OVERHEAD, Cameras, Shot
 from tpvqa_robots.toys.machine import Machine
@@ -46,6 +46,10 @@ HIGH = 0.005
 """Metres above where it stood at which a thing is let go."""
 INTO = 0.045
 """Metres above a container's rim at which a thing is let go into it."""
+
+
+Skill = Callable[[tuple[str, ...], Guard, Told], str]
+"""Carries out an action with such arguments, and tells in words what came of it."""
 
 
 class SkillError(Exception):
@@ -98,7 +102,7 @@ class SimulatedRobot:
         self._shots = 0
         self.held: Held | None = None
         self.shut = False
-        self.skills: Mapping[str, Callable[[tuple[str, ...], Guard, Told], str]] = {
+        self.skills: Mapping[str, Skill] = {
             "find": self._find,
             "pick_up": self._pick_up,
             "place": self._place,
@@ -126,15 +130,22 @@ class SimulatedRobot:
             start = self.machine.time
             guard = Guard(start + deadline, cancelled)
             try:
-                message, report = skill(action.arguments, guard, feedback), Report.DONE
+                report, message = self._done(skill, action, guard, feedback)
             except Stopped as stopped:
                 self._motions.stop()
                 report, message = stopped.report, "the arm stands where it was stopped"
-            except SkillError as error:
-                report, message = Report.FAILED, str(error)
-                self._retreat(guard)
             seconds = self.machine.time - start
             return Execution(report, seconds, message, self.sensed())
+
+    def _done(
+        self, skill: Skill, action: Action, guard: Guard, feedback: Told
+    ) -> tuple[Report, str]:
+        """How a skill ends; what failed is left, which may be stopped as well."""
+        try:
+            return Report.DONE, skill(action.arguments, guard, feedback)
+        except (SkillError, NotThereError) as error:
+            self._retreat(guard)
+            return Report.FAILED, str(error)
 
     def look(self, view: str = OVERHEAD) -> Observation:
         """A picture with depth of one of the robot's own cameras.

@@ -21,6 +21,8 @@ TURNING, TURN_GAIN = 0.8, 6.0
 """The base's greatest speed, rad/s, and its speed for an error of one radian."""
 DRIVING, DRIVE_GAIN = 0.3, 3.0
 """The same of its wheels along each of its ways, m/s, and for an error of one metre."""
+STANDING = 0.002
+"""m/s below which wheels that brake are taken to stand, and are held there."""
 SHUT = 0.8
 """What the finger joints are told so as to close, radians."""
 OPEN_WIDTH = 0.085
@@ -100,7 +102,8 @@ class Machine:
         self._inertia = np.zeros((model.nv, model.nv))
         self._of_arm = np.ravel_multi_index(np.ix_(self.dofs, self.dofs), self._inertia.shape)
         self._step, self._steps = model.opt.timestep, round(TICK / model.opt.timestep)
-        self.yaw_target, self.place_target = 0.0, (0.0, 0.0)
+        self.yaw_target = 0.0
+        self.place_target: tuple[float, float] | None = None
         self.reference = np.zeros(6)
         self.velocity = np.zeros(6)
 
@@ -146,6 +149,10 @@ class Machine:
         return ahead, aside
 
     @property
+    def _rolling(self) -> float:
+        return max((abs(float(self.data.qvel[wheel.dof])) for wheel in self._wheels), default=0.0)
+
+    @property
     def width(self) -> float:
         """What the finger joints say of the gripper's opening, metres; below 0 they overlap."""
         closed = float(np.mean(self.data.qpos[self._finger_qpos]))
@@ -159,9 +166,9 @@ class Machine:
         return found | {YAW_JOINT: self.yaw, "gripper": self.width}
 
     def hold(self) -> None:
-        """Stand still where the arm and the base are."""
+        """Stand still where the arm and the base are; wheels brake, and stand where they end."""
         self.reference, self.velocity = self.arm, np.zeros(6)
-        self.yaw_target, self.place_target = self.yaw, self.place
+        self.yaw_target, self.place_target = self.yaw, None
 
     def fingers(self, *, shut: bool) -> None:
         """Tell the fingers to close or to open; it takes them about half a second."""
@@ -178,6 +185,8 @@ class Machine:
             for _ in range(self._steps):
                 self._drive()
                 self._mj.mj_step(self.model, self.data)
+            if self.place_target is None and self._rolling < STANDING:
+                self.place_target = self.place
             self.refresh()
         if self.on_tick is not None:
             self.on_tick()
@@ -196,8 +205,9 @@ class Machine:
         ctrl[self._motors] = torque
         turn = TURN_GAIN * (self.yaw_target - self.yaw)
         ctrl[self._turner] = min(max(turn, -TURNING), TURNING)
-        for wheel, target in zip(self._wheels, self.place_target, strict=False):
-            drive = DRIVE_GAIN * (target - data.qpos[wheel.joint])
+        for way, wheel in enumerate(self._wheels):
+            target = self.place_target
+            drive = 0.0 if target is None else DRIVE_GAIN * (target[way] - data.qpos[wheel.joint])
             ctrl[wheel.motor] = min(max(drive, -DRIVING), DRIVING)
         slips = bool(self.slips) and any(slip.at(self.time) for slip in self.slips)
         ctrl[self._fingers] = 0.0 if slips else self.closing

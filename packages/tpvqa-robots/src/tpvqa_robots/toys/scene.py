@@ -29,6 +29,8 @@ ARM_JOINTS = tuple(
 YAW_JOINT = "joint_mobile_yaw"
 WHEELS = ("mobile_forward", "mobile_side")
 """What a base that drives has besides: how far it has gone ahead and to its left."""
+BRAKE = 4000.0
+"""How hard these hold to the speed that they are told, Ns/m: robosuite's 1000 roll on too long."""
 FINGER_JOINTS = ("arm_hand_finger_joint", "arm_hand_right_outer_knuckle_joint")
 FINGER_GAIN, FINGER_TORQUE = 60.0, 3.0
 """Of a finger's motor, Nm/rad and Nm: some 30 N between the pads."""
@@ -231,6 +233,9 @@ def with_robot(room: Any, camera: Mast = OVER_THE_TABLE, *, drives: bool = False
         base.delete(base.joint(f"joint_{name}"))
     for name in (*WHEELS, "mobile_yaw") if drives else ("mobile_yaw",):
         base.joint(f"joint_{name}").frictionloss = 20
+    for name in WHEELS if drives else ():
+        wheel = base.actuator(f"actuator_{name}")
+        wheel.gainprm[0], wheel.biasprm[2] = BRAKE, -BRAKE
     mast = mj.MjSpec.from_string(
         _MAST.format(end=camera.end, head=camera.head, eye=camera.eye, axes=camera.axes)
     )

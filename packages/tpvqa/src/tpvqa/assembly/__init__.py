@@ -172,7 +172,7 @@ class Trial:
         senses = senses_of(world, self.task)
         context |= {"truth": truth_of(world), "views": views_of(world), "senses": senses}
         named = config.vlm.spec or (None if vlm is None else vlm.name)
-        named = named or default_vlm(pictures=has_pictures(world))
+        named = named or default_vlm(files, pictures=has_pictures(world))
         self.vlm_spec = in_full(named) if vlm is None else named
         self.known = experience
         self.calibration = calibration or shipped_calibration(self.vlm_spec)

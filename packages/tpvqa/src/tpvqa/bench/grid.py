@@ -66,7 +66,7 @@ class Grid:
                 for world in self.worlds or [default_world(files, vlm)]
             ]
         return [
-            (default_vlm(pictures=has_pictures(load_spec(Kind.WORLD, world))), world)
+            (default_vlm(files, pictures=has_pictures(load_spec(Kind.WORLD, world))), world)
             for world in self.worlds or [_of_chance(default_world(files))]
         ]
 

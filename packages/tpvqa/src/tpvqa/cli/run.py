@@ -89,9 +89,10 @@ def run(
                 f"The monitor {known.spec} weighs no answers: leave out --calibration and "
                 "--experience, or take --monitor belief."
             )
+        is_own = config.task.name is None or config.task.questions is not None
         told = (
             *about_files(layers),
-            *about_words(trial.book),
+            *(about_words(trial.book) if is_own else ()),
             *about_vlm(trial.config, trial.vlm_spec),
             *about_prices(config),
             *_about_calibration(trial),

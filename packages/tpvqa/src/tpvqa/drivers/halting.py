@@ -5,6 +5,7 @@ from concurrent.futures import Future, wait
 from threading import Thread
 from typing import TypeVar
 
+from tpvqa.drivers.plugged import called
 from tpvqa.errors import HaltedError
 from tpvqa.worlds.capabilities import Halting
 
@@ -24,6 +25,7 @@ def unless_halted(world: Halting, do: Callable[[], T]) -> T:
 
     Raises:
         HaltedError: It was halted, before or meanwhile.
+        PluginError: The world does not say whether it is.
     """
     doing: Future[T] = Future()
 
@@ -41,6 +43,6 @@ def unless_halted(world: Halting, do: Callable[[], T]) -> T:
 
 
 def _see(world: Halting) -> None:
-    why = world.halted()
+    why = called(world, "halted", str)
     if why:
         raise HaltedError(why)

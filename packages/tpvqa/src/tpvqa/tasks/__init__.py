@@ -39,6 +39,8 @@ class TaskFiles:
         questions: How facts and actions are put into questions; None for fallbacks alone.
         world: How facts come undone in a simulated world; None where they do not.
         default_world: Specification of the world that it is run in where none is named.
+        default_vlm: Specification of the VLM that is asked about its pictures where none is named;
+            empty for the embedded network.
         pictures: The folder of labelled pictures of it; None where there are none.
         script: What goes wrong in it in the scripted world; None for nothing.
     """
@@ -49,12 +51,17 @@ class TaskFiles:
     questions: Path | None
     world: Path | None
     default_world: str = "symbolic"
+    default_vlm: str = ""
     pictures: Path | None = None
     script: Path | None = None
 
 
 def tasks_in(
-    folder: Path, *, default_world: str = "symbolic", pictures: Path | None = None
+    folder: Path,
+    *,
+    default_world: str = "symbolic",
+    default_vlm: str = "",
+    pictures: Path | None = None,
 ) -> tuple[TaskFiles, ...]:
     """The tasks of a folder.
 
@@ -62,6 +69,7 @@ def tasks_in(
         folder: Holds `domain.pddl`, `questions.yaml`, `world.yaml` and `script.yaml` (each where
             there is one); every other PDDL file in it is a problem, and a task of that name.
         default_world: As in `TaskFiles`.
+        default_vlm: As in `TaskFiles`.
         pictures: As in `TaskFiles`.
     """
     domain = folder / "domain.pddl"
@@ -75,6 +83,7 @@ def tasks_in(
             questions=questions if questions.exists() else None,
             world=world if world.exists() else None,
             default_world=default_world,
+            default_vlm=default_vlm,
             pictures=pictures,
             script=script if script.exists() else None,
         )
