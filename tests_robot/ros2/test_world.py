@@ -178,6 +178,15 @@ def test_a_trial_without_its_setup_ends_in_one_message(tmp_path: Path) -> None:
     assert "Traceback" not in text
 
 
+def test_the_file_for_a_real_arm_is_read(task: Task) -> None:
+    setup = load_setup(Path("examples/ur5e/robot.yaml"), task)
+    assert set(setup.skills) == {"find", "pick_up", "place"}
+    assert (setup.truth, setup.told) == (None, ("hand_empty",))
+    assert setup.workspace is not None
+    assert setup.workspace.left_by(("toy_eggplant", "floor"))
+    assert not setup.workspace.left_by(("toy_eggplant", "goal_area"))
+
+
 def test_a_trial_without_a_skill_server_does_not_begin(setup_file: Path, tmp_path: Path) -> None:
     setup_file.write_text(setup_file.read_text().replace("wait: 8", "wait: 1"))
     trial = run(setup_file, tmp_path / "episode")
