@@ -24,6 +24,19 @@ def atom(said: str) -> Atom:
     return Atom(name, tuple(arguments))
 
 
+def touching(world: ToysWorld) -> set[tuple[str, str]]:
+    """What of arm, hand and things touches what of them and of the table, but for what stands."""
+    machine, found = world.robot.machine, set[tuple[str, str]]()
+    for contact in machine.data.contact[: machine.data.ncon]:
+        names = [
+            machine.model.body(int(machine.model.geom_bodyid[geom])).name for geom in contact.geom
+        ]
+        parts = sorted("hand" if name.startswith("arm_") else name for name in names)
+        if set(parts) <= {"hand", "table", *MOVABLE} and len(set(parts)) == 2:
+            found.add((parts[0], parts[1]))
+    return {pair for pair in found if "table" not in pair or "hand" in pair}
+
+
 def test_a_container_is_found_picked_placed_and_filled_by_contact_alone(
     world: ToysWorld, act: Act
 ) -> None:
@@ -32,7 +45,10 @@ def test_a_container_is_found_picked_placed_and_filled_by_contact_alone(
     leaps: list[float] = []
     last = {name: machine.data.body(name).xpos.copy() for name in MOVABLE}
 
+    touched: set[tuple[str, str]] = set()
+
     def watch() -> None:
+        touched.update(touching(world))
         for name in MOVABLE:
             here = machine.data.body(name).xpos.copy()
             leaps.append(float(np.linalg.norm(here - last[name])))
@@ -49,8 +65,13 @@ def test_a_container_is_found_picked_placed_and_filled_by_contact_alone(
         ("find blue_container toy_eggplant", "found blue_container"),
         ("place toy_eggplant blue_container", "on toy_eggplant blue_container"),
     ):
+        touched.clear()
         done = world.execute(act(said))
         assert (done.report, truth.holds(atom(then))) == (Report.DONE, True), (said, done.message)
+        _, thing, where = (*said.split(), "")[:3]
+        held = where if said.startswith("find") else thing
+        # nothing is pushed: the hand touches what it holds, which touches what it is put into
+        assert touched <= {tuple(sorted(pair)) for pair in (("hand", held), (held, where))}, said
         told = {fact.atom: fact.probability > 0.5 for fact in done.facts}
         assert told == {atom("hand_empty"): truth.holds(atom("hand_empty"))}
     assert max(leaps) < 2.0 * TICK  # nothing moves faster than 2 m/s: nothing is teleported
