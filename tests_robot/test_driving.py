@@ -43,8 +43,9 @@ def test_a_toy_at_the_tables_far_side_is_driven_to_and_collected(task: Task, act
     world = ToysWorld(task, mishaps=Mishaps(far=1.0), seed=1)
     try:
         machine = world.robot.machine
-        world.execute(act("find toy_eggplant table"))
+        found = world.execute(act("find toy_eggplant table"))
         assert hypot(*machine.place) > 0.3
+        assert f"after {hypot(*machine.place):.1f}" in found.message
         kept = json.loads(json.dumps(world.snapshot()))
         here = machine.place
         for said in (
@@ -81,6 +82,12 @@ def test_only_the_toys_have_something_far_away() -> None:
     assert Mishaps.read("far=0.5:slip=0.1") == Mishaps(slip=0.1, far=0.5)
     with pytest.raises(PluginError, match="'far=1'"):
         Mishaps.read("far=1", "bins")
+    with pytest.raises(PluginError, match="far from 0 to 1, not '2'"):
+        Mishaps.read("far=2")
+    with pytest.raises(PluginError, match="told 'far' twice"):
+        Mishaps.read("far=1:far=0")
+    with pytest.raises(PluginError, match="'appendix', which stands alone"):
+        Mishaps.read("appendix:far=1")
 
 
 @pytest.mark.parametrize("ticks", [15, 40, 70])

@@ -33,6 +33,16 @@ from tpvqa_robots.ros2.peers import LISTENS, Peers
 pytest.importorskip("tpvqa_interfaces")
 
 
+def test_a_loop_is_one_controller_whichever_way_it_commands(
+    start: Start, open_world: Open, act: Act
+) -> None:
+    start()
+    world = open_world(("place: {server: /tpvqa,", "place: {action: /tpvqa/execute_skill,"))
+    for said in (FIND, "place blue_container goal_area", PICK):
+        came = world.execute(act(said))
+        assert came.report is Report.DONE, came.message
+
+
 def test_skills_are_done_cancelled_and_refused_by_action(
     start: Start, open_world: Open, act: Act, state: Path
 ) -> None:

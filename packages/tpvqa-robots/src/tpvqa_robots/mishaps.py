@@ -58,12 +58,20 @@ class Mishaps:
                 value = float(number)
             except ValueError:
                 value = -1.0
-            if name not in known or not 0 <= value <= MOST.get(name, 1.0):
+            if name in said:
+                raise PluginError(f"The world {world!r} is told {name!r} twice.")
+            if name in known and not 0 <= value <= MOST.get(name, 1.0):
                 raise PluginError(
-                    f"The world {world!r} does not understand {word[:40]!r}. Write {world}, "
+                    f"The world {world!r} takes {name} from 0 to {MOST.get(name, 1.0):g}, not "
+                    f"{number[:40]!r}."
+                )
+            if name not in known:
+                alone = ", which stands alone" if toys and word == APPENDIX else ""
+                raise PluginError(
+                    f"The world {world!r} does not understand {word[:40]!r}{alone}. Write {world}, "
                     + ("toys:appendix, toys:far=1, " if toys else "")
                     + f"or {world}:slip=0.2:bad=0.1:noise=1: probabilities, and of noise a "
-                    f"factor on the cameras' errors from 0 to 10; {world}:slip_at=12 has the "
+                    f"factor on the cameras' errors from 0 to 10; {world}:slip_at=9 has the "
                     "fingers give way once, so many seconds from the start."
                 )
             said[name] = value

@@ -1,5 +1,6 @@
 """`tpvqa film`: run a trial on the toys' table, and film it."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -14,7 +15,7 @@ def register(app: typer.Typer) -> None:
 def film(
     out: Annotated[Path, typer.Option(help="New folder for the episode, film.mp4 and film.gif.")],
     task: Annotated[str, typer.Argument(help="A shipped task about the toys.")] = "collect_toys",
-    world: Annotated[str, typer.Option(help="toys, or toys:slip=0.2:bad=0.1:noise=1.")] = "toys",
+    world: Annotated[str, typer.Option(help="toys, or toys:slip=0.2:far=1; no other.")] = "toys",
     monitor: Annotated[str, typer.Option(help="As of `tpvqa run`.")] = "tpvqa",
     vlm: Annotated[str, typer.Option(help="As of `tpvqa run`.")] = "oracle",
     seed: Annotated[int, typer.Option(help="Of the world and of what is drawn.")] = 1,
@@ -41,6 +42,13 @@ def film(
         writer = EpisodeWriter(out)
         try:
             ended = trial.run(writer, folder=out, listeners=[recorder])
+        except KeyboardInterrupt:
+            print(
+                f"{out} holds the episode without a film: `tpvqa resume {out}` ends the trial and "
+                "films nothing; for a film begin anew in another folder",
+                file=sys.stderr,
+            )
+            raise
         finally:
             writer.close()
     write_mp4(out / "film.mp4", recorder.pictures, rate=RATE)

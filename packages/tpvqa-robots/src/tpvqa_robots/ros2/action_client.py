@@ -12,7 +12,7 @@ from typing import Any
 
 from tpvqa.worlds import Report
 from tpvqa_robots.ros2 import typed, wire
-from tpvqa_robots.ros2.client import Doing, new_name
+from tpvqa_robots.ros2.client import Doing
 from tpvqa_robots.ros2.link import Link, said
 from tpvqa_robots.ros2.peers import Peers
 
@@ -28,11 +28,13 @@ class ActionClient:
         changed: Notified when something was heard.
         gone: Seconds after which a server that is not heard, or does not take a goal, is gone.
 
+        me: The controller's name, the same for all servers of a loop.
+
     Raises:
         TpvqaError: The messages are not built.
     """
 
-    def __init__(self, link: Link, action: str, changed: threading.Condition, gone: float):
+    def __init__(self, link: Link, action: str, changed: threading.Condition, gone: float, me: str):
         typed.see_built(f"The action {action}")
         from action_msgs.msg import GoalStatus
         from rclpy.action import ActionClient as Asking
@@ -47,7 +49,7 @@ class ActionClient:
             GoalStatus.STATUS_CANCELED: (Report.CANCELLED, Report.LATE, Report.FAILED),
             GoalStatus.STATUS_ABORTED: tuple(each for each in Report if each is not Report.DONE),
         }
-        self.me = new_name()
+        self.me = me
         self._peers = Peers(self.me, monotonic())
         self._standing: Any = None
         self._heard = -1e9

@@ -104,14 +104,15 @@ class TopicClient:
         prefix: Of the server's topics.
         changed: Notified when something was heard.
         gone: Seconds after which a server that is not heard is gone.
+        me: The controller's name, the same for all servers of a loop.
     """
 
-    def __init__(self, link: Link, prefix: str, changed: threading.Condition, gone: float):
+    def __init__(self, link: Link, prefix: str, changed: threading.Condition, gone: float, me: str):
         from std_msgs.msg import String
 
         self.prefix, self._changed, self._gone = prefix, changed, gone
         self._string: Callable[..., Any] = String
-        self.me = new_name()
+        self.me = me
         self.server: str | None = None
         self.holder: str | None = None
         self.stopped = ""

@@ -13,7 +13,7 @@ from tpvqa.observation import Frame, Observation, SensedFact
 from tpvqa.pddl import Action, Task
 from tpvqa.worlds.protocol import Execution, Report
 from tpvqa_robots.ros2.action_client import ActionClient
-from tpvqa_robots.ros2.client import Client, Doing, TopicClient
+from tpvqa_robots.ros2.client import Client, Doing, TopicClient, new_name
 from tpvqa_robots.ros2.eyes import open_eyes
 from tpvqa_robots.ros2.feeling import Joints
 from tpvqa_robots.ros2.link import Link, said
@@ -87,9 +87,10 @@ class Ros2World:
 
     def _found(self, setup: Setup) -> dict[Server, Client]:
         found: dict[Server, Client] = {}
+        me = new_name()
         for server in dict.fromkeys(skill.server for skill in setup.skills.values()):
             make = ActionClient if server.is_action else TopicClient
-            found[server] = make(self._link, server.name, self._changed, setup.gone)
+            found[server] = make(self._link, server.name, self._changed, setup.gone, me)
         return found
 
     def views(self) -> Sequence[str]:

@@ -36,6 +36,8 @@ EMPTY = 0.003
 """What the fingers' joints say at most when they closed on nothing, metres."""
 QUALITY = 92
 """Of the JPEG pictures."""
+WENT = 0.03
+"""Metres from which on the base is said to have driven."""
 SURE = 0.98
 """How sure the gripper is of that."""
 TRIES = 12
@@ -228,6 +230,7 @@ class SimulatedRobot:
         if not self._knows(thing):
             raise SkillError(f"what {thing} looks like is not known")
         self._retreat(guard)
+        began = self.machine.place
         for stance in looking(self.stance, drives=self.machine.drives):
             feedback(f"looking for {thing}")
             self._motions.drive(stance, guard)
@@ -238,6 +241,7 @@ class SimulatedRobot:
                 seen = self._see(thing)
             if seen is None:
                 continue
+            drove = float(np.hypot(*np.subtract(self.machine.place, began)))
             for _ in range(3):
                 off = float(np.arctan2(seen.y, seen.x - AXIS))
                 if abs(off) < NEAR and not seen.cut:
@@ -245,7 +249,8 @@ class SimulatedRobot:
                 feedback(f"turning to {thing}")
                 self._motions.turn(self.machine.yaw + off, guard)
                 seen = self._see(thing) or seen
-            return f"{thing} is in sight"
+            went = f" after {drove:.2f} m" if drove > WENT else ""
+            return f"{thing} is in sight{went}"
         raise SkillError(f"{thing} is not in sight anywhere")
 
     def _pick_up(self, args: tuple[str, ...], guard: Guard, feedback: Told) -> str:
