@@ -38,8 +38,8 @@ def test_a_loop_is_one_controller_whichever_way_it_commands(
 ) -> None:
     start()
     world = open_world(("place: {server: /tpvqa,", "place: {action: /tpvqa/execute_skill,"))
-    for said in (FIND, "place blue_container goal_area", PICK):
-        came = world.execute(act(said))
+    for words in (FIND, "place blue_container goal_area", PICK):
+        came = world.execute(act(words))
         assert came.report is Report.DONE, came.message
 
 
