@@ -44,11 +44,21 @@ def test_the_appendix_is_filmed_and_bagged(tmp_path: Path) -> None:
     assert "--out" in again.stderr
 
 
-@pytest.mark.parametrize("words", ["slip", "slip=2", "bad=x", "noise=-1", "appendix:slip=1"])
-def test_words_that_are_not_understood_are_named(words: str) -> None:
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("slip", "takes slip from 0 to 1, not ''"),
+        ("slip=2", "takes slip from 0 to 1, not '2'"),
+        ("bad=x", "takes bad from 0 to 1, not 'x'"),
+        ("noise=-1", "takes noise from 0 to 10, not '-1'"),
+        ("fra=1", "toys:slip=0.2:bad=0.1:noise=1"),
+        ("appendix:slip=1", "toys:slip=0.2:bad=0.1:noise=1"),
+    ],
+)
+def test_words_that_are_not_understood_are_named(words: str, told: str) -> None:
     done = run("run", "collect_toys", "--world", f"toys:{words}", "--vlm", "oracle")
     assert done.returncode == 2
-    assert "toys:slip=0.2:bad=0.1:noise=1" in done.stderr
+    assert told in " ".join(done.stderr.split())
     assert "Traceback" not in done.stderr
 
 
