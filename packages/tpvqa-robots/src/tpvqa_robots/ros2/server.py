@@ -176,7 +176,8 @@ class SkillServer:
                 feedback=job.teller.feedback,
             )
         except Exception as error:  # noqa: BLE001 — a robot that breaks must not end its server
-            self._robot.stop()
+            with self._lock:
+                self._halt()  # in a thread of its own: to stop may break as well
             known = isinstance(error, TpvqaError)
             said = str(error) if known else f"the skill broke: {type(error).__name__}: {error}"
             done = Execution(Report.FAILED, monotonic() - job.began, said)
