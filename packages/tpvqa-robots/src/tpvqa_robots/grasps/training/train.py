@@ -1,11 +1,10 @@
-"""Teach GG-CNN: `python -m tpvqa_robots.grasps.training.train SCENES RUN --minutes 12 --seed 1`.
+"""Teach GG-CNN: `python -m tpvqa_robots.grasps.training.train SCENES RUN --steps 8000 --seed 1`.
 
 Needs torch. Writes `RUN/ggcnn.pt` and a line of JSON per hundred steps into `RUN/log.jsonl`.
 """
 
 import argparse
 import json
-import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -44,15 +43,15 @@ class Examples(Dataset):
         return torch.from_numpy(image.copy()), torch.from_numpy(wanted.copy())
 
 
-def train(folder: Path, run: Path, minutes: float, seed: int) -> None:
-    """Teach for so long.
+def train(folder: Path, run: Path, steps: int, seed: int) -> None:
+    """Teach for so many steps of `BATCH` examples.
 
     Args:
         folder: What `render` wrote.
         run: Where the weights go.
-        minutes: How long; the learning rate falls to a hundredth over them.
-        seed: Of weights and examples. The count of steps is that of the machine, so a run repeats
-            in kind and not to the bit.
+        steps: How many; the learning rate falls to a hundredth over them.
+        seed: Of weights and examples. The same scenes, seed and count of threads give the same
+            weights on the same machine.
     """
     run.mkdir(parents=True, exist_ok=True)
     torch.manual_seed(seed)
@@ -62,30 +61,30 @@ def train(folder: Path, run: Path, minutes: float, seed: int) -> None:
     held = torch.utils.data.default_collate([kept[i] for i in range(96)])
     net = GgCnn().to(memory_format=torch.channels_last)  # twice as fast on a processor
     adam = torch.optim.Adam(net.parameters(), RATE)
-    loader = DataLoader(Examples(taught, seed, 10**7), BATCH, num_workers=1, prefetch_factor=8)
-    begun, steps, mean = time.monotonic(), 0, 0.0
+    loader = DataLoader(
+        Examples(taught, seed, steps * BATCH), BATCH, num_workers=1, prefetch_factor=8
+    )
+    falling = torch.optim.lr_scheduler.ExponentialLR(adam, 0.01 ** (1 / steps))
+    mean = 0.0
     with (run / "log.jsonl").open("w") as log:
-        for image, wanted in loader:
-            part = (time.monotonic() - begun) / 60 / minutes
-            if part >= 1:
-                break
-            adam.param_groups[0]["lr"] = RATE * 0.01**part
+        for step, (image, wanted) in enumerate(loader, 1):
             seen = image.contiguous(memory_format=torch.channels_last)
             loss = loss_of(net(seen), wanted)
             adam.zero_grad()
             loss.backward()
             adam.step()
-            steps, mean = steps + 1, mean + (loss.item() - mean) * 0.02
-            if steps % 100 == 0:
+            falling.step()
+            mean += (loss.item() - mean) * (1 / step if step < 50 else 0.02)
+            if step % 100 == 0:
                 with torch.no_grad():
                     unseen = loss_of(net(held[0]), held[1]).item()
-                line = {"step": steps, "loss": round(mean, 5), "kept": round(unseen, 5)}
+                line = {"step": step, "loss": round(mean, 5), "kept": round(unseen, 5)}
                 print(json.dumps(line), file=log, flush=True)
                 print(line, flush=True)
                 torch.save(net.state_dict(), run / "ggcnn.pt")
     torch.save(net.state_dict(), run / "ggcnn.pt")
     told = {"scenes": len(taught), "steps": steps, "examples": steps * BATCH, "seed": seed}
-    (run / "run.json").write_text(json.dumps(told | {"minutes": minutes}))
+    (run / "run.json").write_text(json.dumps(told))
 
 
 def main() -> None:
@@ -93,10 +92,10 @@ def main() -> None:
     words = argparse.ArgumentParser(description=__doc__)
     words.add_argument("scenes", type=Path)
     words.add_argument("run", type=Path)
-    words.add_argument("--minutes", type=float, default=12.0)
+    words.add_argument("--steps", type=int, default=8000)
     words.add_argument("--seed", type=int, default=1)
     said = words.parse_args()
-    train(said.scenes, said.run, said.minutes, said.seed)
+    train(said.scenes, said.run, said.steps, said.seed)
 
 
 if __name__ == "__main__":
