@@ -227,6 +227,23 @@ def test_what_leaves_the_workspace_is_refused(
     assert not state.exists() or not done(state)
 
 
+@pytest.mark.parametrize("monitor", ["tpvqa", "belief"])
+def test_a_plan_that_would_leave_the_workspace_is_refused_before_its_first_action(
+    monitor: str, start: Start, setup_file: Path, state: Path, tmp_path: Path
+) -> None:
+    """The last of its places alone lies outside: nothing is picked up first."""
+    setup_file.write_text(
+        setup_file.read_text().replace("goal_area: [0.4, 0.3,", "goal_area: [4, 3,")
+    )
+    start()
+    trial = run(setup_file, tmp_path / "episode", "--monitor", monitor)
+    text, _ = trial.communicate(timeout=60)
+    assert trial.returncode == 1, text
+    ended = json.loads((tmp_path / "episode" / "episode.jsonl").read_text().splitlines()[-1])
+    assert "would leave the workspace: goal_area is at 4, 3, 0.8 m" in ended["message"]
+    assert not state.exists() or not done(state)
+
+
 def test_the_server_itself_starts_nothing_on_an_old_picture(start: Start, state: Path) -> None:
     """Whoever commands it: what was seen before the last action, or before it started, is old."""
     from std_msgs.msg import String

@@ -31,10 +31,10 @@ def done(state: Path) -> list[list[str]]:
     return [entry[:2] for entry in json.loads(state.read_text())["done"]]
 
 
-def run(setup_file: Path, folder: Path) -> "subprocess.Popen[str]":
+def run(setup_file: Path, folder: Path, *more: str) -> "subprocess.Popen[str]":
     command = [str(Path(sys.executable).parent / "tpvqa"), "run", "collect_toys", "--world"]
     return subprocess.Popen(
-        [*command, f"ros2:{setup_file}", "--vlm", "oracle", "--out", str(folder)],
+        [*command, f"ros2:{setup_file}", "--vlm", "oracle", "--out", str(folder), *more],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

@@ -125,6 +125,15 @@ class Ros2World:
             time=time, frames={view: shown}, detail={"stamp": frame.stamp}, facts=facts
         )
 
+    def refuses(self, action: Action) -> str:
+        """Why an action would leave the workspace; empty where it would not."""
+        bounds = self._setup.workspace
+        outside = None if bounds is None else bounds.left_by(action.arguments)
+        if bounds is None or outside is None:
+            return ""
+        at = ", ".join(f"{x:g}" for x in bounds.places[outside])
+        return f"{action.pddl()} would leave the workspace: {outside} is at {at} m"
+
     def execute(
         self, action: Action, *, deadline: float | None = None, cancel: Event | None = None
     ) -> Execution:
@@ -134,10 +143,8 @@ class Ros2World:
         if skill is None:
             known = ", ".join(self._setup.skills)
             return _refused(began, f"no skill server is named for {action.name!r}; for {known}")
-        if self._setup.workspace is not None:
-            outside = self._setup.workspace.left_by(action.arguments)
-            if outside is not None:
-                return _refused(began, f"{action.pddl()} would leave the workspace: {outside}")
+        if outside := self.refuses(action):
+            return _refused(began, outside)
         client = self._clients[skill.server]
         why = self._not_ready(client, cancel)
         if why:

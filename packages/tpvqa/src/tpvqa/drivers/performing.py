@@ -22,6 +22,7 @@ from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Task
 from tpvqa.planning import Crashed, Planner, PlanningResult
+from tpvqa.planning.bounded import BoundedPlanner
 from tpvqa.planning.towards import plan_towards
 from tpvqa.planning.without import plan_without
 from tpvqa.questions import Question, QuestionBook
@@ -32,7 +33,7 @@ from tpvqa.vlm.checking import checked_answers
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.vlm.usage import Usage
 from tpvqa.worlds import Execution, Report, Restorable, World
-from tpvqa.worlds.capabilities import Halting, Telling
+from tpvqa.worlds.capabilities import Bounded, Halting, Telling
 from tpvqa.worlds.goal import goal_holds
 from tpvqa.worlds.outcome import Outcome
 
@@ -92,6 +93,9 @@ class Performer:
         self._counted = Usage() if self._metered is None else self._metered.usage
         self._telling = parts.world if isinstance(parts.world, Telling) else None
         self._halting = parts.world if isinstance(parts.world, Halting) else None
+        self._planner: Planner = parts.planner
+        if isinstance(parts.world, Bounded):
+            self._planner = BoundedPlanner(parts.planner, self._refused)
 
     def perform(self, pending: Pending) -> Performed:
         """Do what is pending.
@@ -152,12 +156,15 @@ class Performer:
             self._freshness.looked(seen)
         return Performed(seen, observed)
 
+    def _refused(self, action: Action) -> str:
+        return called(self.parts.world, "refuses", str, action)
+
     def _frame(self, frame: Frame) -> FrameRecord:
         return frame_record(frame, self._save_frame(frame))
 
     def _plan(self, request: PlanFrom, seconds: float | None) -> Performed:
         parts, timeout = self.parts, _less(self._planning_timeout, seconds)
-        planner, task, state = parts.planner, parts.task, request.state
+        planner, task, state = self._planner, parts.task, request.state
         if request.without or request.towards:
             try:
                 result: object = (

@@ -16,7 +16,7 @@ from tpvqa.vlm import TruthSource
 from tpvqa.worlds.outcome import Outcome
 
 if TYPE_CHECKING:
-    from tpvqa.pddl import State, Task
+    from tpvqa.pddl import Action, State, Task
     from tpvqa.worlds.simulation import Simulation
 
 
@@ -81,6 +81,18 @@ class Halting(Protocol):
 
     def halted(self) -> str:
         """Why it stands still, and where things are; empty where nobody stopped it."""
+
+
+@runtime_checkable
+class Bounded(Protocol):
+    """It knows beforehand which actions it will not do at all, as what leaves the workspace.
+
+    Plans are made without them. `execute` refuses them all the same: not all that is done is of a
+    plan.
+    """
+
+    def refuses(self, action: "Action") -> str:
+        """Why it will not do an action, the same of each always; empty where it will."""
 
 
 class Simulated:
