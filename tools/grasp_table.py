@@ -1,10 +1,11 @@
 """How often each thing is grasped and carried off, by both ways of finding grasps.
 
 `python tools/grasp_table.py ROWS --tries 50 THING …`, from the folder of a clone; without names all
-of `THINGS`. Every try puts the thing somewhere else before the robot, as it lies after a fall, by a
-seed; the robot looks, and picks it up. Both ways meet the same tables. A row is written for each 50
-tries of a thing, way and noise, those of all things before the next 50; a try depends on its number
-alone, and what is in the file already is not tried again. `--show` prints the table.
+of the catalogue and of the toys' table. Every try puts the thing somewhere else before the robot,
+as it lies after a fall, by a seed; the robot looks, and picks it up. Both ways meet the same
+tables. A row is written for each 50 tries of a thing, way and noise, those of all things before the
+next 50; a try depends on its number alone, and what is in the file already is not tried again.
+`--show` prints the table.
 """
 
 import argparse
@@ -21,7 +22,7 @@ from tpvqa.chance import chance, chance_array
 from tpvqa.tasks import find_task
 from tpvqa_robots.grasps.methods import METHODS
 from tpvqa_robots.grasps.training.bench import Bench
-from tpvqa_robots.grasps.training.catalogue import HELD_OUT, named
+from tpvqa_robots.grasps.training.catalogue import HELD_OUT, TAUGHT, named
 from tpvqa_robots.grasps.training.solids import Thing, add
 from tpvqa_robots.mishaps import Mishaps
 from tpvqa_robots.skills.motions import Guard
@@ -39,11 +40,6 @@ from tpvqa_robots.world import ToysWorld
 SEED = 900
 BLOCK = 50
 """Tries in a row."""
-THINGS = (
-    *("box", "superquadric", "mug", "teddy-manitislate", "toy-wood", "milk"),
-    *("rubik-farcgs", "biplane-toy", "train-toy", "bread", "lemon", "horseshoe"),
-)
-"""Six that taught the network, and six that it never saw."""
 NAME = "thing"
 _TABLE = """
   <geom name="table" type="box" pos=".78 0 -.02" size=".31 .85 .02" group="1"
@@ -173,7 +169,7 @@ def main() -> None:
     """The command."""
     words = argparse.ArgumentParser(description=__doc__)
     words.add_argument("rows", type=Path)
-    words.add_argument("things", nargs="*", default=[*MOVABLE, *THINGS])
+    words.add_argument("things", nargs="*", default=[*MOVABLE, *TAUGHT, *HELD_OUT])
     words.add_argument("--tries", type=int, default=50)
     words.add_argument("--noise", type=float, default=1.0)
     words.add_argument("--grasps", nargs="*", default=list(METHODS))

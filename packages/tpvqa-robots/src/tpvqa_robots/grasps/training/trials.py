@@ -8,6 +8,7 @@ from numpy.random import Generator
 
 from tpvqa_robots.grasps.grasp import Grasp
 from tpvqa_robots.grasps.training.bench import SLIDES, Bench
+from tpvqa_robots.skills.simulated import EMPTY
 from tpvqa_robots.toys.machine import OPEN_WIDTH, SHUT
 from tpvqa_robots.toys.room import TABLE
 from tpvqa_robots.toys.scene import FINGER_JOINTS
@@ -20,8 +21,6 @@ CLEAR, HIGH = 0.015, 0.14
 """Metres over the things from which the hand comes down, and by which it lifts."""
 STILL = 0.10
 """Metres that a thing must have come up in the end."""
-LEAST = 0.003
-"""Metres between the fingers at which the robot takes them for closed on something."""
 STEPS = 10
 """Of physics between two commands."""
 
@@ -94,7 +93,7 @@ class Trials:
         ]
         closed = float(np.mean(data.qpos[self._angles]))
         width = OPEN_WIDTH * (1 - closed / SHUT)
-        return Tried(bool(held) and width > LEAST, max(0.0, width))
+        return Tried(bool(held) and width > EMPTY, max(0.0, width))
 
     def all_of(self, grasps: Sequence[Grasp], top: float) -> list[Tried]:
         """Try one after another."""
