@@ -1,4 +1,4 @@
-"""Random domains with conditional effects, without parameters."""
+"""Random domains with conditional effects and a derived predicate, without parameters."""
 
 from hypothesis import strategies as st
 
@@ -6,14 +6,21 @@ from tpvqa.pddl import Task, task_from_text
 
 _FACTS = ("(here a)", "(here b)", "(here c)", "(full)", "(locked)")
 _FACT = st.sampled_from(_FACTS)
-_LITERAL = st.builds(lambda fact, holds: fact if holds else f"(not {fact})", _FACT, st.booleans())
+
+
+def _literal(facts: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    return st.builds(lambda fact, holds: fact if holds else f"(not {fact})", facts, st.booleans())
+
+
+_LITERAL = _literal(_FACT)
 
 
 def _all(parts: list[str]) -> str:
     return f"(and {' '.join(parts)})"
 
 
-_CONDITION = st.lists(_LITERAL, max_size=2).map(_all)
+_CONDITION = st.lists(_literal(st.sampled_from((*_FACTS, "(seen)"))), max_size=2).map(_all)
+_RULE = st.lists(_LITERAL, min_size=1, max_size=2).map(_all)
 _EFFECT = st.one_of(
     _LITERAL,
     st.builds("(when {} {})".format, _CONDITION, _LITERAL),
@@ -35,6 +42,7 @@ def tasks(draw: st.DrawFn) -> Task:
     )
     return task_from_text(
         f"""(define (domain d) (:types place) (:constants a b c - place)
-        (:predicates (here ?p - place) (full) (locked)) {written})""",
+        (:predicates (here ?p - place) (full) (locked) (seen))
+        (:derived (seen) {draw(_RULE)}) {written})""",
         f"(define (problem p) (:domain d) (:init {' '.join(sorted(init))}) (:goal (full)))",
     )

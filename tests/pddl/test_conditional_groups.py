@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from tests.listing import every_state
 from tests.pddl.conditional_domains import tasks
 from tests.trolley import INIT, trolley
-from tpvqa.pddl import Atom, Task
+from tpvqa.pddl import Atom, Task, task_from_text
 
 ROOMS = ("hall", "attic", "cellar")
 
@@ -49,7 +49,31 @@ def test_two_at_first_are_no_group() -> None:
     assert places("crate") not in found(trolley(f"{INIT} (at crate attic)"))
 
 
-@settings(max_examples=60, deadline=None)
+def test_what_follows_from_other_facts_is_not_taken_for_what_never_holds() -> None:
+    """An action that needs it can be done, and breaks what it breaks."""
+    task = task_from_text(
+        """(define (domain lab) (:types rack pipette)
+        (:predicates (robot-at ?r - rack) (reach ?r - rack) (stands ?p - pipette ?r - rack)
+          (held ?p - pipette) (clean ?p - pipette) (running))
+        (:derived (reach ?r - rack) (robot-at ?r))
+        (:action go :parameters (?a ?b - rack) :precondition (robot-at ?a)
+          :effect (and (not (robot-at ?a)) (robot-at ?b)))
+        (:action start :parameters () :effect (running))
+        (:action grasp :parameters (?p - pipette ?r - rack)
+          :precondition (and (stands ?p ?r) (reach ?r))
+          :effect (and (held ?p) (not (stands ?p ?r))))
+        (:action put :parameters (?p - pipette ?r - rack) :precondition (and (held ?p) (reach ?r))
+          :effect (and (not (held ?p)) (stands ?p ?r) (when (running) (clean ?p)))))""",
+        """(define (problem wash) (:domain lab) (:objects r1 r2 - rack p - pipette)
+        (:init (robot-at r1) (stands p r1)) (:goal (and (clean p) (stands p r2))))""",
+    )
+    assert found(task) == {
+        facts("(held p)", "(stands p r1)", "(stands p r2)"): True,
+        facts("(robot-at r1)", "(robot-at r2)"): True,
+    }
+
+
+@settings(max_examples=150, deadline=None)
 @given(tasks())
 def test_every_state_keeps_every_group(task: Task) -> None:
     for state in every_state(task):

@@ -56,7 +56,7 @@ def inductive_groups(
 
     Args:
         actions: The translator's ground actions.
-        atoms: The fluent atoms that can be reached.
+        atoms: The fluent atoms that can be reached, none of them derived.
         first: What may hold initially. The groups hold in every state that actions lead to from
             any state that it allows.
         work: Facts drawn from others beyond which none is found.

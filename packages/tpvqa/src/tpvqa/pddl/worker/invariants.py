@@ -35,7 +35,9 @@ def described_groups(
     """
     kept = _widest(_laws(task, grounding.atoms), [])
     if _lawless(task, grounding):
-        kept = _widest(inductive_groups(grounding.actions, grounding.atoms, first), kept)
+        derived = {axiom.name for axiom in task.axioms}  # no action adds what follows from others
+        own = {key for key in grounding.atoms if key[0] not in derived}
+        kept = _widest(inductive_groups(grounding.actions, own, first), kept)
     proved = [atoms for atoms, exactly_one in kept if exactly_one]
     others = [group for group in grounding.mutex_groups if not any(group <= p for p in proved)]
     return _listed(_widest(_reached(grounding, others, state), kept))
