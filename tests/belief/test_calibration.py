@@ -115,12 +115,12 @@ def test_words_that_are_the_same_stand_in_for_each_other() -> None:
 @given(
     st.lists(st.sampled_from(list(Way)), unique=True),
     st.floats(0, 1),
-    st.floats(-5, 5, allow_nan=False),
+    st.floats(0, 5, allow_nan=False),
 )
 def test_the_file_gives_back_what_was_written(
     tmp_path_factory: pytest.TempPathFactory, ways: list[Way], rate: float, slope: float
 ) -> None:
-    rates = AnswerRates(rate, 1 - rate, 0.5, 0.25)
+    rates = AnswerRates(max(rate, 1 - rate), min(rate, 1 - rate), 0.5, 0.25)
     kinds = tuple(Group(way=way, predicate="on", rates=rates) for way in ways)
     one = Calibration(
         vlm="openai:ü",
@@ -145,6 +145,11 @@ def test_the_file_gives_back_what_was_written(
         (('"yes_if_true": 0.85', '"yes_if_true": 1.85'), ["yes_if_true", "less than or equal"]),
         (('"whole"', '"hole"'), ["whole", "Field required"]),
         (("{", "["), ["Invalid JSON"]),
+        (('"rows": 0', '"rows": -5'), ["rows", "greater than or equal to 0"]),
+        (('"rows": 0', '"rows": true'), ["rows", "valid integer"]),
+        (('"rows": 0', f'"rows": {10**30}'), ["rows", "less than or equal"]),
+        (('"yes_if_true": 0.85', '"yes_if_true": 0.05'), ["takes a yes for a no", "anew"]),
+        (('"slope": 0.5', '"slope": -5.0'), ["takes a yes for a no", "anew"]),
     ],
 )
 def test_a_broken_file_is_named_with_its_fault_and_a_remedy(

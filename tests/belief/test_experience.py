@@ -36,3 +36,32 @@ def test_a_file_of_a_version_to_come_is_refused(tmp_path: Path) -> None:
     (tmp_path / "new.json").write_text(json.dumps({**OLD, "version": 3}))
     with pytest.raises(CalibrationError, match="version"):
         Experience.load(tmp_path / "new.json")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("failure", [1e308, 18]),
+        ("disturbance", [1e30, 10.9]),
+        ("spontaneous", [True, 19]),
+        ("trials", 10**30),
+        ("trials", True),
+    ],
+)
+def test_more_than_a_robot_can_have_seen_is_refused(
+    tmp_path: Path, name: str, value: object
+) -> None:
+    (tmp_path / "new.json").write_text(json.dumps({**OLD, "version": 2, name: value}))
+    with pytest.raises(CalibrationError, match=name):
+        Experience.load(tmp_path / "new.json")
+
+
+def test_of_a_long_life_the_rates_are_kept(tmp_path: Path) -> None:
+    """What was counted without end can be written, read and unlearned."""
+    known = Experience(failure=(3, 9), disturbance=(1, 2))
+    chances = known.chances()
+    chances.failure.yes, chances.failure.no = 4e9, 1.2e10
+    Experience.of(chances, None, 9).save(tmp_path / "new.json")
+    again = Experience.load(tmp_path / "new.json")
+    assert again is not None
+    assert again.chances().rates.failure == pytest.approx(0.25)

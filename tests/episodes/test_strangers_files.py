@@ -12,7 +12,7 @@ from tests.episodes.believing import started
 from tpvqa.episodes import EpisodeWriter, follow, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.episodes.report import write_report
-from tpvqa.errors import EpisodeError, WriteError
+from tpvqa.errors import EpisodeError, PluginError, WriteError
 from tpvqa.events.events import FrameRecord, Observed
 from tpvqa.events.records import observation_from
 from tpvqa.files import write_whole
@@ -117,7 +117,7 @@ def test_a_log_is_a_plain_file(folder: Path, put: Put) -> None:
         next(follow(folder, timeout=0.1))
     with pytest.raises(WriteError, match="is a link, a pipe or a device"):
         EpisodeWriter(folder)
-    with pytest.raises(WriteError, match="is a link, a pipe or a device"):
+    with pytest.raises(EpisodeError, match="is a link, a pipe or a device"):
         EpisodeWriter.going_on(folder)
     assert (folder.parent / "picture").read_bytes() == PNG
 
@@ -159,3 +159,15 @@ def test_a_device_or_a_pipe_is_not_replaced_by_a_file(tmp_path: Path) -> None:
     with pytest.raises(WriteError, match="a pipe or a device"):
         write_whole(tmp_path / "pipe", b"", remedy="Name another")
     assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
+
+
+def test_an_event_that_no_reader_takes_is_not_written(folder: Path) -> None:
+    writer, _ = EpisodeWriter.going_on(folder)
+    before = (folder / LOG).read_bytes()
+    detail = {"scan": "y" * 17_000_000}
+    with pytest.raises(PluginError, match="an event has 16,777,216 at most"):
+        writer.append(Observed(look=1, world_time=0.0, detail=detail))
+    writer.append(Observed(look=1, world_time=0.0))
+    writer.close()
+    assert (folder / LOG).read_bytes().startswith(before)
+    assert len(read_episode(folder)) == 3

@@ -61,6 +61,8 @@ def book(task: Task, folder: Path, text: str | bytes) -> QuestionBook:
         ("predicates:\n\tnear: 'A?'", 2, "broken YAML"),
         ("a: 'never closed", 1, "broken YAML"),
         ("a: *unknown", 1, "the alias *unknown is not read here"),
+        ("a:\n  b: !!python/object/apply:os.system ['id']", 2, "is not read here; leave it out"),
+        ("a: !mine 'B?'", 1, "the tag '!mine' is not read here"),
         ("a: 1\n---\nb: 2", 2, "broken YAML"),
         ("a: 1\nb: \x01", 2, "broken YAML"),
         ("actions:\n  open: {says: 'open'}", 2, "'says' is not known here. Did you mean 'say'"),

@@ -45,6 +45,11 @@ def open_plain(path: Path | str, flags: int, *, follow: bool = False) -> int:
     return found
 
 
+def resolved(path: Path | str) -> Path:
+    """Where a path leads, links followed as far as they lead anywhere."""
+    return Path(os.path.realpath(path))  # `Path.resolve` breaks on links in a circle
+
+
 @contextmanager
 def opened_plain(path: Path | str) -> Iterator[int]:
     """A plain file, open for reading: its descriptor.

@@ -30,6 +30,9 @@ class _Loader(yaml.SafeLoader):
                 "stands for",
                 mark,
             )
+        tag = getattr(self._next(), "tag", None)
+        if tag is not None:
+            raise _Refused(f"the tag {shown(tag)} is not read here; leave it out", mark)
         if self._depth >= _DEEPEST:
             raise _Refused(f"values are nested more than {_DEEPEST} deep", mark)
         self._depth += 1

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from tpvqa.belief.bounds import BOUND, EDGE
+from tpvqa.belief.bounds import BOUND, EDGE, Counted
 from tpvqa.belief.kinds import FRESH, KINDS, UNKNOWN
 from tpvqa.belief.own_words import OwnWords, SensorWorth, SkillWorth, fit_sensors, fit_skills
 from tpvqa.belief.writing import write_json
@@ -77,7 +77,7 @@ class Group(_Model):
 
     way: Way | None = None
     predicate: str | None = None
-    rows: int = 0
+    rows: Counted = 0
     rates: AnswerRates
     curve: Curve | None = None
 
@@ -146,16 +146,16 @@ class Calibration(_Model):
 
     version: Literal[1] = 1
     vlm: str
-    rows: int = 0
-    by_hand: int = Field(default=0, ge=0)
-    inferred: int = Field(default=0, ge=0)
+    rows: Counted = 0
+    by_hand: Counted = 0
+    inferred: Counted = 0
     groups: tuple[Group, ...] = ()
     ways: tuple[Group, ...] = ()
     whole: Group
     repeat_same_view: Probability
     repeat_other_view: Probability
-    pairs_same_view: int = Field(default=0, ge=0)
-    pairs_other_view: int = Field(default=0, ge=0)
+    pairs_same_view: Counted = 0
+    pairs_other_view: Counted = 0
     notices: tuple[str, ...] = ()
     sensors: tuple[SensorWorth, ...] = ()
     skills: tuple[SkillWorth, ...] = ()
@@ -268,7 +268,9 @@ class Calibration(_Model):
                 f"{error}. Name the file that `tpvqa calibrate --out FILE` wrote"
             ) from error
         try:
-            return cls.model_validate_json(text)
+            return cls.model_validate_json(text, strict=True)._forwards()
+        except PlacedError as error:
+            raise CalibrationError(f"{path}: {error}") from None
         except ValidationError as error:
             first = error.errors()[0]
             place = ".".join(map(str, first["loc"]))
@@ -280,6 +282,19 @@ class Calibration(_Model):
             raise CalibrationError(
                 f"{path}: {message}. Name what `tpvqa calibrate --out FILE` wrote, or make another"
             ) from error
+
+    def _forwards(self) -> "Calibration":
+        """Itself, where no answer counts the wrong way round."""
+        for group in (self.whole, *self.ways, *self.groups):
+            rates, curve = group.rates, group.curve
+            turned = rates.yes_if_true < rates.yes_if_false - EDGE
+            if turned or (curve is not None and curve.slope < 0):
+                asked = " of ".join(filter(None, (group.predicate, group.way)))
+                raise PlacedError(
+                    f"it takes a yes for a no ({asked or 'all answers'}: a yes is likelier where "
+                    "no is right), as none that `tpvqa calibrate` makes does. Calibrate anew"
+                )
+        return self
 
     def save(self, path: Path) -> None:
         """Write it, all or nothing.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
+from tpvqa.belief.bounds import MOST, Counted
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.trust import GRID, Trust
 from tpvqa.belief.writing import write_json
@@ -19,9 +20,10 @@ if TYPE_CHECKING:
     from tpvqa.belief.chances import Beta, Chances
     from tpvqa.belief.faults import Rates
 
-Cases = tuple[Annotated[float, Field(gt=0)], Annotated[float, Field(gt=0)]]
-Count = Annotated[float, Field(ge=0, le=1e6)]
-Rate = Annotated[float, Field(gt=0, lt=1)]
+Some = Annotated[float, Field(gt=0, le=MOST, strict=True)]
+Cases = tuple[Some, Some]
+Count = Annotated[float, Field(ge=0, le=MOST, strict=True)]
+Rate = Annotated[float, Field(gt=0, lt=1, strict=True)]
 
 
 class Experience(BaseModel):
@@ -60,7 +62,7 @@ class Experience(BaseModel):
     )
     vlm: str = ""
     calibration: str = ""
-    trials: int = Field(default=0, ge=0)
+    trials: Counted = 0
 
     @model_validator(mode="before")
     @classmethod
@@ -163,4 +165,5 @@ class Experience(BaseModel):
 
 def _cases(beta: "Beta") -> tuple[float, float]:
     """Cases for and against; a rate that was believed for certain can be learned again."""
-    return max(beta.yes, 1e-3), max(beta.no, 1e-3)
+    fewer = max(1.0, max(beta.yes, beta.no) / MOST)
+    return max(beta.yes / fewer, 1e-3), max(beta.no / fewer, 1e-3)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tpvqa.belief.bounds import BOUND, EDGE
+from tpvqa.belief.bounds import BOUND, EDGE, Counted
 
 FAILED = (0.1, 0.9)
 """How probable it is that a skill reports a failure where it worked, and where it failed, as long
@@ -41,7 +41,7 @@ class SensorWorth(_Worth):
     """
 
     predicate: str
-    rows: int = Field(ge=0)
+    rows: Counted
     says_if_true: Share
     says_if_false: Share
     surely: float = Field(gt=0)
@@ -72,7 +72,7 @@ class SkillWorth(_Worth):
     """
 
     action: str | None = None
-    rows: int = Field(default=0, ge=0)
+    rows: Counted = 0
     notices: Share
     false_alarms: Share
 

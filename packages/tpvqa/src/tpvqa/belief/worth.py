@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tpvqa.belief.bounds import EDGE
 from tpvqa.belief.heard import Drawn, after_answer, own
 from tpvqa.belief.information import Floats, Mixture, Reliability
 from tpvqa.belief.kinds import KINDS, RECORDED
@@ -291,6 +292,7 @@ class Worth:
         if self.trust is None:
             return
         yes, no = rates if said.yes else (1 - rates[0], 1 - rates[1])
+        yes, no = max(yes, EDGE), max(no, EDGE)
         self._by_words = self._by_words + _says(self._grid, abs(np.log(yes / no)))
         self._by_answers = self._by_answers + _says(self._grid, abs(said.ratio))
         self._new.clear()

@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tpvqa.errors import BenchError, PlacedError
+from tpvqa.files import resolved
 from tpvqa.pddl.programs.loading import task_name
 from tpvqa.tasks import PROGRAM, QUESTIONS, WORLD, TaskFiles, beside, is_program, shipped_tasks
 from tpvqa.text_files import read_text
@@ -109,7 +110,7 @@ def own_tasks(
     if domain is None and len(problems) > 1 and _is_domain(problems[0]):
         domain, problems = problems[0], problems[1:]
     found = [
-        OwnTask.read(_files(path.resolve(), domain, questions, world_file))
+        OwnTask.read(_files(resolved(path), domain, questions, world_file))
         for path in dict.fromkeys(_expanded(problems, domain))
     ]
     names = Counter(each.origin.name for each in found)
@@ -141,9 +142,9 @@ def _expanded(problems: Sequence[Path], domain: Path | None) -> Iterator[Path]:
             yield path
             continue
         domains = {path / DOMAIN} if domain is None else {path / DOMAIN, domain}
-        known = {each.resolve() for each in domains}
+        known = {resolved(each) for each in domains}
         files = [*path.glob("*.pddl"), *(path.glob(f"*{PROGRAM}") if domain is None else ())]
-        inside = [each for each in sorted(files) if each.resolve() not in known]
+        inside = [each for each in sorted(files) if resolved(each) not in known]
         if not inside:
             raise BenchError(
                 f"{path} holds no problem: *.pddl besides the domain; nor *{PROGRAM} alone"
@@ -155,7 +156,7 @@ def _files(
     problem: Path, domain: Path | None, questions: Path | None, world_file: Path | None
 ) -> TaskFiles:
     if is_program(problem):
-        if domain is not None and domain.resolve() != problem:
+        if domain is not None and resolved(domain) != problem:
             raise BenchError(
                 f"{problem} is a logic program, domain and problem in one: leave out --domain"
             )
@@ -171,10 +172,10 @@ def _files(
     world_file = world_file or beside(WORLD, problem, domain)
     return TaskFiles(
         name=name,
-        domain=domain.resolve(),
+        domain=resolved(domain),
         problem=problem,
-        questions=None if questions is None else questions.resolve(),
-        world=None if world_file is None else world_file.resolve(),
+        questions=None if questions is None else resolved(questions),
+        world=None if world_file is None else resolved(world_file),
     )
 
 

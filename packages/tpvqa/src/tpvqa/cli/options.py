@@ -12,6 +12,7 @@ from tpvqa.config.layers import Key, Layer, Setting, combined, file_layer, origi
 from tpvqa.config.model import TaskConfig, TrialConfig
 from tpvqa.config.parts import VLMConfig
 from tpvqa.errors import TpvqaError
+from tpvqa.files import resolved
 from tpvqa.plugins import Kind, names
 
 _TYPES = {"int | None": int, "float | None": float, "str | None": str}
@@ -237,7 +238,7 @@ def pair(text: str) -> tuple[str, str]:
 
 
 def _resolved(path: str | Path) -> str:
-    return str(Path(path).resolve())
+    return str(resolved(path))
 
 
 def _name(setting: Setting) -> str:

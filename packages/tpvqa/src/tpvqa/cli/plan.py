@@ -82,6 +82,7 @@ def plan(
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Plan a task and print the plan."""
+    from tpvqa.drivers.plugged import planned
     from tpvqa.errors import GroundingTimedOut, PlannerError
     from tpvqa.pddl import load_task
     from tpvqa.pddl.state_file import read_state
@@ -98,7 +99,7 @@ def plan(
         for notice in about_start(loaded) if state is None else ():
             tell(f"note: {notice}", error=True)
         left = max(0.0, timeout - (time.perf_counter() - start))
-        result = chosen.plan(loaded, state, timeout=left)
+        result = planned(chosen, loaded, state, timeout=left)
     except GroundingTimedOut:
         result = TimedOut(timeout, chosen.name, time.perf_counter() - start)
     except PlannerError as error:

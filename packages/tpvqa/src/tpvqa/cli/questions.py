@@ -83,6 +83,7 @@ def questions(
 ) -> None:
     """Print every question of a task's plan, action by action, for each way of asking."""
     from tpvqa.cli.drafting import write_draft
+    from tpvqa.drivers.plugged import planned
     from tpvqa.errors import GroundingTimedOut
     from tpvqa.planning import Crashed, Plan, TimedOut, Unfit, Unsolvable
     from tpvqa.planning.making import make_planner
@@ -99,7 +100,7 @@ def questions(
     book = book.worded(wording)
     chosen = make_planner("fast-downward" if planner is None else planner)
     try:
-        result = chosen.plan(loaded, timeout=timeout)
+        result = planned(chosen, loaded, timeout=timeout)
     finally:
         chosen.close()
     match result:

@@ -12,6 +12,7 @@ from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_opt
 from tpvqa.cli.plan import Problem, Task
 from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer
+from tpvqa.files import resolved
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
@@ -129,10 +130,10 @@ def _own(trial: "Trial") -> "OwnTask | None":
         return None
     files = TaskFiles(
         name=trial.task.name,
-        domain=trial.domain.resolve(),
-        problem=trial.problem.resolve(),
-        questions=None if trial.questions is None else Path(trial.questions).resolve(),
-        world=None if trial.world_file is None else Path(trial.world_file).resolve(),
+        domain=resolved(trial.domain),
+        problem=resolved(trial.problem),
+        questions=None if trial.questions is None else resolved(trial.questions),
+        world=None if trial.world_file is None else resolved(trial.world_file),
     )
     return OwnTask.read(files)
 

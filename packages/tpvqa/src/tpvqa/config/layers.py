@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 
 from tpvqa.config.model import TrialConfig
 from tpvqa.errors import ConfigError, cut
+from tpvqa.files import resolved
 from tpvqa.yaml_places import Place, read_yaml
 
 if TYPE_CHECKING:
@@ -204,7 +205,7 @@ def file_layer(path: Path) -> Layer:
         for setting, place in _given(name, part, known[name]):
             value = _value(place)
             if setting.file and isinstance(value, str):
-                value = str((path.parent / value).resolve())
+                value = str(resolved(path.parent / value))
             values[setting.key], places[setting.key] = value, f"{path}:{place.line}"
     return Layer(values, places)
 

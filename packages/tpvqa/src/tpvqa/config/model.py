@@ -11,6 +11,9 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from tpvqa.config.parts import Part, VLMConfig, setting
 
+MOST = 10**18
+"""Of a seed and of an episode: what every reader of a log takes for a whole number."""
+
 LEAST_ACTIONS = 60
 """The limit of actions where none is given, unless `PLANS` times the first plan is more."""
 PLANS = 6
@@ -285,8 +288,10 @@ class TrialConfig(Part):
     planner: Annotated[PlannerConfig, Named] = PlannerConfig()
     limits: Limits = Limits()
     simulation: SimulationConfig | None = SimulationConfig()
-    seed: int = setting("--seed", "Decides, with --episode, every random number.", 0)
-    episode: int = setting("--episode", "Number of the episode under the seed.", 0, ge=0)
+    seed: int = setting(
+        "--seed", "Decides, with --episode, every random number.", 0, ge=-MOST, le=MOST
+    )
+    episode: int = setting("--episode", "Number of the episode under the seed.", 0, ge=0, le=MOST)
     wording: Literal["usual", "paper"] = setting(
         "--wording",
         'How whole actions are asked about: usual ("Was wash the plate successful?"), or paper, '

@@ -7,9 +7,9 @@ from typing import Any
 
 from tpvqa.drivers.freshness import Freshness
 from tpvqa.drivers.halting import unless_halted
-from tpvqa.drivers.plugged import MALFORMED, called, malformed
+from tpvqa.drivers.plugged import MALFORMED, called, malformed, planning_result
 from tpvqa.drivers.sensed import checked
-from tpvqa.errors import PlannerError, PluginError
+from tpvqa.errors import PlannerError
 from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade, Waited
 from tpvqa.events.records import (
     answered_record,
@@ -21,7 +21,7 @@ from tpvqa.events.records import (
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Action, Task
-from tpvqa.planning import Crashed, Planner, PlanningResult
+from tpvqa.planning import Crashed, Planner
 from tpvqa.planning.bounded import BoundedPlanner
 from tpvqa.planning.towards import plan_towards
 from tpvqa.planning.without import plan_without
@@ -181,11 +181,7 @@ class Performer:
             )
         else:
             result = called(planner, "plan", object, task, state, timeout=timeout)
-        if not isinstance(result, PlanningResult):
-            raise PluginError(
-                f"{planner.name} has to return a Plan, Unsolvable, TimedOut or Crashed, not "
-                f"{type(result).__name__}"
-            )
+        result = planning_result(planner, result)
         try:
             made = plan_record(result, state, parts.book)
         except MALFORMED as error:

@@ -7,6 +7,8 @@ from typing import Any, TypeVar, cast
 from pydantic import ValidationError
 
 from tpvqa.errors import EpisodeError, PluginError, TpvqaError
+from tpvqa.pddl import State, Task
+from tpvqa.planning import Planner, PlanningResult
 from tpvqa.vlm.capabilities import kind_of
 from tpvqa.worlds import Restorable, World
 
@@ -34,14 +36,43 @@ def called(part: object, method: str, wanted: type[T], /, *given: object, **name
     except TpvqaError:
         raise
     except (Exception, SystemExit) as error:
-        place = traceback.extract_tb(error.__traceback__)[-1]
         raise PluginError(
-            f"{where} broke: {type(error).__name__}: {error} ({place.filename}:{place.lineno}). "
-            "Mend it; the episode can be gone on with"
+            f"{_broke(where, error)}. Mend it; the episode can be gone on with"
         ) from error
     if not isinstance(result, wanted):
         raise PluginError(f"{where} has to return {wanted.__name__}, not {_short(result)}")
     return result
+
+
+def planned(
+    planner: Planner, task: Task, state: State | None = None, *, timeout: float | None = None
+) -> PlanningResult:
+    """What a planner comes to outside of trials; arguments as of `Planner.plan`.
+
+    Raises:
+        TpvqaError: What it raised itself.
+        PluginError: It raised something else, or returned something else.
+    """
+    try:
+        return planning_result(planner, planner.plan(task, state, timeout=timeout))
+    except TpvqaError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise PluginError(f"{_broke(_where(planner, 'plan'), error)}. Mend it") from error
+
+
+def planning_result(planner: Planner, result: object) -> PlanningResult:
+    """What a planner returned.
+
+    Raises:
+        PluginError: It is no result.
+    """
+    if isinstance(result, PlanningResult):
+        return result
+    raise PluginError(
+        f"{planner.name} has to return a Plan, Unsolvable, TimedOut or Crashed, not "
+        f"{_short(result)}"
+    )
 
 
 def views_of(world: World) -> tuple[str, ...]:
@@ -82,6 +113,11 @@ def malformed(part: object, method: str, error: Exception) -> PluginError:
 
 MALFORMED = (ValidationError, AttributeError, KeyError, TypeError, ValueError)
 """What is raised where something of a plug-in is put into the log that does not belong there."""
+
+
+def _broke(where: str, error: BaseException) -> str:
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{where} broke: {type(error).__name__}: {error} ({place.filename}:{place.lineno})"
 
 
 def _where(part: object, method: str) -> str:

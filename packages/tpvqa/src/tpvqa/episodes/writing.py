@@ -12,6 +12,7 @@ from pydantic_core import PydanticSerializationError
 
 from tpvqa.episodes.log import LOG, events_in, whole_lines
 from tpvqa.episodes.shape import FRAMES, is_frame
+from tpvqa.episodes.strict_json import LONGEST
 from tpvqa.errors import EpisodeError, PluginError, WriteError
 from tpvqa.events import EVENT, Ended, Event
 from tpvqa.events.events import CAN_BE_GONE_ON_WITH
@@ -23,6 +24,7 @@ from tpvqa.pictures import MOST_BYTES
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 _TORN = b'{"number":0,'
 """How the first event of a log begins."""
+_NONE_THERE = (errno.ENOENT, errno.ELOOP, errno.ENXIO, errno.EINVAL)
 _NO_ENDS = tuple(f'"because":"{each}"'.encode() for each in CAN_BE_GONE_ON_WITH)
 
 
@@ -107,16 +109,13 @@ class EpisodeWriter:
             with suppress(FileExistsError):
                 (self.folder / FRAMES).mkdir()
             self._frames = self._opened_frames()
-        except FileNotFoundError as error:
+        except OSError as error:
             self.close()
-            if new:
+            if new or error.errno not in _NONE_THERE:
                 raise self._unwritten(error) from error
             raise EpisodeError(
                 f"{self.folder} holds no episode: {LOG} cannot be read ({error.strerror})"
             ) from error
-        except OSError as error:
-            self.close()
-            raise self._unwritten(error) from error
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
@@ -179,6 +178,11 @@ class EpisodeWriter:
                 f"the event {event.kind!r} cannot be written: a plug-in gave what is no text or no "
                 f"value of JSON ({error})"
             ) from error
+        if len(line) > LONGEST:
+            raise PluginError(
+                f"the event {event.kind!r} cannot be written: a plug-in gave {len(line):,} bytes, "
+                f"and an event has {LONGEST:,} at most"
+            )
         try:
             if not self._cut:
                 os.ftruncate(self._file, self._size)
