@@ -21,7 +21,7 @@ from tpvqa_robots.skills.kinematics import Grip, Kinematics, OutOfReachError
 from tpvqa_robots.skills.motions import Guard, Motions, NotThereError, Stopped, Told
 from tpvqa_robots.skills.seeing import HUES, Seen, see
 from tpvqa_robots.toys.cameras import CAMERAS, OVERHEAD, Cameras, Shot
-from tpvqa_robots.toys.machine import Machine
+from tpvqa_robots.toys.machine import EMPTY, Machine
 from tpvqa_robots.toys.room import TABLE
 
 CARRY = Grip(0.36, 0.0, 0.98, np.pi / 2)
@@ -32,9 +32,6 @@ NEAR = 0.06
 """Radians off the middle at which a thing is near enough for the arm."""
 ABOVE = 0.14
 """Metres above a grasp from which the gripper comes straight down."""
-EMPTY = 0.001
-"""What the fingers' joints say at most when they closed on nothing, metres: three of the steps in
-which a Robotiq tells its opening. On a wall of 5 mm these fingers, which give, say 2 mm."""
 QUALITY = 92
 """Of the JPEG pictures."""
 WENT = 0.03

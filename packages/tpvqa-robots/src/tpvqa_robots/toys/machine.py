@@ -26,6 +26,9 @@ STANDING = 0.002
 SHUT = 0.8
 """What the finger joints are told so as to close, radians."""
 OPEN_WIDTH = 0.085
+EMPTY = 0.001
+"""What the fingers' joints say at most when they closed on nothing, metres: three of the steps in
+which a Robotiq tells its opening. On a wall of 5 mm these fingers, which give, say 2 mm."""
 
 
 @dataclass(frozen=True, slots=True)

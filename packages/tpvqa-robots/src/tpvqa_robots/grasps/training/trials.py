@@ -8,8 +8,7 @@ from numpy.random import Generator
 
 from tpvqa_robots.grasps.grasp import Grasp
 from tpvqa_robots.grasps.training.bench import SLIDES, Bench
-from tpvqa_robots.skills.simulated import EMPTY
-from tpvqa_robots.toys.machine import OPEN_WIDTH, SHUT
+from tpvqa_robots.toys.machine import EMPTY, OPEN_WIDTH, SHUT
 from tpvqa_robots.toys.room import TABLE
 from tpvqa_robots.toys.scene import FINGER_JOINTS
 from tpvqa_robots.truth import touched_by_both
