@@ -90,6 +90,8 @@ robot-env: $(ROBOT_VENV)/.installed
 
 # ROS 2's messages of our own, built into the robot's environment: half a minute, once.
 robot-interfaces: robot-env
+	@$(ROBOT_BIN)/python -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' || { \
+	  echo "The wheels of ROS 2 are for Python 3.11 alone. Name one: rm -rf $(ROBOT_VENV); make PYTHON=python3.11 …"; exit 1; }
 	@$(ROBOT_BIN)/tpvqa build-interfaces
 
 # How soon processes hear of each other over DDS is not in our hands: what fails is tried again.

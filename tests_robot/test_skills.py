@@ -128,15 +128,16 @@ def test_a_bad_grasp_closes_on_nothing(task: Task, act: Act) -> None:
 def test_a_cancelled_skill_leaves_the_arm_standing_within_a_fifth_of_a_second(
     world: ToysWorld, act: Act, never: Event, ticks: int
 ) -> None:
-    machine, count = world.robot.machine, 0
+    machine, count, before = world.robot.machine, 0, 0.0
     speeds: list[float] = []
 
     def watch() -> None:
-        nonlocal count
+        nonlocal count, before
         count += 1
         if never.is_set():
             speeds.append(machine.speed)
         elif count == ticks:
+            before = machine.speed
             never.set()
 
     machine.on_tick = watch
@@ -145,6 +146,7 @@ def test_a_cancelled_skill_leaves_the_arm_standing_within_a_fifth_of_a_second(
     assert done.report is Report.CANCELLED
     assert machine.time - start <= ticks * TICK + 0.2 + 1e-6
     assert len(speeds) == round(0.2 / TICK)
+    assert before > STANDING  # it was in motion
     assert speeds[-1] < STANDING
 
 

@@ -4,7 +4,10 @@ import threading
 import time
 from types import TracebackType
 
+import pytest
+
 TICK = 0.005
+MOST = 0.25
 
 
 class Lag:
@@ -34,5 +37,10 @@ class Lag:
             self._worst = max(self._worst, time.monotonic() - began - TICK)
 
     def allows(self, seconds: float) -> float:
-        """What may be taken for `seconds`: four hands in a row may each have had to wait."""
+        """What may be taken for `seconds`: four hands in a row may each have had to wait.
+
+        Where one waits longer than `MOST` nothing can be told: that is no machine to measure on.
+        """
+        if self._worst > MOST:
+            pytest.skip(f"a processor was waited for {self._worst:.2f} s")
         return seconds + 4 * self._worst

@@ -85,6 +85,8 @@ class StandIn:
     def look(self, view: str) -> Observation:
         if "frozen" in self.faults and self._frozen is not None:
             return self._frozen
+        if "unplugged" in self.faults and self._read()[1]:
+            raise OSError("the camera is unplugged")
         file = BytesIO()
         noise = self._rng.integers(0, 255, (24, 32, 3), dtype=np.uint8)
         Image.fromarray(noise).save(file, "png")

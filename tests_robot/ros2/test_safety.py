@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -16,10 +17,13 @@ from tests_robot.conftest import Act
 from tests_robot.ros2.conftest import Open, Start, wait_for
 from tests_robot.ros2.lag import Lag
 from tests_robot.ros2.test_world import done, run
+from tpvqa.pddl import Atom
 from tpvqa.worlds import Execution, Report
 from tpvqa_robots.ros2 import wire
+from tpvqa_robots.ros2.feeling import Joints
 from tpvqa_robots.ros2.lease import EXPIRES, Lease
-from tpvqa_robots.ros2.link import Link, said
+from tpvqa_robots.ros2.link import Link, latched, said
+from tpvqa_robots.ros2.setup import SensedRule
 from tpvqa_robots.ros2.world import Ros2World
 
 SHORT = ("wait: 8", "wait: 3")
@@ -45,7 +49,9 @@ def until_begun(state: Path) -> None:
     wait_for(lambda: state.exists() and bool(done(state)))
 
 
-@pytest.mark.parametrize(("fault", "why"), [("blind", "no picture"), ("frozen", "frozen")])
+@pytest.mark.parametrize(
+    ("fault", "why"), [("blind", "no picture"), ("frozen", "frozen"), ("unplugged", "last picture")]
+)
 def test_a_camera_that_is_gone_or_frozen_ends_the_trial(
     fault: str, why: str, start: Start, setup_file: Path, state: Path, tmp_path: Path
 ) -> None:
@@ -58,6 +64,84 @@ def test_a_camera_that_is_gone_or_frozen_ends_the_trial(
     assert (ended["kind"], ended["because"]) == ("ended", "world refused")
     assert why in ended["message"]
     assert len(done(state)) == (0 if fault == "blind" else 2)  # begun and ended, once
+
+
+def test_a_picture_of_another_camera_is_no_observation(start: Start, open_world: Open) -> None:
+    start()
+    seen = open_world(SHORT, ("frame_id: overhead", "frame_id: wrist")).observe()
+    assert not seen.frames
+    assert "is of frame 'overhead', not 'wrist'" in seen.detail["no picture"]
+
+
+def test_what_was_waited_for_is_not_taken_from_a_skills_time(
+    start: Start, open_world: Open, act: Act
+) -> None:
+    world = open_world()
+    thread, came = in_thread(world, act(FIND), deadline=2.0)
+    time.sleep(3)  # no server yet
+    start(seconds=1.0)
+    thread.join(60)
+    assert came[0].report is Report.DONE, came[0].message
+
+
+def test_what_slips_later_is_felt_though_the_skill_said_it_held(
+    start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    start()
+    world = open_world()
+    assert world.execute(act(FIND)).report is Report.DONE
+    assert world.execute(act(PICK)).facts[0].probability < 0.1
+    held = json.loads(state.read_text())
+    other = state.with_suffix(".slipped")
+    other.write_text(json.dumps(held | {"facts": [*held["facts"], "(hand_empty)"]}))
+    other.replace(state)
+    time.sleep(0.5)
+    assert {fact.atom.pddl(): fact.probability for fact in world.observe().facts} == {
+        "(hand_empty)": 0.98
+    }
+
+
+def test_a_button_that_stays_down_is_known_to_who_comes_later(
+    start: Start, open_world: Open, act: Act, state: Path
+) -> None:
+    from std_msgs.msg import Bool
+
+    button = Link("button")
+    try:
+        button.start()
+        button.speaker(Bool, "/tpvqa/stop", latched()).publish(Bool(data=True))
+        start()
+        world = open_world()
+        wait_for(lambda: bool(world.halted()))
+        client = next(iter(world._clients.values()))
+        wait_for(lambda: client.stopped == "emergency stop")  # the server, too
+        refused = world.execute(act(FIND))
+        assert refused.report is Report.UNAVAILABLE
+        assert "emergency stop" in refused.message
+        assert not state.exists() or not done(state)
+    finally:
+        button.close()
+
+
+def test_joints_of_two_drivers_are_one_robot() -> None:
+    """Arm and gripper are told by messages of their own, on one topic."""
+    from sensor_msgs.msg import JointState
+
+    heard: list[Any] = []
+    link = SimpleNamespace(listen=lambda kind, topic, hear, quality: heard.append(hear))
+    rule = SensedRule(Atom("hand_empty"), "gripper", 0.001, below=True, sure=0.98)
+    joints = Joints(link, "/joint_states", (rule,), lambda: None)  # type: ignore[arg-type]
+
+    def tell(name: str, position: float, second: int) -> None:
+        message = JointState(name=[name], position=[position])
+        message.header.stamp.sec = second
+        heard[0](message)
+
+    tell("gripper", 0.0, 10)
+    tell("shoulder", 0.3, 11)
+    assert [fact.probability for fact in joints.facts(11.0, 9.0, 2.0)] == [0.98]
+    assert joints.facts(11.0, 10.5, 2.0) == ()  # the gripper was felt before the action ended
+    assert joints.said(11.0) == "joints 0.0 s ago: shoulder 0.300; joints 1.0 s ago: gripper 0.000"
 
 
 def test_pictures_that_are_old_are_no_observation(start: Start, open_world: Open, act: Act) -> None:
@@ -320,12 +404,17 @@ def test_what_is_not_understood_is_no_message(text: str) -> None:
 @given(
     st.dictionaries(
         st.sampled_from(["report", "seconds", "ended", "message", "facts"]),
-        st.none() | st.booleans() | st.text() | st.floats() | st.just([["(a)", 2]]),
+        st.none()
+        | st.booleans()
+        | st.text()
+        | st.floats()
+        | st.just([["(a)", 2]])
+        | st.lists(st.tuples(st.text() | st.sampled_from([",", "(,)", "\x1f"]), st.floats(0, 1))),
     )
 )
 def test_a_malformed_result_is_no_result(given: dict[str, Any]) -> None:
     good = {"report": "done", "seconds": 1.0, "ended": 2.0, "message": "", "facts": []}
-    result = wire.result_of({**good, **given})
+    result = wire.result_of(json.loads(json.dumps({**good, **given})))
     if result is not None:
         assert isinstance(result.report, Report)
         assert all(0 <= fact.probability <= 1 for fact in result.facts)

@@ -12,7 +12,6 @@ from tpvqa_robots.skills.motions import Guard, Told
 from tpvqa_robots.skills.simulated import (
     ABOVE,
     CARRY,
-    START,
     Held,
     SimulatedRobot,
     SkillError,
@@ -180,6 +179,4 @@ class DoorRobot(SimulatedRobot):
                 self._motions.line(CARRY.at(x=BACK), guard)
             self._motions.line(CARRY, guard)
         except OutOfReachError:
-            self._motions.follow(
-                [self.machine.reference, self._kinematics.solve(CARRY, START)], guard
-            )
+            self._go_back(guard)

@@ -161,6 +161,8 @@ class ActionClient:
         status = f"{self.prefix}/_action/status"
         offering = self._link.node.get_publishers_info_by_topic(status)
         ready = self._asking.server_is_ready()
+        loops = self._link.node.get_publishers_info_by_topic(f"{self.prefix}/{typed.CONTROLLER}")
+        self._peers.found({bytes(each.endpoint_gid).hex() for each in loops}, ready, monotonic())
         holder = self.holder
         self._speaker.publish(self._beat(id=self.me, holds=holder == self.me, release=False))
         with self._changed:

@@ -31,6 +31,7 @@ class Eye:
 
         self._view, self._camera, self._changed = view, camera, changed
         self._latest: dict[str, Any] = {}
+        self._encoded: tuple[Any, tuple[bytes, str]] | None = None
         self._used: bytes | None = None
         self._before: bytes | None = None
         kind = Image if camera.raw else CompressedImage
@@ -79,7 +80,9 @@ class Eye:
         if camera.frame_id and named != camera.frame_id:
             return None, f"{camera.image} is of frame {named!r:.60}, not {camera.frame_id!r}"
         try:
-            data, media_type = encoded(message, raw=camera.raw)
+            if self._encoded is None or self._encoded[0] is not message:  # once: raw ones take time
+                self._encoded = message, encoded(message, raw=camera.raw)
+            data, media_type = self._encoded[1]
         except PictureError as error:
             return None, f"{camera.image}: {error}"
         if data == self._before:

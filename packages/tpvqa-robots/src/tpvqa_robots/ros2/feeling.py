@@ -30,31 +30,35 @@ class Joints:
         from sensor_msgs.msg import JointState
 
         self._rules, self._changed = rules, changed
-        self.positions: dict[str, float] = {}
+        self._felt: dict[str, tuple[float, float]] = {}
         self.stamp = -math.inf
         link.listen(JointState, topic, self._hear, seen())
 
     def _hear(self, message: Any) -> None:
         pairs = zip(message.name, message.position, strict=False)
-        self.positions = {str(name): float(x) for name, x in pairs if math.isfinite(x)}
-        self.stamp = stamp_of(message)
+        stamp = stamp_of(message)  # arm and gripper may be told by two drivers
+        self._felt |= {str(name): (float(x), stamp) for name, x in pairs if math.isfinite(x)}
+        self.stamp = stamp
         self._changed()
 
     def facts(self, now: float, after: float, age: float) -> tuple[SensedFact, ...]:
         """What they tell; nothing where they are older than the last action or the bound."""
-        if self.stamp <= after or now - self.stamp > age:
-            return ()
         facts = []
         for rule in self._rules:
-            position = self.positions.get(rule.joint)
-            if position is not None:
+            position, stamp = self._felt.get(rule.joint, (0.0, -math.inf))
+            if stamp > after and now - stamp <= age:
                 holds = (position < rule.bound) == rule.below
                 facts.append(SensedFact(rule.atom, rule.sure if holds else 1 - rule.sure))
         return tuple(facts)
 
     def said(self, now: float) -> str:
         """Where the joints are, and how long ago they were so, for people."""
-        if not self.positions:
+        if not self._felt:
             return "its joints are not known"
-        joints = ", ".join(f"{name} {x:.3f}" for name, x in self.positions.items())
-        return f"joints {max(0.0, now - self.stamp):.1f} s ago: {joints}"
+        by_time: dict[float, list[str]] = {}
+        for name, (x, stamp) in self._felt.items():
+            by_time.setdefault(stamp, []).append(f"{name} {x:.3f}")
+        return "; ".join(
+            f"joints {max(0.0, now - stamp):.1f} s ago: {', '.join(joints)}"
+            for stamp, joints in sorted(by_time.items(), reverse=True)
+        )

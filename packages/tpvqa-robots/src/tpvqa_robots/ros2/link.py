@@ -94,6 +94,16 @@ class Link:
         made = self.node.create_subscription(kind, topic, heard, qos)
         self._made.append(lambda: self.node.destroy_subscription(made))
 
+    def heed(self, kind: Any, topic: str, heard: Callable[[Any], None]) -> None:
+        """Have what must not be missed given to a function, from before it listened, too, where the
+        sender keeps that for who comes late."""
+        from rclpy.event_handler import SubscriptionEventCallbacks
+
+        self.listen(kind, topic, heard, said())
+        silent = SubscriptionEventCallbacks(incompatible_qos=lambda _: None)  # who does not keep it
+        made = self.node.create_subscription(kind, topic, heard, latched(), event_callbacks=silent)
+        self._made.append(lambda: self.node.destroy_subscription(made))
+
     def watch(self, kind: Any, topic: str, heard: Callable[[Any], None]) -> None:
         """Have the latest message of a topic given to a function, however it is sent.
 
@@ -154,6 +164,18 @@ def said(depth: int = 50) -> Any:
         depth=depth,
         reliability=ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.VOLATILE,
+    )
+
+
+def latched() -> Any:
+    """Quality of service of what also who comes late must hear, from whoever keeps it for them."""
+    from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=1,
+        reliability=ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL,
     )
 
 

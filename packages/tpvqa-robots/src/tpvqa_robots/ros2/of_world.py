@@ -44,7 +44,12 @@ class WorldRobot:
         """Execute it in the world; see `Robot.perform`."""
         feedback(f"begins {action.pddl()}")
         self._cancelled = cancelled
-        done = self._world.execute(action, deadline=deadline, cancel=cancelled)
+        try:
+            done = self._world.execute(action, deadline=deadline, cancel=cancelled)
+        except BaseException:  # what it was at must not go on
+            if isinstance(self._world, _HasRobot) and isinstance(self._world.robot, Robot):
+                self._world.robot.stop()
+            raise
         if self._kept is not None:
             self._kept.keep()
         return done

@@ -1,5 +1,6 @@
 """Loops that want the robot of a server which does not say whose it is: one of them has it."""
 
+from collections.abc import Set
 from dataclasses import dataclass, field
 
 from tpvqa_robots.ros2.lease import EXPIRES
@@ -17,7 +18,7 @@ class Peers:
 
     Attributes:
         me: This loop.
-        since: When it began to listen, in seconds.
+        since: From when on it can hear them, in seconds.
         holds: Whether it has the robot.
     """
 
@@ -25,6 +26,14 @@ class Peers:
     since: float
     holds: bool = False
     _heard: dict[str, tuple[float, bool]] = field(default_factory=dict)
+    _found: Set[str] = frozenset()
+
+    def found(self, loops: Set[str], ready: bool, now: float) -> None:
+        """Which loops speak, and whether the server is there: who has just come to know of another
+        one, or of the server, has not listened yet."""
+        if not ready or loops - self._found:
+            self.since = now
+        self._found = loops
 
     def hear(self, other: str, now: float, *, holds: bool, release: bool = False) -> None:
         """Another loop was heard, and whether it has the robot or gives it back."""

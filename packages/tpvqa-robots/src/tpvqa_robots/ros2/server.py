@@ -10,10 +10,12 @@ import threading
 import uuid
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from time import monotonic
-from typing import Any
+from typing import Any, TypeVar
 
 from tpvqa.errors import PDDLError, TpvqaError, WorldError
+from tpvqa.observation import Frame
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.worlds import Execution, Report
 from tpvqa_robots.ros2 import typed, wire
@@ -26,6 +28,9 @@ from tpvqa_robots.ros2.link import Link, said
 from tpvqa_robots.ros2.pictures import depth_message, info_message, picture_message, set_stamp
 from tpvqa_robots.skills.protocol import Robot
 
+T = TypeVar("T")
+AHEAD = 0.5
+"""Seconds by which a picture may be of the future: clocks differ."""
 ACTION = "execute_skill"
 """What the action is called, under the prefix."""
 
@@ -119,7 +124,7 @@ class SkillServer:
             )
             for view in self._views
         }
-        link.listen(Bool, self._stop_topic, self._hear_stop, said())
+        link.heed(Bool, self._stop_topic, self._hear_stop)
         if typed.built():
             self._fronts.append(ByAction(link, f"{prefix}/{ACTION}", self))
         self._fronts.append(ByTopics(link, prefix, self))
@@ -148,8 +153,8 @@ class SkillServer:
             if not heard:
                 continue
             stamp = self._link.now()
-            frame = self._robot.look(view).frames[view]
-            for speaker, made_of in heard:
+            frame = self._unless_broken(partial(self._look, view))
+            for speaker, made_of in heard if frame is not None else ():
                 message = made_of(frame, stamp, view)
                 if message is not None:
                     speaker.publish(message)
@@ -160,9 +165,22 @@ class SkillServer:
             text = json.dumps({"stamp": stamp, "facts": facts})
             self._true.publish(self._string(data=text))
 
+    def _look(self, view: str) -> Frame:
+        return self._robot.look(view).frames[view]
+
+    def _unless_broken(self, do: Callable[[], T]) -> T | None:
+        """What the robot gives; None where it breaks, which must not end its server."""
+        try:
+            return do()
+        except Exception as error:  # noqa: BLE001
+            self._link.node.get_logger().error(f"{type(error).__name__}: {error}")
+            return None
+
     def _feel(self) -> None:
         """Publish where the joints are."""
-        stamp, felt = self._link.now(), self._robot.state()
+        stamp, felt = self._link.now(), self._unless_broken(self._robot.state)
+        if felt is None:
+            return
         joints = set_stamp(self._joint_state(), stamp, "")
         joints.name, joints.position = list(felt), [float(x) for x in felt.values()]
         self._joints.publish(joints)
@@ -237,6 +255,8 @@ class SkillServer:
             raise ValueError("expected action, deadline in seconds and the stamp 'seen'")
         if seen <= self._ended:
             raise ValueError("the picture was taken before the last action ended: look again")
+        if seen > self._link.now() + AHEAD:
+            raise ValueError("the picture is of the future: see that the clocks agree")
         words = Atom.parse(action)
         ground = self._task.action(words.predicate, words.arguments)
         if ground.name not in self._robot.skills:

@@ -99,7 +99,10 @@ def facts_of(given: object) -> tuple[SensedFact, ...] | None:
         probability = number_of({"p": each[1]}, "p")
         if probability is None or not 0 <= probability <= 1 or not each[0].strip("() "):
             return None
-        facts.append(SensedFact(Atom.parse(each[0]), probability))
+        try:
+            facts.append(SensedFact(Atom.parse(each[0]), probability))
+        except ValueError:
+            return None
     return tuple(facts)
 
 

@@ -26,6 +26,8 @@ ENDS = 1.0
 """Seconds in which a cancelled skill has to say that it ended."""
 FEELS = 0.1
 """Seconds in which a robot that is told to stand may say where its joints are then."""
+AHEAD = 0.5
+"""Seconds by which a skill may have ended in the future: clocks differ."""
 DEPTH = 1.0
 """Seconds that a picture waits for its depth; then it counts without."""
 
@@ -66,9 +68,9 @@ class Ros2World:
             self._published = PublishedTruth(task, setup.truth)
             self._link.listen(String, setup.truth, self._hear_truth, said(1))
         self._stop = ""
-        self._link.listen(Bool, setup.stop, self._hear_stop, said())
+        self._link.heed(Bool, setup.stop, self._hear_stop)
         self._start = self._link.now()
-        self._ended = -1.0
+        self._ended, self._loose = -1.0, False
         self._looked: float | None = None
         self._told: tuple[SensedFact, ...] = ()
         self._link.start()
@@ -115,7 +117,7 @@ class Ros2World:
             raise UnknownNameError("view", view, tuple(self._eyes))
         frame, why = self._picture(view)
         now = self._link.now()
-        facts = self._facts(self._told)
+        facts = self._facts(self._told, later=True)
         if frame is None or frame.stamp is None:
             return Observation(time=now - self._start, detail={"no picture": why}, facts=facts)
         self._looked = frame.stamp
@@ -149,8 +151,12 @@ class Ros2World:
         why = self._not_ready(client, cancel)
         if why:
             return _refused(began, why)
+        if self._loose:  # whatever did not say that it ended may have gone on until now
+            self._ended, self._loose = self._link.now(), False
         if self._looked is None or self._looked <= self._ended:
             shown = self.observe()
+            if why := self._kept_from(client):
+                return _refused(began, why)
             if self._looked is None or self._looked <= self._ended:
                 return _refused(
                     began,
@@ -162,10 +168,11 @@ class Ros2World:
         seconds = skill.deadline if deadline is None else min(deadline, skill.deadline)
         for eye in self._eyes.values():
             eye.acted()
+        began, asked = monotonic(), self._link.now()
         doing = client.do(action.pddl(), seconds, self._looked)
         self._told = ()
         try:
-            return self._await(client, doing, action, began, seconds, cancel)
+            return self._await(client, doing, action, began, asked, seconds, cancel)
         except BaseException:
             client.cancel(doing)
             self._ended = self._link.now()
@@ -188,26 +195,29 @@ class Ros2World:
         doing: Doing,
         action: Action,
         began: float,
+        asked: float,
         seconds: float,
         cancel: Event | None,
     ) -> Execution:
-        """What comes of a skill that was asked for."""
+        """What comes of a skill that was asked for, by the clock on the wall and that of stamps."""
         cancelled: float | None = None
         while True:
             with self._changed:
                 if not doing.over:
                     self._changed.wait(TICK)
             took = monotonic() - began
-            stopped = self._stopped(client)
+            stopped = self._stopped(client) or _taken(client)
             if stopped:
                 client.cancel(doing)
+                self._loose = not doing.over
                 self._feel_again()
                 said, facts = f"{stopped} in {action.pddl()}; {self._where()}", self._facts(())
                 self._ended = self._link.now()
                 return Execution(Report.UNAVAILABLE, monotonic() - began, said, facts)
             result = doing.result
             if result is not None:
-                self._ended, self._told = result.ended, tuple(result.facts)
+                now, self._told = self._link.now(), tuple(result.facts)
+                self._ended = result.ended if asked <= result.ended <= now + AHEAD else now
                 facts = self._facts(self._told)
                 return Execution(result.report, took, result.message, facts)
             if doing.refused:
@@ -215,7 +225,7 @@ class Ros2World:
             gone = not client.there or client.server != doing.server
             if doing.malformed or gone or doing.untaken:
                 client.cancel(doing)
-                self._ended = self._link.now()
+                self._ended, self._loose = self._link.now(), True
                 what = _broke(doing, gone=gone)
                 said = f"the skill server {client.prefix} {what} in the middle of {action.pddl()}"
                 return Execution(Report.FAILED, took, f"{said}: what came of it is for a new look")
@@ -223,12 +233,12 @@ class Ros2World:
                 cancelled = took
                 client.cancel(doing)
             if cancelled is not None and took - cancelled > ENDS:
-                self._ended = self._link.now()
+                self._ended, self._loose = self._link.now(), True
                 said = "cancelled, but the skill server did not say that it stopped"
                 return Execution(Report.CANCELLED, took, said, self._facts(()))
             if took > seconds + self._setup.grace:
                 client.cancel(doing)
-                self._ended = self._link.now()
+                self._ended, self._loose = self._link.now(), True
                 said = f"{action.pddl()} did not return within {seconds:g} s, and was cancelled"
                 return Execution(Report.LATE, took, said, self._facts(()))
 
@@ -240,11 +250,15 @@ class Ros2World:
             return given_up or bool(self._stopped(client)) or (client.holds and not client.busy)
 
         self._wait(over)
+        if cancel is not None and cancel.is_set() and not self._stopped(client):
+            return ""
+        return self._kept_from(client)
+
+    def _kept_from(self, client: Client) -> str:
+        """Why no skill may begin now; empty where one may."""
         stopped = self._stopped(client)
         if stopped:
             return f"{stopped}; {self._where()}"
-        if cancel is not None and cancel.is_set():
-            return ""
         waited = f"for {self._setup.wait:g} s"
         if not client.there:
             return f"the skill server {client.prefix} was not heard {waited}: is it running?"
@@ -279,13 +293,17 @@ class Ros2World:
             while not over() and monotonic() < until:
                 self._changed.wait(TICK)
 
-    def _facts(self, told: tuple[SensedFact, ...]) -> tuple[SensedFact, ...]:
-        """What skill and joints tell: the skill's word counts where both speak."""
-        own = {fact.atom for fact in told}
+    def _facts(
+        self, told: tuple[SensedFact, ...], *, later: bool = False
+    ) -> tuple[SensedFact, ...]:
+        """What skill and joints tell. Where both speak, the skill's word counts as it ends, and the
+        joints' later: what was held may have slipped."""
         felt: tuple[SensedFact, ...] = ()
         if self._joints is not None:
             felt = self._joints.facts(self._link.now(), self._ended, self._setup.age)
-        return (*told, *(fact for fact in felt if fact.atom not in own))
+        first, second = (felt, told) if later else (told, felt)
+        own = {fact.atom for fact in first}
+        return (*first, *(fact for fact in second if fact.atom not in own))
 
     def _where(self) -> str:
         """Where things are, as far as the robot feels it, and how long ago it did."""
@@ -341,6 +359,13 @@ class SimulatedRos2World(Ros2World):
         """What is true now."""
         assert self._published is not None
         return self._published
+
+
+def _taken(client: Client) -> str:
+    """Who else has the robot, where it is not this loop's any more."""
+    if client.there and client.holder not in (None, client.me):
+        return f"the robot of {client.prefix} was taken by another controller, {client.holder},"
+    return ""
 
 
 def _broke(doing: Doing, *, gone: bool) -> str:

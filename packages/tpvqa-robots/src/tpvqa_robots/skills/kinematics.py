@@ -144,6 +144,18 @@ class Kinematics:
             arms.append(arm)
         return arms
 
+    def joint_by_joint(self, start: Vector, end: Vector) -> list[Vector]:
+        """The joints from one posture to another, all of them evenly.
+
+        Raises:
+            OutOfReachError: On the way the arm would touch the table or its own base.
+        """
+        count = max(2, int(np.ceil(np.abs(end - start).max() / 0.1)))
+        arms = [start + part * (end - start) for part in np.linspace(0, 1, count + 1)]
+        for arm in arms[1:]:
+            self._see_free(arm)
+        return arms
+
     def _place(self, arm: Vector) -> None:
         # All is seen from the arm's foot, as where the base has not turned.
         self._data.qpos[self._joints] = arm

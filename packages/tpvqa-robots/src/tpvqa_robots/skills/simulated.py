@@ -144,7 +144,10 @@ class SimulatedRobot:
         try:
             return Report.DONE, skill(action.arguments, guard, feedback)
         except (SkillError, NotThereError) as error:
-            self._retreat(guard)
+            try:
+                self._retreat(guard)
+            except SkillError as stuck:
+                return Report.FAILED, f"{error}; {stuck}"
             return Report.FAILED, str(error)
 
     def look(self, view: str = OVERHEAD) -> Observation:
@@ -351,12 +354,19 @@ class SimulatedRobot:
                 self._motions.line(here.at(z=max(here.z, CARRY.z)), guard)
             self._motions.line(CARRY.at(angle=angle), guard)
         except OutOfReachError:
-            self._motions.follow(
-                [self.machine.reference, self._kinematics.solve(CARRY, START)], guard
-            )
+            self._go_back(guard)
         if self.shut and not self.closed_on_something:
             self._motions.fingers(guard, shut=False)
             self.shut, self.held = False, None
+
+    def _go_back(self, guard: Guard) -> None:
+        """To where the arm carries, all joints evenly, where that touches nothing."""
+        there = self._kinematics.solve(CARRY, START)
+        try:
+            arms = self._kinematics.joint_by_joint(self.machine.reference, there)
+        except OutOfReachError as error:
+            raise SkillError(f"the arm cannot go back: {error}") from error
+        self._motions.follow(arms, guard)
 
 
 def _unlike(grasps: Sequence[Grasp]) -> Iterator[Grasp]:

@@ -1,10 +1,17 @@
 """Plans that keep to what a world will do at all."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from tpvqa.pddl import Action, State, Task
-from tpvqa.planning.protocol import Plan, Planner, PlanningResult, Unsolvable
+from tpvqa.pddl.lasting import Running
+from tpvqa.planning.protocol import (
+    Plan,
+    Planner,
+    PlanningResult,
+    TemporalPlanner,
+    Unsolvable,
+)
 from tpvqa.planning.without import plan_without
 
 
@@ -46,14 +53,34 @@ class BoundedPlanner:
         whys = list(filter(None, map(self._refuses, first.actions)))
         if not whys:
             return first
-        refused = filter(self._refuses, task.ground_actions())
+        none = Unsolvable(
+            f"no plan avoids what is refused: {'; '.join(dict.fromkeys(whys))}",
+            first.planner,
+            first.seconds,
+        )
+        if task.lasting is not None:  # of actions that last none can be barred
+            return none
+        barred = {each for each in (*first.actions, *task.ground_actions()) if self._refuses(each)}
         begin = task.init if state is None else state
-        found = plan_without(self._planner, task, begin, refused, timeout=timeout)
-        seconds = first.seconds + found.seconds
-        if isinstance(found, Unsolvable):
-            why = "; ".join(dict.fromkeys(whys))
-            return Unsolvable(f"no plan avoids what is refused: {why}", found.planner, seconds)
-        return replace(found, seconds=seconds)
+        found = plan_without(self._planner, task, begin, barred, timeout=timeout)
+        if not isinstance(found, PlanningResult):
+            return found
+        took = first.seconds + found.seconds
+        if isinstance(found, Plan) and not any(map(self._refuses, found.actions)):
+            return replace(found, seconds=took)
+        return replace(none if isinstance(found, Plan | Unsolvable) else found, seconds=took)
+
+    def plan_meanwhile(
+        self,
+        task: Task,
+        state: State,
+        running: Sequence[Running],
+        *,
+        timeout: float | None = None,
+    ) -> PlanningResult:
+        """The planner's own, see `TemporalPlanner`; what it holds is refused as it begins."""
+        assert isinstance(self._planner, TemporalPlanner)
+        return self._planner.plan_meanwhile(task, state, running, timeout=timeout)
 
     def close(self) -> None:
         """End the processes behind the planner."""
