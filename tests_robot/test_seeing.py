@@ -102,3 +102,17 @@ def test_beyond_the_arm_and_within_the_table_is_out_of_reach(
     plans, start = kinematics
     with pytest.raises(OutOfReachError):
         plans.line(grip, start)
+
+
+def test_joints_go_evenly_and_through_nothing(kinematics: tuple[Kinematics, np.ndarray]) -> None:
+    plans, start = kinematics
+    there = plans.line(Grip(0.6, 0.2, 0.9, 1.0), start)[-1]
+    arms = plans.joint_by_joint(start, there)
+    assert np.allclose(arms[0], start)
+    assert np.allclose(arms[-1], there)
+    steps = np.diff(arms, axis=0)
+    assert np.allclose(steps, steps[0])
+    assert np.abs(steps).max() <= 0.1 + 1e-9
+    within = plans.solve(Grip(0.7, 0, 0.6, 1.5), start)
+    with pytest.raises(OutOfReachError, match="would touch"):
+        plans.joint_by_joint(start, within)

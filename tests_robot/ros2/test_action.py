@@ -207,6 +207,21 @@ def test_somebody_elses_server_is_cancelled_and_what_it_leaves_open_is_no_report
     assert last(state)[1] == "stood"
 
 
+def test_who_comes_to_know_of_another_late_has_not_listened_yet() -> None:
+    """As long as nobody is heard it waits; from a discovery on a second passes before it takes."""
+    late = Peers("a", 0.0)
+    late.found({"a"}, False, 0.0)
+    assert late.holder(5.0) == "a"  # no server: nobody else is kept from it
+    late.holds = False
+    late.found({"a"}, True, 6.0)
+    late.found({"a", "b"}, True, 6.5)
+    assert late.holder(7.0) is None
+    late.hear("b", 7.2, holds=True)
+    assert late.holder(7.6) == "b"
+    late.hear("b", 7.8, holds=False, release=True)
+    assert late.holder(9.0) == "a"
+
+
 LOOPS = st.lists(st.tuples(st.sampled_from("abc"), st.floats(0.05, 0.4)), max_size=60)
 
 
