@@ -26,8 +26,11 @@ from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Event
 from tpvqa.events.events import Acted, Acting, Asked, Ended
+from tpvqa.tasks import tasks_in
 
 TAUGHT = "embedded"
+FOLDERS = ("tasks", "bins/task", "door/task")
+"""Where the robots' package has its tasks."""
 ANSWERS = ("oracle:0.95:0:0.74", "oracle:0.8:0:0.74")
 
 
@@ -100,7 +103,7 @@ BENCHES = {
 def trial(bench: Bench, monitor: str, vlm: str, seed: int, taught: Path = Path()) -> dict[str, Any]:
     """One trial, as a row."""
     said: dict[str, dict[str, Any]] = {
-        "task": {"name": bench.tasks[seed % len(bench.tasks)]},
+        "task": _files(bench.tasks[seed % len(bench.tasks)]),
         "world": {"spec": bench.world},
         "monitor": {"spec": monitor},
         "vlm": {"spec": vlm},
@@ -131,6 +134,22 @@ def trial(bench: Bench, monitor: str, vlm: str, seed: int, taught: Path = Path()
         "robot_seconds": sum(each.seconds for each in acted),
         "tried": [list(each) for each in _tried(writer.events)],
         "believed": believed,
+    }
+
+
+def _files(task: str) -> dict[str, str]:
+    """A task of the robot's own package: the household may be installed, and brings one of the
+    same name with questions of its own."""
+    import tpvqa_robots  # the table is printed without it
+
+    here = Path(tpvqa_robots.__file__).parent
+    found = (each for folder in FOLDERS for each in tasks_in(here / folder))
+    files = next(each for each in found if each.name == task)
+    return {
+        "domain": str(files.domain),
+        "problem": str(files.problem),
+        "questions": str(files.questions),
+        "world_file": str(files.world),
     }
 
 
