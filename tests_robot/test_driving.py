@@ -80,6 +80,7 @@ def test_a_base_that_only_turns_does_not_reach_it(task: Task, act: Act) -> None:
 
 def test_only_the_toys_have_something_far_away() -> None:
     assert Mishaps.read("far=0.5:slip=0.1") == Mishaps(slip=0.1, far=0.5)
+    assert Mishaps.read("noise=0:calibration=3") == Mishaps(noise=0.0, calibration=3.0)
     with pytest.raises(PluginError, match="'far=1'"):
         Mishaps.read("far=1", "bins")
     with pytest.raises(PluginError, match="far from 0 to 1, not '2'"):

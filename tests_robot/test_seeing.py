@@ -11,7 +11,7 @@ from tpvqa_robots.grasps.antipodal import antipodal
 from tpvqa_robots.mishaps import Mishaps
 from tpvqa_robots.skills.kinematics import Grip, Kinematics, OutOfReachError
 from tpvqa_robots.skills.seeing import see
-from tpvqa_robots.toys.cameras import OVERHEAD
+from tpvqa_robots.toys.cameras import OVERHEAD, Errors
 from tpvqa_robots.toys.room import TABLE
 from tpvqa_robots.world import ToysWorld
 
@@ -116,3 +116,9 @@ def test_joints_go_evenly_and_through_nothing(kinematics: tuple[Kinematics, np.n
     within = plans.solve(Grip(0.7, 0, 0.6, 1.5), start)
     with pytest.raises(OutOfReachError, match="would touch"):
         plans.joint_by_joint(start, within)
+
+
+def test_noise_and_calibration_are_told_apart() -> None:
+    one, noisy, aside = Errors(), Errors().times(2.0), Errors().times(1.0, 3.0)
+    assert (noisy.depth, noisy.turn) == (2 * one.depth, 2 * one.turn)
+    assert (aside.depth, aside.shift, aside.turn) == (one.depth, 3 * one.shift, 3 * one.turn)

@@ -7,7 +7,7 @@ from tpvqa.chance import chance
 from tpvqa.errors import PluginError
 
 APPENDIX = "appendix"
-MOST = {"noise": 10.0, "slip_at": 3600.0}
+MOST = {"noise": 10.0, "calibration": 10.0, "slip_at": 3600.0}
 """The greatest number that a word may have; 1 of all others, which are probabilities."""
 
 
@@ -19,6 +19,7 @@ class Mishaps:
         slip: Probability that the fingers give way while the base turns with a container.
         bad: Probability that a grasp is made 8 cm beside the thing.
         noise: A factor on all errors of the cameras.
+        calibration: A factor besides on where they are taken to be.
         slip_at: Seconds of the robot's time at which the fingers give way once, whatever they hold;
             0 for never.
         far: Probability that the first toy stands at first where the arm reaches it only if the
@@ -30,6 +31,7 @@ class Mishaps:
     slip: float = 0.0
     bad: float = 0.0
     noise: float = 1.0
+    calibration: float = 1.0
     slip_at: float = 0.0
     far: float = 0.0
     appendix: bool = False
@@ -44,8 +46,8 @@ class Mishaps:
                 something far away.
 
         Raises:
-            PluginError: A word is not known, or no number from 0 to 1 (noise: 0 to 10, slip_at: 0
-                to 3600) follows it.
+            PluginError: A word is not known, or no number from 0 to 1 (noise and
+                calibration: 0 to 10, slip_at: 0 to 3600) follows it.
         """
         toys = world == "toys"
         if toys and words in ("", APPENDIX):
@@ -71,7 +73,8 @@ class Mishaps:
                     f"The world {world!r} does not understand {word[:40]!r}{alone}. Write {world}, "
                     + ("toys:appendix, toys:far=1, " if toys else "")
                     + f"or {world}:slip=0.2:bad=0.1:noise=1: probabilities, and of noise a "
-                    f"factor on the cameras' errors from 0 to 10; {world}:slip_at=9 has the "
+                    "factor on the cameras' errors from 0 to 10, of calibration another one on "
+                    f"where they are taken to be; {world}:slip_at=9 has the "
                     "fingers give way once, so many seconds from the start."
                 )
             said[name] = value

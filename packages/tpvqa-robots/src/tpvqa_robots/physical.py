@@ -111,7 +111,7 @@ class PhysicalWorld(Noiseless, PlainArguments, ABC):
         machine = Machine(model, self._on_tick)
         if self._mishaps.slip_at:
             machine.slips.append(Slip(self._mishaps.slip_at))
-        errors = Errors().times(self._mishaps.noise)
+        errors = Errors().times(self._mishaps.noise, self._mishaps.calibration)
         cameras = Cameras(model, errors, seed=self._seed, episode=self._episode)
         robot = self.robot_of(machine, cameras)
         robot.begin()

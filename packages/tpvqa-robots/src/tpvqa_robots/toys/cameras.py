@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from functools import cache, cached_property
 from typing import Any
 
@@ -39,9 +39,11 @@ class Errors:
     shift: float = 0.002
     turn: float = 0.003
 
-    def times(self, factor: float) -> "Errors":
-        """All errors larger or smaller by a factor."""
-        return Errors(*(factor * error for error in astuple(self)))
+    def times(self, factor: float, calibration: float = 1.0) -> "Errors":
+        """All errors larger or smaller by a factor, by another where the camera is taken to be."""
+        errors = Errors(*(factor * error for error in astuple(self)))
+        shift, turn = calibration * errors.shift, calibration * errors.turn
+        return replace(errors, shift=shift, turn=turn)
 
 
 Draw = Callable[[Any, str], NDArray[Any]]
