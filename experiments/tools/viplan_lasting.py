@@ -58,7 +58,7 @@ def looks_in(folder: Path) -> Iterator[Look]:
     }
     answers: dict[str, dict[str, tuple[bool, bool]]] = defaultdict(dict)
     for row in table(folder / "answers.csv.gz"):
-        if row["scene"] in told:
+        if row["scene"] in told and row["answer"] != "unknown":
             answers[row["scene"]][row["fact"]] = row["answer"] == "yes", row["truth"] == "1"
     return (Look(row, answers[scene]) for scene, row in told.items())
 

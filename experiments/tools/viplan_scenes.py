@@ -71,7 +71,7 @@ def main() -> None:
     }
     answers: dict[str, dict[str, tuple[bool, bool]]] = defaultdict(dict)
     for row in table(given.folder / "answers.csv.gz"):
-        if row["scene"] in told:
+        if row["scene"] in told and row["answer"] != "unknown":
             answers[row["scene"]][row["fact"]] = row["answer"] == "yes", row["truth"] == "1"
     kept: dict[tuple[str, str, str], list[object]] = {}
     for scene in sorted(told, key=lambda scene: (int(told[scene]["number"]) > 0, int(scene))):
