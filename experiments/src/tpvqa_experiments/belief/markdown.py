@@ -58,7 +58,7 @@ def results_markdown(results: BeliefResults, extent: Extent) -> str:
     return "\n".join(
         [
             "# The belief monitor, measured\n",
-            "Errors are drawn afresh at every look, of recorded VLMs, too (`tpvqa bench belief`).\n",
+            "Errors are drawn afresh at every look, by recorded VLMs, too (`bench belief`).\n",
             f"Settings: {told}.\n",
             *(f"## {title}\n\n{text}" for title, text in sections if text),
         ]

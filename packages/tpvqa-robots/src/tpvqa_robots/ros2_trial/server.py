@@ -61,6 +61,7 @@ class RunTaskServer:
         self._wanted: queue.Queue[Any] = queue.Queue()
         self._busy, self._active, self._over = False, False, Flag()
         self._cancel = Flag()
+        self._trial: Flag | None = None
         self._running: Running | None = None
         self._one = threading.Lock()
         stages = Stages(
@@ -94,7 +95,13 @@ class RunTaskServer:
     def close(self) -> None:
         """End the trial that runs, and then the server; from any thread."""
         self._over.set()
+        self._stop_trial()
+
+    def _stop_trial(self) -> None:
+        """End the trial that runs, or is about to; without a lock, as signals call it."""
         self._cancel.set()
+        if self._trial is not None:
+            self._trial.set()
 
     def _configure(self) -> None:
         from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -106,11 +113,11 @@ class RunTaskServer:
                 why = "a trial is running" if self._busy else "the server is not active"
                 self._say(f"a goal was rejected: {why}")
                 return GoalResponse.REJECT
-            self._busy, self._cancel = True, Flag()
+            self._busy, self._cancel, self._trial = True, Flag(), None
             return GoalResponse.ACCEPT
 
         def cancel(_: Any) -> Any:
-            self._cancel.set()
+            self._stop_trial()
             return CancelResponse.ACCEPT
 
         self._kind: Any = RunTask
@@ -137,7 +144,7 @@ class RunTaskServer:
 
     def _deactivate(self) -> None:
         self._active = False
-        self._cancel.set()
+        self._stop_trial()
 
     def _cleanup(self) -> None:
         if self._busy:
@@ -189,9 +196,9 @@ class RunTaskServer:
             handle.publish_feedback(self._kind.Feedback(now=now))
 
         def stopped_by(flag: Flag) -> None:
-            """Have whoever cancels set the trial's own flag."""
-            before, self._cancel = self._cancel, flag
-            if before.is_set():
+            """Have whoever cancels set the trial's own flag, who did so just now, too."""
+            self._trial = flag
+            if self._cancel.is_set():
                 flag.set()
 
         return run(running, self._topics.told(name, feedback), stopped_by)
