@@ -52,11 +52,9 @@ class Client(Protocol):
 
     Attributes:
         prefix: What the server's topics, or its action, are called.
-        me: This controller's name.
     """
 
     prefix: str
-    me: str
 
     @property
     def there(self) -> bool:

@@ -155,8 +155,8 @@ class Ros2World:
             self._ended, self._loose = self._link.now(), False
         if self._looked is None or self._looked <= self._ended:
             shown = self.observe()
-            if why := self._kept_from(client):
-                return _refused(began, why)
+            if stopped := self._stopped(client):
+                return _refused(began, f"{stopped}; {self._where()}")
             if self._looked is None or self._looked <= self._ended:
                 return _refused(
                     began,
@@ -206,7 +206,7 @@ class Ros2World:
                 if not doing.over:
                     self._changed.wait(TICK)
             took = monotonic() - began
-            stopped = self._stopped(client) or _taken(client)
+            stopped = self._stopped(client)
             if stopped:
                 client.cancel(doing)
                 self._loose = not doing.over
@@ -359,13 +359,6 @@ class SimulatedRos2World(Ros2World):
         """What is true now."""
         assert self._published is not None
         return self._published
-
-
-def _taken(client: Client) -> str:
-    """Who else has the robot, where it is not this loop's any more."""
-    if client.there and client.holder not in (None, client.me):
-        return f"the robot of {client.prefix} was taken by another controller, {client.holder},"
-    return ""
 
 
 def _broke(doing: Doing, *, gone: bool) -> str:
