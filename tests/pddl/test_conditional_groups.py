@@ -74,7 +74,7 @@ def test_what_follows_from_other_facts_is_not_taken_for_what_never_holds() -> No
 
 
 @settings(max_examples=150, deadline=None)
-@given(tasks())
+@given(tasks() | tasks(derived=True))
 def test_every_state_keeps_every_group(task: Task) -> None:
     for state in every_state(task):
         for group in task.mutex_groups:

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from tpvqa.config.parts import Part, VLMConfig, setting
 
-MOST = 10**18
+MOST = 2**63
 """Of a seed and of an episode: what every reader of a log takes for a whole number."""
 
 LEAST_ACTIONS = 60
