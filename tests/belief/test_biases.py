@@ -37,7 +37,7 @@ CALIBRATION = Calibration(
 
 
 def about(predicate: str) -> list[FactQuestion]:
-    atoms = [atom for atom in TASK.atoms() if atom.predicate == predicate]
+    atoms = [atom for atom in sorted(TASK.atoms()) if atom.predicate == predicate]
     return [BOOK.fact(Literal(atom), way=Way.EFFECT) for atom in atoms]
 
 
