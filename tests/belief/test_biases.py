@@ -156,7 +156,7 @@ def test_what_was_learned_is_bounded_and_goes_from_trial_to_trial() -> None:
     for trust in (kept.trust, None):
         known = kept.model_copy(update={"vlm": "a", "trust": trust})
         assert known.with_vlm("b", CALIBRATION).biases == {}
-    question, yes = about("near")[0], []
+    question, yes = about("near")[1], []  # of the bread, which can be found
     for told in (Biases({"near": biases.told["on"]}), Biases()):
         belief = Belief(FaultModel(TASK, load_world_file(FILES.world, TASK)))
         belief.act(TASK.action("find", (question.atom.arguments[0], "tv")), Rates(0.25, 0.25, 0))
