@@ -27,7 +27,6 @@ class ActionClient:
         action: The action's name.
         changed: Notified when something was heard.
         gone: Seconds after which a server that is not heard, or does not take a goal, is gone.
-
         me: The controller's name, the same for all servers of a loop.
 
     Raises:

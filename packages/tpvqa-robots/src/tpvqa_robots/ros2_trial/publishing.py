@@ -5,21 +5,9 @@ from typing import Any
 
 from tpvqa.events import Event, TrialState
 from tpvqa.events.events import Acting, Decided
-from tpvqa_robots.ros2.link import Link, said
+from tpvqa_robots.ros2.link import Link, latched, said
 from tpvqa_robots.ros2.typed import fact_messages, stamped
 from tpvqa_robots.ros2_trial.telling import belief_values, episode_values
-
-
-def lasting() -> Any:
-    """Quality of service of what somebody who comes later is told, too: the latest message."""
-    from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-
-    return QoSProfile(
-        history=HistoryPolicy.KEEP_LAST,
-        depth=1,
-        reliability=ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL,
-    )
 
 
 class Topics:
@@ -37,7 +25,7 @@ class Topics:
         self._episode_kind: Callable[..., Any] = Episode
         self._belief_kind: Callable[..., Any] = Belief
         self._episodes = link.speaker(Episode, f"{prefix}/episode", said(200))
-        self._beliefs = link.speaker(Belief, f"{prefix}/belief", lasting())
+        self._beliefs = link.speaker(Belief, f"{prefix}/belief", latched())
 
     def told(self, episode: str, feedback: Callable[[Any], None]) -> Callable[[Event], None]:
         """A listener to one trial's events.

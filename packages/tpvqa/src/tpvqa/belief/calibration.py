@@ -288,7 +288,7 @@ class Calibration(_Model):
         for group in (self.whole, *self.ways, *self.groups):
             rates, curve = group.rates, group.curve
             turned = rates.yes_if_true < rates.yes_if_false - EDGE
-            if turned or (curve is not None and curve.slope < 0):
+            if turned or (curve is not None and curve.slope < -EDGE):
                 asked = " of ".join(filter(None, (group.predicate, group.way)))
                 raise PlacedError(
                     f"it takes a yes for a no ({asked or 'all answers'}: a yes is likelier where "

@@ -177,7 +177,7 @@ class Performer:
         elif request.running:
             running = request.running
             result = called(
-                planner, "plan_meanwhile", object, task, state, running, timeout=timeout
+                parts.planner, "plan_meanwhile", object, task, state, running, timeout=timeout
             )
         else:
             result = called(planner, "plan", object, task, state, timeout=timeout)

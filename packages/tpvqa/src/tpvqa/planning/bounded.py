@@ -1,17 +1,10 @@
 """Plans that keep to what a world will do at all."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 from tpvqa.pddl import Action, State, Task
-from tpvqa.pddl.lasting import Running
-from tpvqa.planning.protocol import (
-    Plan,
-    Planner,
-    PlanningResult,
-    TemporalPlanner,
-    Unsolvable,
-)
+from tpvqa.planning.protocol import Plan, Planner, PlanningResult, Unsolvable
 from tpvqa.planning.without import plan_without
 
 
@@ -69,18 +62,6 @@ class BoundedPlanner:
         if isinstance(found, Plan) and not any(map(self._refuses, found.actions)):
             return replace(found, seconds=took)
         return replace(none if isinstance(found, Plan | Unsolvable) else found, seconds=took)
-
-    def plan_meanwhile(
-        self,
-        task: Task,
-        state: State,
-        running: Sequence[Running],
-        *,
-        timeout: float | None = None,
-    ) -> PlanningResult:
-        """The planner's own, see `TemporalPlanner`; what it holds is refused as it begins."""
-        assert isinstance(self._planner, TemporalPlanner)
-        return self._planner.plan_meanwhile(task, state, running, timeout=timeout)
 
     def close(self) -> None:
         """End the processes behind the planner."""
