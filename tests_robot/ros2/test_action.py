@@ -26,6 +26,7 @@ from tests_robot.ros2.test_world import done, run
 from tpvqa import Atom
 from tpvqa.worlds import Execution, Report
 from tpvqa_robots.ros2 import typed
+from tpvqa_robots.ros2.action_client import ActionClient
 from tpvqa_robots.ros2.lease import EXPIRES
 from tpvqa_robots.ros2.link import Link, said
 from tpvqa_robots.ros2.peers import LISTENS, Peers
@@ -205,6 +206,40 @@ def test_somebody_elses_server_is_cancelled_and_what_it_leaves_open_is_no_report
     thread.join(30)
     assert came[0].report is Report.FAILED  # stopped, and again without a report
     assert last(state)[1] == "stood"
+
+
+def test_a_loop_that_loses_the_robot_stops_what_it_began(
+    start: Start, setup_file: Path, open_world: Open, act: Act, state: Path
+) -> None:
+    """Two came to hold somebody else's server, as after a cut of the network: one gives way."""
+    from tpvqa_interfaces.msg import Controller
+
+    setup_file.write_text(PLAIN)
+    start("endless", which="plain")
+    world, other = open_world(), Link("other_loop")
+    try:
+        speaker = other.speaker(Controller, f"/arm/do/{typed.CONTROLLER}", said())
+        other.start()
+        thread, came = in_thread(world, act(FIND))
+        wait_for(lambda: state.exists() and len(done(state)) == 1)
+        wait_for(lambda: speaker.get_subscription_count() == 1)
+        speaker.publish(Controller(id="a loop before it", holds=True))
+        thread.join(30)
+        assert came[0].report is Report.FAILED
+        assert "held by another controller, a loop before it, in the middle" in came[0].message
+        wait_for(lambda: last(state)[1] == "stood")
+    finally:
+        other.close()
+
+
+def test_a_server_that_says_how_it_stands_is_waited_for(start: Start, open_world: Open) -> None:
+    """Who has its robot is what it says, and never for a moment what loops say of each other."""
+    start()
+    for way in ((BY_ACTION,), *[()] * 4):
+        (client,) = open_world(*way)._clients.values()
+        assert isinstance(client, ActionClient)
+        wait_for(lambda each=client: each.there)
+        assert client._standing is not None
 
 
 def test_who_comes_to_know_of_another_late_has_not_listened_yet() -> None:

@@ -53,7 +53,7 @@ class ActionClient:
         self._standing: Any = None
         self._heard = -1e9
         self._offered: tuple[str, ...] = ()
-        self._ready = False
+        self._ready, self._speaks = False, False
         self._goal: tuple[Doing, Any] | None = None
         self._asking = Asking(link.node, ExecuteSkill, action)
         self._speaker = link.speaker(Controller, f"{action}/{typed.CONTROLLER}", said())
@@ -63,10 +63,10 @@ class ActionClient:
 
     @property
     def there(self) -> bool:
-        """Whether the server is there."""
+        """Whether the server is there; one that says how it stands, once that has been heard."""
         if self._standing is not None:
             return self._ready and monotonic() - self._heard <= self._gone
-        return self._ready and len(self._offered) == 1
+        return self._ready and len(self._offered) == 1 and not self._speaks
 
     @property
     def holds(self) -> bool:
@@ -159,6 +159,7 @@ class ActionClient:
         """Say who commands, and see who offers the action."""
         status = f"{self.prefix}/_action/status"
         offering = self._link.node.get_publishers_info_by_topic(status)
+        speaking = self._link.node.get_publishers_info_by_topic(f"{self.prefix}/{typed.SERVER}")
         ready = self._asking.server_is_ready()
         loops = self._link.node.get_publishers_info_by_topic(f"{self.prefix}/{typed.CONTROLLER}")
         self._peers.found({bytes(each.endpoint_gid).hex() for each in loops}, ready, monotonic())
@@ -166,7 +167,7 @@ class ActionClient:
         self._speaker.publish(self._beat(id=self.me, holds=holder == self.me, release=False))
         with self._changed:
             self._offered = tuple(sorted(bytes(each.endpoint_gid).hex() for each in offering))
-            self._ready = ready
+            self._ready, self._speaks = ready, bool(speaking)
             if not self._offered:
                 self._standing = None
             self._changed.notify_all()

@@ -52,9 +52,11 @@ class Client(Protocol):
 
     Attributes:
         prefix: What the server's topics, or its action, are called.
+        me: What this controller is called.
     """
 
     prefix: str
+    me: str
 
     @property
     def there(self) -> bool:

@@ -222,11 +222,10 @@ class Ros2World:
                 return Execution(result.report, took, result.message, facts)
             if doing.refused:
                 return _refused(began, doing.refused)
-            gone = not client.there or client.server != doing.server
-            if doing.malformed or gone or doing.untaken:
+            what = _broke(client, doing)
+            if what:
                 client.cancel(doing)
                 self._ended, self._loose = self._link.now(), True
-                what = _broke(doing, gone=gone)
                 said = f"the skill server {client.prefix} {what} in the middle of {action.pddl()}"
                 return Execution(Report.FAILED, took, f"{said}: what came of it is for a new look")
             if cancelled is None and cancel is not None and cancel.is_set():
@@ -361,10 +360,15 @@ class SimulatedRos2World(Ros2World):
         return self._published
 
 
-def _broke(doing: Doing, *, gone: bool) -> str:
+def _broke(client: Client, doing: Doing) -> str:
+    """What keeps a skill that was begun from being watched to its end; empty for nothing."""
     if doing.malformed:
         return "answered what is not understood"
-    return "went away" if gone else "did not take the goal"
+    if not client.there or client.server != doing.server:
+        return "went away"
+    if client.holder not in (None, client.me):
+        return f"came to be held by another controller, {client.holder},"
+    return "did not take the goal" if doing.untaken else ""
 
 
 def _refused(began: float, why: str) -> Execution:
