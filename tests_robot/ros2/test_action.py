@@ -4,6 +4,7 @@ import json
 import signal
 import threading
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -238,7 +239,7 @@ def test_a_server_that_says_how_it_stands_is_waited_for(start: Start, open_world
     for way in ((BY_ACTION,), *[()] * 4):
         (client,) = open_world(*way)._clients.values()
         assert isinstance(client, ActionClient)
-        wait_for(lambda each=client: each.there)
+        wait_for(partial(getattr, client, "there"))
         assert client._standing is not None
 
 
