@@ -9,6 +9,7 @@ from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -44,6 +45,12 @@ def test_jpeg_png_and_webp_are_read(kind: str, tmp_path: Path) -> None:
     assert read_picture("picture", inside=tmp_path) == data == encoded(kind)
     assert picture_type(data) == f"image/{kind}"
     assert decoded(data).size == (4, 3)
+
+
+def test_sixteen_bits_of_grey_are_as_light_as_they_were() -> None:
+    file = BytesIO()
+    Image.frombytes("I;16", (2, 1), struct.pack("<HH", 0, 137 * 257)).save(file, "PNG")
+    assert np.asarray(decoded(file.getvalue()).convert("RGB")).tolist() == [[[0] * 3, [137] * 3]]
 
 
 @pytest.mark.parametrize(

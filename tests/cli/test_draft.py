@@ -36,6 +36,16 @@ def test_it_is_written_beside_the_problem_and_then_used(ward: Path, tpvqa: Run) 
     assert "Is the robot in room 1? yes" in out
 
 
+def test_a_domain_of_any_name_gets_a_file_that_can_be_read(ward: Path, tpvqa: Run) -> None:
+    for file in ward.glob("*.pddl"):
+        said = file.read_text().replace("(domain ward)", "(domain w\x1b[31m)")
+        file.write_text(said.replace("(:domain ward)", "(:domain w\x1b[31m)"))
+    assert "\x1b" in (ward / "problem.pddl").read_text()
+    assert tpvqa(*DRAFT)[0] == 0
+    code, _, err = tpvqa("questions", "domain.pddl", "problem.pddl")
+    assert code == 0, err
+
+
 def test_a_file_that_is_there_is_left_alone_without_force(ward: Path, tpvqa: Run) -> None:
     mine = Path("questions.yaml")
     mine.write_text("# mine\n")

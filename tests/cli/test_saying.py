@@ -108,6 +108,13 @@ def test_what_cannot_be_written_has_an_exit_code_of_its_own(tpvqa: Run, tmp_path
     assert (done.returncode, b"Traceback" in done.stderr) == (6, False)
 
 
+def test_where_nobody_reads_what_is_printed_it_ends_as_well(tpvqa: Run) -> None:
+    """`>&-`: a program that is begun without standard output."""
+    command = f"exec {sys.executable} -m tpvqa plan build_tower >&-"
+    done = subprocess.run(["sh", "-c", command], stderr=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
 def test_a_folder_with_a_torn_beginning_is_taken_over(tpvqa: Run) -> None:
     Path("e").mkdir()
     (Path("e") / LOG).write_bytes(b'{"number":0,"time":0.0')

@@ -71,6 +71,19 @@ BROKEN_DOMAINS = [
     ("(:predicates", "(:predicates (lit ?x)", 4, "two predicates of the name 'lit'"),
     ("(?l - lamp)\n", "(?l ?l - lamp)\n", 6, "two parameters of the action 'switch_on'"),
     ("(lit ?l)))", f"(and (lit ?l) (increase (total-cost) {'9' * 200}))))", 5, "larger unit"),
+    *(
+        (
+            "(lit ?l)))",
+            f"(and (lit ?l) (increase (total-cost) {cost}))))",
+            8,
+            f"cost of the action 'switch_on' is {said}",
+        )
+        for cost, said in (
+            ("1e3", "'1e3', which is no whole number and no function"),
+            ("(price)", "'price', which is no whole number and no function"),
+            ("(total-cost)", "the total cost itself"),
+        )
+    ),
     (DOMAIN, PROBLEM, 1, "this file is a problem, where the domain is expected"),
     (DOMAIN, "\0\1\2ELF", 1, "outside a comment"),
     ("lit ?l))", "lit ?l) ü)", 7, "'ü'.*ASCII"),
@@ -117,6 +130,21 @@ def test_a_broken_domain(
     assert caught.value.line == line
     assert str(caught.value).startswith(f"{domain}:{line}: ")
     assert len(str(caught.value)) < 1500
+
+
+def test_a_cost_without_a_value_is_told_before_there_seems_to_be_no_plan(tmp_path: Path) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    domain.write_text(
+        DOMAIN.replace("(:action", "(:functions (total-cost) (price)) (:action").replace(
+            "(lit ?l)))", "(and (lit ?l) (increase (total-cost) (price)))))"
+        )
+    )
+    counted = PROBLEM.replace("(lit b))))", "(lit b))) (:metric minimize (total-cost)))")
+    problem.write_text(counted)
+    with pytest.raises(PDDLError, match=r"'price' has no value.*give it one in \(:init"):
+        load_task(domain, problem)
+    problem.write_text(counted.replace("(:init", "(:init (= (total-cost) 0) (= (price) 2)"))
+    assert {action.cost for action in load_task(domain, problem).ground_actions()} == {2}
 
 
 @pytest.mark.parametrize(("old", "new", "line", "message"), BROKEN_PROBLEMS)

@@ -110,6 +110,27 @@ def test_it_is_refused_in_a_sentence(name: str, good: Path, tmp_path: Path) -> N
         keeping(path, Use.REPLAY, None).ask(seen(1, 1), [FRIDGE])
 
 
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "UPDATE models SET parameters = 'x'",
+        "UPDATE models SET parameters = '[1]'",
+        f"UPDATE models SET parameters = '{'[' * 100_000}'",
+        "UPDATE answers SET at = 9223372036854775807",
+        "UPDATE answers SET at = -1",
+    ],
+)
+def test_counting_refuses_it_in_a_sentence(statement: str, good: Path, tmp_path: Path) -> None:
+    path = tmp_path / "answers.db"
+    shutil.copy(good, path)
+    changed(statement)(path)
+    with pytest.raises(CacheError, match="damaged"):
+        stats(path)
+    if "models" in statement:
+        with pytest.raises(CacheError, match="damaged"):
+            list(exported(path))
+
+
 @pytest.mark.parametrize("name", ["no database", "another program's", "a trigger", "a folder"])
 def test_what_is_not_ours_is_not_written_to(name: str, good: Path, tmp_path: Path) -> None:
     change, why = STRANGE[name]

@@ -96,6 +96,8 @@ def decoded(data: bytes) -> "Image.Image":
         picture.load()
     except Exception as error:  # decoders raise of every kind
         raise PictureError(f"is a damaged picture ({error})") from error
+    if picture.mode.startswith("I"):  # 16 bit of grey, which Pillow would cut off at 255
+        return picture.point(lambda grey: grey / 257).convert("L")
     return picture
 
 

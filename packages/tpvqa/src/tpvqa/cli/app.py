@@ -129,8 +129,9 @@ def main() -> None:
             _check_names(sys.argv[1:])
             app()
         finally:
-            with suppress(BrokenPipeError):
-                sys.stdout.flush()
+            if sys.stdout is not None:  # None where it was closed before the program began
+                with suppress(BrokenPipeError):
+                    sys.stdout.flush()
     except OSError as error:
         if error.errno == errno.ENAMETOOLONG:
             tell(f"error: the path '{cut(error.filename)}' is too long", error=True)

@@ -64,7 +64,9 @@ def draft(task: Task) -> str:
     asked = seen_predicates(task)
     said = {name: facts.said(name) for name in asked}
     spoken = {schema.name: actions.said(schema) for schema in whole_actions(task)}
-    lines = [_HEAD.format(domain=task.domain_name).rstrip(), "", "predicates:"]
+    name = task.domain_name
+    domain = name if name.isprintable() else repr(name)  # YAML would not read it again
+    lines = [_HEAD.format(domain=domain).rstrip(), "", "predicates:"]
     for name in asked:
         lines += _predicate(name, said[name])
     lines += [*numbers_section(task), "", "actions:"]

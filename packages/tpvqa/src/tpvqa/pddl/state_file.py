@@ -101,20 +101,19 @@ def _json_atoms(text: str, path: Path) -> list[tuple[int | None, str]]:
     if not isinstance(entries, list):
         raise PDDLError('expected a JSON list of atoms, such as ["(on plate table)"]', file=path)
     atoms: list[tuple[int | None, str]] = []
+    at, row = 0, 1
     for nth, entry in enumerate(entries, start=1):
+        line = None
         if isinstance(entry, list) and entry and all(isinstance(word, str) for word in entry):
             entry = Atom(entry[0], tuple(entry[1:])).pddl()
+        elif isinstance(entry, str) and (found := text.find(json.dumps(entry), at)) >= 0:
+            row += text.count("\n", at, found)
+            at, line = found, row
         if not isinstance(entry, str):
             raise PDDLError(
                 f"entry {nth} of the list is no atom: {shown(json.dumps(entry))}; expected "
                 '"(on plate table)" or ["on", "plate", "table"]',
                 file=path,
             )
-        atoms.append((_line_of_entry(text, entry), entry))
+        atoms.append((line, entry))
     return atoms
-
-
-def _line_of_entry(text: str, entry: str) -> int | None:
-    """The line of an entry that is written as one string."""
-    at = text.find(json.dumps(entry))
-    return None if at < 0 else text.count("\n", 0, at) + 1

@@ -10,6 +10,7 @@ from fast_downward.translate.pddl_parser.parse_error import ParseError
 
 from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.pddl.worker.blocks import sections
+from tpvqa.pddl.worker.costs import check_costs
 from tpvqa.pddl.worker.durative import taken_apart
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
 from tpvqa.pddl.worker.metric import passed_over
@@ -18,9 +19,6 @@ from tpvqa.pddl.worker.reading_error import ReadingError
 from tpvqa.pddl.worker.requirements import beyond, undeclared
 from tpvqa.pddl.worker.typing_check import ill_typed
 from tpvqa.pddl.worker.unsure import Unsure, UnsureError, taken_out
-
-_HIGHEST_COST = 1_000_000_000
-"""Of one action; plans add them up in 32 bits."""
 
 
 class _LocatedError(ParseError):  # type: ignore[misc]
@@ -75,7 +73,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         _check_types(task, blocks)
         _check_derived(task)
         _check_names(task)
-        _check_costs(task)
+        check_costs(task, _function_names(blocks["domain"]))
     except _LocatedError as error:
         raise _explained(error, blocks) from None
     except (MemoryError, ReadingError):
@@ -333,45 +331,6 @@ def _check_unique(what: str, names: Iterable[str]) -> None:
                 line_of(name),
             )
         seen.add(name)
-
-
-def _check_costs(task: Any) -> None:
-    """The translator does not compare how functions are used with how they are given values."""
-    things = {thing.name for thing in task.objects}
-    given = [("domain", action.cost, action.name) for action in task.actions if action.cost]
-    given += [("problem", fact, "") for fact in task.init if isinstance(fact, pddl.Assign)]
-    for part, said, name in given:
-        if getattr(said.expression, "value", 0) > _HIGHEST_COST:
-            where = f"the cost of the action {shown(name)}" if name else "a value in (:init …)"
-            raise ReadingError(
-                f"{where} is {shown(said.expression.value)}; Fast Downward counts to "
-                f"{_HIGHEST_COST:,}, so take a larger unit",
-                part,
-                line_of(name) or line_of(getattr(said.fluent, "symbol", None)),
-            )
-    for action in task.actions:
-        called = action.cost.expression if action.cost else None
-        if not isinstance(called, pddl.PrimitiveNumericExpression):
-            continue
-        known = things | {parameter.name for parameter in action.parameters}
-        for word in called.args:
-            if word not in known:
-                raise ReadingError(
-                    f"the cost of the action {str(action.name)!r} speaks of {str(word)!r}; "
-                    "expected one of its parameters or an object",
-                    "domain",
-                    line_of(word),
-                )
-        for fact in task.init:
-            if not isinstance(fact, pddl.Assign) or fact.fluent.symbol != called.symbol:
-                continue
-            if len(fact.fluent.args) != len(called.args):
-                raise ReadingError(
-                    f"the function {str(called.symbol)!r} has {len(fact.fluent.args)} arguments "
-                    f"here, but {len(called.args)} in the cost of the action {str(action.name)!r}",
-                    "problem",
-                    line_of(fact.fluent.symbol),
-                )
 
 
 def _place_of(word: str, blocks: dict[str, Block]) -> tuple[str, int | None]:

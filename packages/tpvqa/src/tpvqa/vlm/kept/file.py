@@ -75,7 +75,7 @@ class AnswerFile:
         except (ValueError, RecursionError):
             found = None
         if not isinstance(found, dict) or not all(isinstance(v, str) for v in found.values()):
-            raise self._damaged("the parameters of a VLM are no names with texts")
+            raise self.damaged("the parameters of a VLM are no names with texts")
         return found
 
     def model(self, spec: str, parameters: Mapping[str, str]) -> int:
@@ -226,10 +226,11 @@ class AnswerFile:
             and seconds >= 0
         )
         if not right:
-            raise self._damaged(f"the answer to {question.text[:80]!r} is none")
+            raise self.damaged(f"the answer to {question.text[:80]!r} is none")
         return Answer(question, Reply(reply), p_yes, source, text, p_cannot_see, leftover, seconds)
 
-    def _damaged(self, why: str) -> CacheError:
+    def damaged(self, why: str) -> CacheError:
+        """The error of a file that holds what was never written into it."""
         return CacheError(f"{self.path}: the file is damaged ({why}). Remove it, or name another")
 
     @contextmanager

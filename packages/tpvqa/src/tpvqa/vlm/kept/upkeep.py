@@ -32,6 +32,7 @@ COLUMNS = (
     "at",
 )
 """What is known of an answer, in the order of an export."""
+_LAST = 253_402_300_799  # the end of the year 9999, in seconds since 1970
 _STEP = 0.05
 """Share of the answers that is taken at once, until the rest is small enough."""
 
@@ -110,8 +111,9 @@ def stats(path: Path) -> Stats:
     """
     file = AnswerFile(path, writing=False)
     try:
+        file.models()  # with their parameters, which are read again below
         with file.reading() as connection:
-            return Stats(
+            told = Stats(
                 file=str(path),
                 schema=SCHEMA,
                 bytes=_size(path),
@@ -119,8 +121,15 @@ def stats(path: Path) -> Stats:
                 vlms=tuple(map(_kept, connection.execute(_OF_MODELS))),
                 kinds=tuple(map(_kept, connection.execute(_OF_KINDS))),
             )
+        if not all(_a_time(each.first) and _a_time(each.last) for each in told.vlms):
+            raise file.damaged("an answer was recorded at no time that there is")
+        return told
     finally:
         file.close()
+
+
+def _a_time(at: object) -> bool:
+    return isinstance(at, int) and 0 <= at <= _LAST
 
 
 def _kept(row: tuple[Any, ...]) -> Kept:
@@ -151,6 +160,7 @@ def exported(path: Path) -> Iterator[dict[str, Any]]:
         CacheError: The file cannot be read.
     """
     file = AnswerFile(path, writing=False)
+    file.models()
     told = (
         "SELECT m.spec, m.parameters, hex(a.picture), q.text, q.way, q.subject, hex(a.trial), "
         "a.draw, a.reply, a.p_yes, a.p_cannot_see, a.leftover, a.source, a.text, a.seconds, a.at "
