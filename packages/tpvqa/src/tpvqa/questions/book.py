@@ -85,9 +85,7 @@ class QuestionBook:
         """
         text, alike = self._said(literal.atom, wording)
         first = self._said(literal.atom, 0)[0] if wording else ""
-        fact = Literal(literal.atom)
-        still = any(each.matches(fact, None, {}, self.task) for each in self._wordings.still_shown)
-        return FactQuestion(text, way, fact.atom, literal.positive, alike, wording, first, still)
+        return FactQuestion(text, way, literal.atom, literal.positive, alike, wording, first)
 
     def in_other_words(self, question: FactQuestion) -> tuple[FactQuestion, ...]:
         """A question in every other wording of it that differs; none where a file gives one."""
