@@ -17,7 +17,7 @@ from PIL import Image
 
 from tpvqa.errors import PictureError
 from tpvqa.observation import Frame
-from tpvqa.pictures import MOST_BYTES, decoded, picture_type, read_file, read_picture
+from tpvqa.pictures import MOST_BYTES, decoded, in_colour, picture_type, read_file, read_picture
 
 
 def encoded(kind: str, size: tuple[int, int] = (4, 3)) -> bytes:
@@ -50,7 +50,7 @@ def test_jpeg_png_and_webp_are_read(kind: str, tmp_path: Path) -> None:
 def test_sixteen_bits_of_grey_are_as_light_as_they_were() -> None:
     file = BytesIO()
     Image.frombytes("I;16", (2, 1), struct.pack("<HH", 0, 137 * 257)).save(file, "PNG")
-    assert np.asarray(decoded(file.getvalue()).convert("RGB")).tolist() == [[[0] * 3, [137] * 3]]
+    assert np.asarray(in_colour(file.getvalue())).tolist() == [[[0] * 3, [137] * 3]]
 
 
 @pytest.mark.parametrize(

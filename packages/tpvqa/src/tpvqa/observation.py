@@ -10,7 +10,7 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, cast
 
 from tpvqa.pddl import Atom
-from tpvqa.pictures import decoded
+from tpvqa.pictures import decoded, in_colour
 
 if TYPE_CHECKING:
     import numpy as np
@@ -147,7 +147,7 @@ class Frame:
         """
         import numpy as np
 
-        return np.asarray(decoded(self.data).convert("RGB"))
+        return np.asarray(in_colour(self.data))
 
     def named(self, name: str) -> "Frame":
         """The same frame under another id."""

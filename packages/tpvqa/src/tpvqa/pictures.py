@@ -96,9 +96,23 @@ def decoded(data: bytes) -> "Image.Image":
         picture.load()
     except Exception as error:  # decoders raise of every kind
         raise PictureError(f"is a damaged picture ({error})") from error
-    if picture.mode.startswith("I"):  # 16 bit of grey, which Pillow would cut off at 255
-        return picture.point(lambda grey: grey / 257).convert("L")
     return picture
+
+
+def in_colour(data: bytes) -> "Image.Image":
+    """The same in red, green and blue of 8 bits each, as VLMs take it.
+
+    Raises:
+        PictureError: As `decoded` does.
+    """
+    return as_colour(decoded(data))
+
+
+def as_colour(picture: "Image.Image") -> "Image.Image":
+    """Pixels in red, green and blue; 16 bits of grey, which Pillow would cut off at 255, too."""
+    if picture.mode.startswith("I"):
+        picture = picture.point(lambda grey: grey / 257).convert("L")
+    return picture.convert("RGB")
 
 
 def _opened(data: bytes) -> "Image.Image":

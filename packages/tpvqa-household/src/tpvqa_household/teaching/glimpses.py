@@ -7,7 +7,7 @@ import numpy as np
 
 from tpvqa.errors import PictureError, TrainingError
 from tpvqa.files import read_plain, write_whole
-from tpvqa.pictures import decoded
+from tpvqa.pictures import in_colour
 from tpvqa.training.example import Example
 from tpvqa.training.stopping import between_steps
 from tpvqa_household.embedded.likeness import Floats
@@ -80,7 +80,7 @@ def glimpses(
 
 def _seen(branch: Sees, example: Example, number: int, seed: int) -> tuple[Floats, Floats]:
     try:
-        picture = decoded(example.data).convert("RGB")
+        picture = in_colour(example.data)
     except PictureError as error:
         raise TrainingError(f"A picture {error}") from error
     return glimpsed(branch, np.asarray(variant(picture, example.picture, number, seed)))

@@ -15,7 +15,7 @@ from PIL import Image, ImageDraw, ImageFilter
 
 from tpvqa.chance import chance_array
 from tpvqa.errors import TpvqaError
-from tpvqa.pictures import decoded, read_picture
+from tpvqa.pictures import in_colour, read_picture
 from tpvqa_household.training.labelled import COLUMNS, Labelled
 
 OUTLINES = Path(__file__).with_name("cutouts.csv")
@@ -97,7 +97,7 @@ def read_cutouts(folder: Path, photographs: Labelled, outlines: Path = OUTLINES)
 
 
 def _cut(photograph: Path, shape: str, points: str) -> Image.Image:
-    picture = decoded(read_picture(photograph)).convert("RGB")
+    picture = in_colour(read_picture(photograph))
     at = [_FINER * float(number) for number in points.split()]
     mask = Image.new("L", (picture.width * _FINER, picture.height * _FINER))
     if shape == "ellipse":

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from tpvqa.errors import TpvqaError
-from tpvqa.pictures import decoded, read_picture
+from tpvqa.pictures import in_colour, read_picture
 from tpvqa_household.training.subjects import Subject
 
 SIDE = 224
@@ -91,6 +91,6 @@ def read_rows(folder: Path) -> list[dict[str, str]]:
 
 def squeezed(path: Path) -> NDArray[np.uint8]:
     """A picture as the network squeezes it into its square."""
-    picture = decoded(read_picture(path)).convert("RGB")
+    picture = in_colour(read_picture(path))
     size = (SIDE, SIDE)
     return np.asarray(picture.resize(size, Image.Resampling.BICUBIC, reducing_gap=3))

@@ -15,7 +15,7 @@ from PIL import Image
 
 from tpvqa.chance import chance_array
 from tpvqa.errors import TpvqaError
-from tpvqa.pictures import decoded, read_picture
+from tpvqa.pictures import in_colour, read_picture
 from tpvqa_household.kitchen.household import atoms_of_interest
 from tpvqa_household.training import shards
 from tpvqa_household.training.facts import FactTable
@@ -35,7 +35,7 @@ def pieces(photographs: Sequence[Path], seed: int, count: int) -> shards.Shard:
         seed: Decides everything.
         count: How many pieces.
     """
-    opened = [np.asarray(decoded(read_picture(path)).convert("RGB")) for path in photographs]
+    opened = [np.asarray(in_colour(read_picture(path))) for path in photographs]
     pixels, info = [], []
     for number in range(count):
         rng = chance_array(seed, 0, "photograph", number)

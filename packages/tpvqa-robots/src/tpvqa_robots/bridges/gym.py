@@ -18,7 +18,7 @@ from tpvqa.drivers.performing import Performed
 from tpvqa.episodes import EpisodeWriter, MemoryWriter
 from tpvqa.errors import MissingExtraError, TpvqaError
 from tpvqa.monitors import Ask, Look
-from tpvqa.pictures import decoded
+from tpvqa.pictures import in_colour
 from tpvqa.trial import Act, Conclusion
 from tpvqa_robots.bridges.commanded import Command, Commanded
 
@@ -185,7 +185,7 @@ class GroundedTask(gymnasium.Env[Observed, np.int64]):
     def _show(self, done: Performed) -> None:
         frame = next(iter(done.value.frames.values()), None)
         if frame is not None:
-            picture = decoded(frame.data).convert("RGB").resize(self._size[::-1])
+            picture = in_colour(frame.data).resize(self._size[::-1])
             self._picture = np.asarray(picture, np.uint8).copy()
 
     def _observed(self) -> Observed:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tpvqa.chance import chance
 from tpvqa.errors import PictureError, TrainingError, WriteError
 from tpvqa.files import write_whole
-from tpvqa.pictures import decoded
+from tpvqa.pictures import in_colour
 from tpvqa.training.example import Example
 from tpvqa.training.protocol import TrainingSettings
 from tpvqa.training.stopping import between_steps
@@ -179,7 +179,7 @@ class _Fitting:
             if len(self._pictures) >= _KEPT:
                 self._pictures.pop(next(iter(self._pictures)))
             try:
-                self._pictures[example.picture] = decoded(example.data).convert("RGB")
+                self._pictures[example.picture] = in_colour(example.data)
             except PictureError as error:
                 raise TrainingError(f"A picture {error}") from error
         return Asked((self._pictures[example.picture],), example.text)

@@ -7,7 +7,7 @@ from io import BytesIO
 
 from tpvqa.errors import PictureError
 from tpvqa.observation import Frame
-from tpvqa.pictures import decoded
+from tpvqa.pictures import as_colour, decoded
 
 LONGEST = 1024
 """Pixels of the longest side where none is named: models look at tiles of 336 to 768 pixels."""
@@ -52,7 +52,7 @@ class SentPictures:
         larger = max(picture.size) > self.longest
         if not larger and self.quality is None:
             return frame
-        picture = picture.convert("RGB")
+        picture = as_colour(picture)
         if larger:
             picture.thumbnail((self.longest, self.longest), Image.Resampling.LANCZOS)
         file = BytesIO()

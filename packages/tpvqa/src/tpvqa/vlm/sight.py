@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from tpvqa.errors import PictureError
 from tpvqa.observation import Frame, Observation
-from tpvqa.pictures import decoded, picture_type
+from tpvqa.pictures import in_colour, picture_type
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
@@ -104,7 +104,7 @@ def _fault(data: bytes) -> str:
     except PictureError:
         return ""
     try:
-        picture = decoded(data).convert("RGB")
+        picture = in_colour(data)
     except PictureError as error:
         return f"the picture {error}"
     width, height = picture.size

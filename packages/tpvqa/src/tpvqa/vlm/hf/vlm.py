@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tpvqa.errors import AnswerError, PictureError, PluginError
 from tpvqa.observation import Frame, Observation
-from tpvqa.pictures import decoded
+from tpvqa.pictures import in_colour
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer
 from tpvqa.vlm.capabilities import NeedsPictures
@@ -181,6 +181,6 @@ class HuggingFaceVLM(NeedsPictures):
 
 def _pixels(frame: Frame) -> "Image.Image":
     try:
-        return decoded(frame.data).convert("RGB")
+        return in_colour(frame.data)
     except PictureError as error:
         raise AnswerError(f"The picture {frame.id!r} cannot be read: it {error}") from error
