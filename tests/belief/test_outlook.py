@@ -54,6 +54,18 @@ def test_the_rest_of_a_way_is_not_paid_where_it_ends_at_a_dead_skill() -> None:
     assert ahead.rest(0, plan) > 0.85 * ahead.failure
 
 
+def test_what_has_to_be_done_unseen_is_not_worth_more_tries_in_vain() -> None:
+    ahead = _outlook(failure=50.0)
+    ahead.add(_known())
+    tries = [SkillState(0.99, 0.97, 1.3, 0.97, 0.97, vain=vain) for vain in (19.0, 20.0)]
+    for settles in (1.0, 0.1):
+        ahead.may_be_blind(settles)
+        for tried, given_up in zip(tries, (False, True), strict=True):
+            ahead.learned({ACTIONS[0]: tried}.__getitem__, Rates())
+            assert ahead.given_up(ACTIONS[0]) is given_up
+    assert ahead.dearer > 2
+
+
 def test_what_is_closed_is_not_chosen() -> None:
     done, other = Choice(None, TASK.init), Choice(ACTIONS[0], TASK.init)
     work = np.ones((2, 1, 2))

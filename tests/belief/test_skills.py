@@ -4,10 +4,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tpvqa.belief.belief import Belief
 from tpvqa.belief.chances import Chances
-from tpvqa.belief.faults import Rates
+from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.learned import Learned
 from tpvqa.belief.skills import GIVEN_UP, NAMED
-from tpvqa.pddl import Action, Task, load_task
+from tpvqa.pddl import Action, Atom, Task, load_task
+from tpvqa.tasks import find_task
+from tpvqa.worlds.world_file import load_world_file
 
 FAILED, WORKED = {"failure": 1.0}, {"success": 1.0}
 
@@ -51,6 +55,35 @@ def test_what_fails_has_a_common_cause(kitchen: Task) -> None:
         chances.learn(WORKED, grasp(kitchen, thing, "right", place))
     assert chances.skill(grasp(kitchen, "apple", "left", "floor")).dead > NAMED  # the left hand
     assert chances.skill(grasp(kitchen, "apple", "right", "floor")).dead < 0.02
+
+
+def test_tries_in_vain_are_those_of_what_may_be_dead(kitchen: Task) -> None:
+    """With whatever, as long as none has worked; else with what it fails at alone."""
+    chances, apple, knife = Chances(), grasp(kitchen), grasp(kitchen, "knife", "left", "counter")
+    for action in (apple, apple, knife):
+        chances.learn(FAILED, action)
+    assert {chances.skill(action).vain for action in (apple, knife)} == {3.0}
+    chances.learn(WORKED, knife)
+    assert chances.skill(apple).vain == 2.0
+    assert chances.skill(knife).vain == 1.0
+    assert chances.skill(grasp(kitchen, "apple", "right", "floor")).vain == 0.0
+
+
+def test_actions_that_differ_in_what_the_skill_does_not_take_are_one_skill() -> None:
+    files = find_task("eat_apple")
+    task = load_task(files.domain, files.problem)
+    belief = Belief(FaultModel(task, load_world_file(files.world, task)))
+    learned = Learned(Chances(), belief, trusts=False)
+    found, same = (task.action("find", ("fridge", near)) for near in ("tv", "sink"))
+    before = learned.skill(found)
+    for _ in range(6):
+        belief.act(found, Rates())
+        belief.see((Atom("near", ("fridge",)),), 0.0, 1.0)
+        learned.learn(found)
+    assert learned.skill(found).dead > before.dead + 0.3
+    assert learned.skill(same) == learned.skill(found)
+    assert learned.times(same) == learned.times(found) == (6.0, 6.0)
+    assert learned.skill(task.action("find", ("sink", "tv"))).dead < learned.skill(found).dead
 
 
 @given(st.floats(0.05, 0.95), st.integers(1, 6))

@@ -230,8 +230,11 @@ class Chooser:
 
     def follows(self, action: Action, state: State) -> bool:
         """Whether an action is the next one of what is being followed."""
-        same = self._model.same_skill
-        return bool(self.following) and same(self.following[0], action, state)
+        return bool(self.following) and self.same_skill(self.following[0], action, state)
+
+    def same_skill(self, action: Action, other: Action, state: State) -> bool:
+        """Whether the robot does the same in two actions."""
+        return self._model.same_skill(action, other, state)
 
     def _blind(
         self, choices: Sequence[Choice], ranked: Sequence[tuple[int, float]], rates: Rates

@@ -14,14 +14,8 @@ from tpvqa.belief.compiled import Compiled, compiled, met
 from tpvqa.belief.information import Floats
 from tpvqa.belief.memory import Past, Undoing, memory_of
 from tpvqa.belief.packed import Bytes, Packed, held
+from tpvqa.belief.rebinding import Rebinding
 from tpvqa.pddl import Action, Atom, State, Task
-
-
-class Rebinding(Protocol):
-    """An argument that the robot's skill does not take: it is what holds in truth."""
-
-    def apply(self, action: Action, state: State, task: Task) -> Action:
-        """The action that the skill truly is."""
 
 
 class Showing(Protocol):
@@ -143,6 +137,9 @@ class FaultModel:
         task: Gives the actions and the initial state.
         rules: What the world file says about faults; without one a disturbance puts a fact back
             to what held before it, or seldom loses a thing.
+
+    Attributes:
+        rebind: Arguments that skills do not take.
     """
 
     def __init__(self, task: Task, rules: FaultRules | None = None):
@@ -151,7 +148,7 @@ class FaultModel:
         self.task = task
         self.surprise = Surprise(task, rules.undo if rules is not None else ())
         self._memory = memory_of(task, () if rules is None else rules.undo)
-        self._rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
+        self.rebind: Sequence[Rebinding] = () if rules is None else rules.rebind
         self._begun: State = task.init
         self._clear()
 
@@ -316,7 +313,7 @@ class FaultModel:
 
     def _work_out(self, action: Action, number: int) -> Outcomes:
         state = self.state(number)
-        if not self._rebind:
+        if not self.rebind:
             masks = self._masks(action)
             if masks is not None:
                 holding = self.holding(number)
@@ -353,12 +350,12 @@ class FaultModel:
 
     def _truly(self, action: Action, state: State) -> Action:
         """What an action is where skills do not take all its arguments."""
-        if not self._rebind:
+        if not self.rebind:
             return action
         found = self._bound.get((action, state))
         if found is None:
             found = action
-            for rebinding in self._rebind:
+            for rebinding in self.rebind:
                 found = rebinding.apply(found, state, self.task)
             self._bound[action, state] = found
         return found

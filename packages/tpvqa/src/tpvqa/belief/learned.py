@@ -15,6 +15,7 @@ from tpvqa.belief.chances import Chances
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.kinds import KINDS
+from tpvqa.belief.rebinding import as_skill
 from tpvqa.belief.skills import SkillState
 from tpvqa.belief.trust import GRID
 from tpvqa.pddl import Action
@@ -42,6 +43,7 @@ class Learned:
         ]
         self._parts = [part for part in self._parts if part.any()]
         self._chances = [deepcopy(chances) for _ in self._parts]
+        self._skills: dict[Action, Action] = {}
         self._known: tuple[Floats | None, list[tuple[float, Chances]]] = None, []
 
     def _weighed(self) -> list[tuple[float, Chances]]:
@@ -77,6 +79,7 @@ class Learned:
 
     def skill(self, action: Action) -> SkillState:
         """What is known of how often an action fails."""
+        action = self._as_skill(action)
         told = [(weight, chances.skill(action)) for weight, chances in self._weighed()]
         if len(told) == 1:
             return told[0][1]
@@ -93,12 +96,12 @@ class Learned:
         return Rates(self.skill(action).failure, rates.disturbance, rates.spontaneous)
 
     def tried(self) -> Iterable[Action]:
-        """The actions that were tried."""
+        """The actions that were tried, without the arguments that their skills do not take."""
         return self.likeliest.tried()
 
     def times(self, action: Action) -> tuple[float, float]:
         """See `Skills.times`."""
-        return self.likeliest.skills.times(action)
+        return self.likeliest.skills.times(self._as_skill(action))
 
     @property
     def learned(self) -> tuple[int, int]:
@@ -108,6 +111,7 @@ class Learned:
 
     def learn(self, action: Action) -> None:
         """Learn from how an action came out, after all that was seen since."""
+        action = self._as_skill(action)
         for part, chances in zip(self._parts, self._chances, strict=True):
             weights = self._belief.weights
             if len(self._parts) > 1:
@@ -123,5 +127,12 @@ class Learned:
         """
         chances = deepcopy(self.likeliest)
         if last is not None:
-            chances.learn(self._belief.outcome_shares(), last, self._belief.earlier_shares())
+            shares, last = self._belief.outcome_shares(), self._as_skill(last)
+            chances.learn(shares, last, self._belief.earlier_shares())
         return chances
+
+    def _as_skill(self, action: Action) -> Action:
+        found = self._skills.get(action)
+        if found is None:
+            found = self._skills[action] = as_skill(action, self._belief.model.rebind)
+        return found

@@ -154,14 +154,14 @@ class Outlook:
     def given_up(self, action: Action) -> bool:
         """Whether an action that seems never to work is not worth one more try."""
         skill = self.skill(action)
-        won = (1 - skill.failure) * self.failure
+        won = (1 - skill.failure) * self._lost_seen
         hopeless = skill.dead >= NAMED and won < self._costs.action
         tried = skill.shown >= SHOWN and self._tried_enough(skill)
         return tried and (skill.dead >= GIVEN_UP or hopeless)
 
     def _tried_enough(self, skill: SkillState) -> bool:
         """Whether so much was spent on tries in vain that it may be given up."""
-        return skill.vain * self._costs.action >= FOREGONE * self.failure
+        return skill.vain * self._costs.action >= FOREGONE * self._lost_seen
 
     def blocked(self, number: int) -> bool:
         """Whether the way from a joint state leads through a skill that is given up."""
@@ -310,7 +310,13 @@ class Outlook:
     @property
     def dearer(self) -> float:
         """How many times as much a failed task costs as it would if all could be seen."""
-        return self.failure / self._lost_where(0.0)
+        return self.failure / self._lost_seen
+
+    @property
+    def _lost_seen(self) -> float:
+        """What a failed task costs where all can be seen. Tries that were seen to be in vain are
+        paid from it: what is worth more as it has to be done unseen is not worth them."""
+        return self._lost_where(0.0)
 
     @property
     def rates(self) -> Rates:

@@ -56,7 +56,8 @@ class SkillState:
         shown: Probability that every try fails, by its own tries: what those with other objects
             came to makes it suspected, and no more.
         at_worst: The probability of `dead` if its latest tries in a row have all failed.
-        vain: Tries of the skill that are thought to have failed, whatever with.
+        vain: Tries of the skill that are thought to have failed: whatever with, or with these
+            objects alone, where it has worked with others.
     """
 
     failure: float
@@ -138,6 +139,11 @@ class Tried:
         return self.times - sum(run.worked for run in self.runs)
 
     @property
+    def works(self) -> bool:
+        """Whether one of them is thought to have worked."""
+        return self.failed < self.times - 0.5
+
+    @property
     def likelihood(self) -> Floats:
         """Of what was seen, for every rate, shape (rates,)."""
         told = [run.likelihood for run in self.runs]  # another array after every judgement
@@ -204,9 +210,10 @@ class Skills:
         """How often a skill was tried, whatever with, and failed; with what it fails at alone
         where it works with others."""
         own = self._tried.get(action.name, {})
-        if any(other.failed < other.times - 0.5 for other in own.values()):
+        if any(each.works for each in own.values()):
             own = {each: tried for each, tried in own.items() if each == action}
-        return sum(each.times for each in own.values()), sum(each.failed for each in own.values())
+        told = own.values()
+        return sum(each.times for each in told), sum(each.failed for each in told)
 
     def all(self) -> list[Action]:
         """The actions that were tried."""
@@ -273,7 +280,8 @@ class _Shared:
         self._own, self._prior = own, _prior(mean, strength)
         self._causes = _causes(own, self._prior) if own else {}
         self._strength, self._times = strength, sum(tried.times for tried in own.values())
-        self._vain = sum(tried.failed for tried in own.values())
+        self._works = any(each.works for each in own.values())
+        self._vain = sum(each.failed for each in own.values())
         told = [tried.likelihood[:-1] for tried in own.values()]
         before, after = [self._prior], [np.ones_like(self._prior)]
         for each, last in zip(told, reversed(told), strict=True):
@@ -303,8 +311,10 @@ class _Shared:
             likelihood = own[action].likelihood
             works = (1 - SUSPECT) * float(self._prior @ likelihood[:-1])
             shown = SUSPECT * likelihood[-1] / (SUSPECT * likelihood[-1] + works)
-        failed = dead + (1 - dead) * failure
-        return SkillState(failed, dead, tries, min(dead, shown), dead, self._vain)
+        failed, vain = dead + (1 - dead) * failure, self._vain
+        if self._works:
+            vain = own[action].failed if action in own else 0.0
+        return SkillState(failed, dead, tries, min(dead, shown), dead, vain)
 
 
 def _chance(cause: Cause, action: Action) -> float:

@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Generator, Sequence
 from dataclasses import replace
-from itertools import groupby
 from typing import Any
 
 from tpvqa.belief.ablations import belief_without
@@ -38,7 +37,7 @@ from tpvqa.monitors.requests import Request
 from tpvqa.monitors.scrutiny import unknown
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated, bound_for
 from tpvqa.monitors.verdict import Verdict
-from tpvqa.monitors.ways import UNSEEN, Ways, known_plan
+from tpvqa.monitors.ways import Ways
 from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
@@ -126,7 +125,7 @@ class BeliefMonitor(Learning, PlainArguments):
         )
         self._words: FactWords | None = None
         self._settled: Action | None = None
-        self._settlings = Settlings()
+        self._settlings, self._telling = Settlings(), 1.0
         self._undo = () if rules is None else rules.undo
         self._stepped: Step | None = None
 
@@ -319,6 +318,7 @@ class BeliefMonitor(Learning, PlainArguments):
     def _settle(self, step: Step) -> None:
         """Work out how far it can be found out what is true, and what that costs."""
         found = self.evidence.settling(self._about_needs(step.book))
+        self._telling = found.share
         self._chooser.settles = self._settlings.taken(found, self._task_ways.ahead(self.belief))
         self._chooser.blind = self.evidence.worthless(found)
         self._chooser.finding = found.answers * self.costs.question + self.costs.look
@@ -349,7 +349,7 @@ class BeliefMonitor(Learning, PlainArguments):
             person=self._asking.person,
             dearer=self.evidence.dearer(self._chooser.ahead.dearer) * self._settlings.dearer,
         )
-        if found is None and self._chooser.settles >= TELLING and self._ways.closely(self._now):
+        if found is None and self._telling >= TELLING and self._ways.closely(self._now):
             found = unknown(self._now, self.belief, step.book, budget, views)
         if found is None and self._past is not None:
             found = self._past.look(self._now, self.belief, step.book, budget, views)
@@ -394,7 +394,5 @@ class BeliefMonitor(Learning, PlainArguments):
         if action is not None and (acted or place != step.index):
             self._settled = action
         plan = self._ways.plan(state, action) if action and decision is Decision.REPLAN else None
-        if action and decision is Decision.REPLAN and self._chooser.follows(action, state):
-            plan = known_plan([each for each, _ in groupby(self._chooser.following)], UNSEEN)
         marginals = self.belief.probabilities(sorted(self._ways.atoms))
         return Verdict(decision, why, state, step=place, belief=marginals, plan=plan)

@@ -1,6 +1,7 @@
 """Which ways to the goal a belief monitor knows, and where it has others planned."""
 
 from collections.abc import Generator, Sequence
+from itertools import groupby
 from typing import Any
 
 from tpvqa.belief.annotated import AnnotatedPlan
@@ -90,15 +91,19 @@ class Ways:
         return next((plan for plan in self.chooser.plans if plan.actions == actions), None)
 
     def plan(self, state: State, action: Action) -> Plan | None:
-        """A known plan from a state that begins with an action."""
+        """A plan from a state that begins with an action; None where no way is known from there."""
+        if self.chooser.follows(action, state):
+            return known_plan([each for each, _ in groupby(self.chooser.following)], UNSEEN)
         found = self._plans.get(state)
         if found is not None and found.actions[:1] == (action,):
             return found
         way = self.chooser.way(state)
         if way is None:
             return None
-        place, plan = way
-        return known_plan(plan.actions[place:])
+        rest = way[1].actions[way[0] :]
+        if rest and not self.chooser.same_skill(rest[0], action, state):
+            return known_plan((action, *rest), UNSEEN)  # by a way on to where it is the step
+        return known_plan(rest)
 
     def seek(self, belief: Belief) -> Generator[Request, Any, None]:
         """Have plans made for what is likely, and without what does not work."""

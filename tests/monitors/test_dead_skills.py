@@ -1,0 +1,39 @@
+"""A skill that never works, where the world disturbs and answers err."""
+
+import pytest
+
+from tpvqa.assembly import Trial
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import MemoryWriter
+from tpvqa.events import Ended
+from tpvqa.events.events import Acting, Asked, Decided
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_it_is_tried_some_twenty_times_with_a_look_and_no_more(seed: int) -> None:
+    """Until it is given up, how it came out is seen: that much is in vain says nothing of answers,
+    and what is worth more as it has to be done unseen is not worth more such tries."""
+    config = TrialConfig.model_validate(
+        {
+            "seed": seed,
+            "task": {"name": "eat_apple"},
+            "world": {"spec": "symbolic"},
+            "simulation": {"dead": "open"},
+            "monitor": {"spec": "belief"},
+            "vlm": {"spec": "oracle:0.8"},
+            "limits": dict.fromkeys(("actions", "repeats", "replans"), 300),
+        }
+    )
+    writer = MemoryWriter()
+    with Trial(config) as trial:
+        trial.run(writer)
+    end = writer.events[-1]
+    assert isinstance(end, Ended)
+    assert (end.completed, end.believed_goal) == (False, False)
+    tried = [e for e in writer.events if isinstance(e, Acting) and e.action.name == "open"]
+    assert 8 <= len(tried) <= 25
+    last = [e for e in writer.events if isinstance(e, Decided)][-1]
+    assert "open the fridge failed" in last.reason
+    at = [writer.events.index(each) for each in tried[:-1]]
+    looked = [any(isinstance(e, Asked) for e in writer.events[n : n + 8]) for n in at]
+    assert sum(looked) >= 0.9 * len(looked)
