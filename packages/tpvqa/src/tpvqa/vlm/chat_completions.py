@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from tpvqa.observation import Frame
+from tpvqa.told import ToldModel
 from tpvqa.vlm.answer import Reply
 from tpvqa.vlm.prompt import Prompt
 from tpvqa.vlm.reading import Reading
@@ -163,7 +164,7 @@ def data_url(frame: Frame) -> str:
     return f"data:{frame.media_type};base64,{base64.b64encode(frame.data).decode('ascii')}"
 
 
-class _Alternative(BaseModel):
+class _Alternative(ToldModel):
     token: str
     logprob: float
 
@@ -172,25 +173,25 @@ class _Token(_Alternative):
     top_logprobs: list[_Alternative] | None = None
 
 
-class _Logprobs(BaseModel):
+class _Logprobs(ToldModel):
     content: list[_Token] | None = None
 
 
-class _Message(BaseModel):
+class _Message(ToldModel):
     role: str | None = None
     content: str | None = None
     refusal: str | None = None
     tool_calls: Any = None
 
 
-class Choice(BaseModel):
+class Choice(ToldModel):
     message: _Message
     finish_reason: str | None = None
     # Its shape is checked apart: broken probabilities must not cost a clear word.
     logprobs: Any = None
 
 
-class _Completion(BaseModel):
+class _Completion(ToldModel):
     choices: list[Choice] = Field(min_length=1)
     error: Any = None
 
