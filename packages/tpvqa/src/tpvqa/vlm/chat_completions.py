@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import Field, ValidationError
 
 from tpvqa.observation import Frame
-from tpvqa.told import ToldModel
+from tpvqa.told import ToldModel, check_names
 from tpvqa.vlm.answer import Reply
 from tpvqa.vlm.prompt import Prompt
 from tpvqa.vlm.reading import Reading
@@ -224,6 +224,7 @@ def read_choices(body: str | bytes, question: str | None = None) -> list[Reading
 def choices_of(body: str | bytes) -> list[Choice] | Reading:
     """The choices of a reply, or why there are none."""
     try:
+        check_names(body)  # of two contents one would count, and nobody knows which is meant
         completion = _Completion.model_validate_json(body)
     except (ValidationError, ValueError, RecursionError):
         shown = body if isinstance(body, str) else body.decode("utf-8", "replace")
