@@ -81,7 +81,7 @@ class Dialect:
             return replace(self, several=False)
         if self.logprobs and re.search(r"log_?prob", complaint):
             at_most = re.search(
-                r"(?:<=|at most|more than|maximum[^\d]*|equal to)\s*(\d+)", complaint
+                r"(?:(?:<=|at most|more than|equal to)\s*|maximum\D*+)(\d+)", complaint
             )
             fewer = int(at_most[1]) if at_most else 0
             return replace(self, logprobs=fewer if 0 < fewer < self.logprobs else 0)
@@ -213,12 +213,15 @@ def read_completion(body: str | bytes, question: str | None = None) -> Reading:
     return readings[0]
 
 
-def read_choices(body: str | bytes, question: str | None = None) -> list[Reading]:
-    """Read each choice of a reply by itself, as `read_completion` does; one at least."""
-    choices = choices_of(body)
-    if isinstance(choices, Reading):
-        return [choices]
-    return [_read_choice(choice, question) for choice in choices]
+def read_choices(
+    body: str | bytes, question: str | None = None, choices: int = _MOST_CHOICES
+) -> list[Reading]:
+    """Read each choice of a reply by itself, as `read_completion` does, up to so many; one at
+    least."""
+    found = choices_of(body)
+    if isinstance(found, Reading):
+        return [found]
+    return [_read_choice(choice, question) for choice in found[:choices]]
 
 
 def choices_of(body: str | bytes) -> list[Choice] | Reading:
