@@ -3,10 +3,10 @@
 A model is asked for one word. What it says counts only in one of two shapes; all else is *unknown*,
 as a wrong yes or no does more harm than an abstention.
 
-First the wrapping is taken off, a few layers deep: white space, quotes, Markdown emphasis and code
-fences around the whole; reasoning before the answer (`<think>…</think>`); `<answer>…</answer>`; a
-label ("Answer:", "The final answer is"); the JSON object `{"answer": "yes"}` with that field alone.
-What is left must be short, and
+First its wrapping is taken off, a dozen layers at most: white space, quotes, Markdown emphasis and
+code fences around the whole; reasoning before the answer (`<think>…</think>`);
+`<answer>…</answer>`; a label ("Answer:", "The final answer is"); the JSON object
+`{"answer": "yes"}` with that field alone. What is left must have 2,000 characters at most and be
 
 1. **the word alone**, yes or no, with at most one full stop or exclamation mark after it; or
 2. **the word, a separator** (one of `, . ; : ! –` or a new line) **and one or two clauses, each of
