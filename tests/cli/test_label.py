@@ -4,6 +4,8 @@ import json
 import os
 import pty
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import time
@@ -231,9 +233,11 @@ def served(session: Session) -> Iterator[tuple[LabelPage, list[Exception]]]:
     with LabelPage(session) as page:
         thread = Thread(target=serve, args=(page,))
         thread.start()
-        yield page, ended
-        page.end()
-        thread.join(10)
+        try:
+            yield page, ended
+        finally:
+            page.end()
+            thread.join(10)
         assert not thread.is_alive()
 
 
@@ -276,6 +280,8 @@ def test_the_page_shows_pictures_and_takes_keys(seen: Path) -> None:
         ("{token}picture/-1", {}, None),
         ("{token}picture/../../episode.jsonl", {}, None),
         ("{token}key", {}, "y" * 5000),
+        ("{token}picture/" + "9" * 5000, {}, None),
+        ("{token}key", {"Content-Length": "9" * 5000}, "y"),
     ],
 )
 def test_who_does_not_know_the_address_sees_nothing(
@@ -288,6 +294,22 @@ def test_who_does_not_know_the_address_sees_nothing(
             got(address, key=key, **headers)
         assert refused.value.code in (400, 404)
         assert session.progress.labels == before
+
+
+@pytest.mark.parametrize("sent", [b"", b"GET ", b"GET / HTTP/1.1\r\nHo"])
+def test_a_browser_that_goes_away_is_not_told_of(
+    seen: Path, sent: bytes, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with Session([seen]) as session, served(session) as (page, _):
+        host, _, port = page.host.partition(":")
+        with socket.create_connection((host, int(port)), 10) as browser:
+            browser.sendall(sent)
+            time.sleep(0.2)
+            browser.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        time.sleep(0.3)
+        assert b"<html" in got(page.address)
+    said = capfd.readouterr()
+    assert said.out + said.err == ""
 
 
 def test_a_label_that_cannot_be_written_ends_the_page(

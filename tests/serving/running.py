@@ -125,12 +125,13 @@ def call(
     headers: Mapping[str, str] | None = None,
     timeout: float = 20,
 ) -> Said:
-    """One request with Python's own client."""
+    """One request with Python's own client; a body is said to be JSON."""
     place = urlsplit(serving.address)
     connection = http.client.HTTPConnection(place.hostname or "", place.port, timeout=timeout)
     data = sent if sent is None or isinstance(sent, bytes) else json.dumps(sent).encode()
     try:
-        connection.request(method, path, data, dict(headers or {}))
+        kind = {} if data is None else {"Content-Type": "application/json"}
+        connection.request(method, path, data, {**kind, **(headers or {})})
         return Said(connection.getresponse())
     finally:
         connection.close()

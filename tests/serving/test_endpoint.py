@@ -183,7 +183,8 @@ def test_a_request_that_is_too_large_hears_so() -> None:
         place = urlsplit(serving.address)
         connection = http.client.HTTPConnection(place.hostname or "", place.port, timeout=20)
         parts = (b" " * 1_000 for _ in range(30))
-        connection.request("POST", "/v1/chat/completions", parts, encode_chunked=True)
+        kind = {"Content-Type": "application/json"}
+        connection.request("POST", "/v1/chat/completions", parts, kind, encode_chunked=True)
         assert connection.getresponse().status == 413
         connection.close()
         assert complete(serving, FRIDGE).word == "yes"
@@ -195,7 +196,7 @@ def test_a_request_that_does_not_come_in_is_ended() -> None:
         with socket.create_connection((place.hostname or "", place.port or 0), 10) as slow:
             slow.sendall(
                 b"POST /v1/chat/completions HTTP/1.1\r\nHost: localhost\r\n"
-                b"Content-Length: 1000\r\n\r\n{"
+                b"Content-Type: application/json\r\nContent-Length: 1000\r\n\r\n{"
             )
             assert b"408" in slow.recv(4096).partition(b"\r\n")[0]
         assert complete(serving, FRIDGE).word == "yes"

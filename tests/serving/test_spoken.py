@@ -98,6 +98,7 @@ def test_words_are_drawn_as_often_as_they_are_probable_at_temperature_1() -> Non
     for word, p in (said.odds or {}).items():
         spread = 4 * math.sqrt(p * (1 - p) / len(drawn))
         assert drawn.count(word) / len(drawn) == pytest.approx(p, abs=spread)
-    assert {said.sampled(0.0, random) for _ in range(20)} == {"yes"}
+    for none in (0.0, 1e-320, 1e-300, 1e-9):
+        assert {said.sampled(none, random) for _ in range(20)} == {"yes"}
     cold = [said.sampled(0.2, random) for _ in range(400)]
     assert cold.count("yes") > 360

@@ -227,6 +227,17 @@ def test_what_the_rest_of_a_reply_says_counts_too(sent: dict[str, Any], reply: R
     assert reading.text
 
 
+@pytest.mark.parametrize(
+    "message",
+    ['"content": "no", "content": "yes"', '"content": "yes", "content": "yes"',
+     '"content": "yes", "role": "user", "role": "assistant"'],
+)  # fmt: skip
+def test_what_is_said_twice_is_no_answer(message: str) -> None:
+    reading = read_completion('{"choices": [{"message": {' + message + "}}]}", QUESTION)
+    assert reading.reply is Reply.UNKNOWN
+    assert "garbled" in reading.text
+
+
 REPLIES = [
     json.loads(line)
     for line in (Path(__file__).parent / "replies.jsonl").read_text(encoding="utf-8").splitlines()

@@ -5,6 +5,7 @@
 
 import json
 import re
+import time
 from pathlib import Path
 
 import pytest
@@ -196,11 +197,33 @@ def test_any_text_to_any_question_is_read(text: str, question: str) -> None:
 @pytest.mark.parametrize(
     "text", ["(" * 50_000, '"' * 50_000, "*" * 50_000, "<think>" * 9_000, "_a" * 20_000,
              "Yes, " + "a " * 30_000, "No. " * 20_000, "`" * 50_000, "no" * 30_000,
-             "Yes, it's" + "'s" * 20_000, "</think>" * 9_000, "** a" * 9_000],
+             "Yes, it's" + "'s" * 20_000, "</think>" * 9_000, "** a" * 9_000,
+             "yes, x" + " " * 99_000 + "y", "```" + " " * 99_000 + "x",
+             "*(__(" * 10_000 + "x" + ")__)*" * 10_000, '"*(' * 16_000 + "x" + ')*"' * 16_000,
+             '*"' * 25_000 + "yes" + '"*' * 25_000],
     ids=lambda text: text[:9].strip(),
 )  # fmt: skip
 def test_long_replies_are_read_quickly(text: str) -> None:
+    began = time.monotonic()
     assert read_words(text, "Is the fridge open?") is Reply.UNKNOWN
+    assert time.monotonic() - began < 5
+
+
+@pytest.mark.parametrize("word", ["yes", "no"])
+def test_wrappings_of_every_kind_come_off_together(word: str) -> None:
+    inside = f"'*_{word}_*'"
+    assert read_words(f'"<answer>`{inside}`</answer>"').value == word
+    assert read_words(f'```json\n{{"answer": "{inside}"}}\n```').value == word
+
+
+@pytest.mark.parametrize("space", [" ", "\n", " \n"])
+def test_a_long_answer_is_none_however_much_of_it_is_space(space: str) -> None:
+    said = "Yes, the fridge is open."
+    assert read_words(f"<think>{'Hm. ' * 9_000}</think>{said}", "Is the fridge open?") is Reply.YES
+    between = said.replace(" the", space * 500 + "the")
+    assert read_words(between, "Is the fridge open?") is Reply.YES
+    beyond = said.replace(" the", space * 3_000 + "the")
+    assert read_words(beyond, "Is the fridge open?") is Reply.UNKNOWN
 
 
 @pytest.mark.parametrize(

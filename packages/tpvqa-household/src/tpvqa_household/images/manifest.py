@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import ClassVar
 from typing import Literal as Choice
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
 
+from tpvqa.told import ToldModel
 from tpvqa.worlds.pictures import Manifest as AnyManifest
 from tpvqa.worlds.pictures import Picture as AnyPicture
 from tpvqa.worlds.pictures import PictureSet as AnyPictureSet
@@ -23,7 +24,7 @@ ORIGINS: tuple[OriginKind, ...] = ("photo", "rendered", "variation", "generated"
 OUTCOMES: tuple[ActionResult, ...] = ("success", "failure")
 
 
-class _Model(BaseModel):
+class _Model(ToldModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 

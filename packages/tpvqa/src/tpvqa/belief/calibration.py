@@ -9,7 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import ConfigDict, Field, ValidationError, field_validator
 
 from tpvqa.belief.bounds import BOUND, EDGE, Counted
 from tpvqa.belief.kinds import FRESH, KINDS, UNKNOWN
@@ -18,6 +18,7 @@ from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError, PlacedError
 from tpvqa.questions.question import Question, Way
 from tpvqa.text_files import read_bytes
+from tpvqa.told import ToldModel, first_fault
 from tpvqa.vlm.answer import Answer, Reply
 
 Probability = Annotated[float, Field(ge=0, le=1)]
@@ -48,7 +49,7 @@ class AnswerRates:
     abstain_if_false: Probability
 
 
-class _Model(BaseModel):
+class _Model(ToldModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
@@ -272,7 +273,7 @@ class Calibration(_Model):
         except PlacedError as error:
             raise CalibrationError(f"{path}: {error}") from None
         except ValidationError as error:
-            first = error.errors()[0]
+            first = first_fault(error)
             place = ".".join(map(str, first["loc"]))
             if place == "version":
                 message = "it is of another version; this tpvqa reads version 1"

@@ -6,7 +6,7 @@ Kept from one trial to the next, as one small JSON file.
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from tpvqa.belief.bounds import MOST, Counted
 from tpvqa.belief.calibration import Calibration
@@ -14,6 +14,7 @@ from tpvqa.belief.trust import GRID, Trust
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError
 from tpvqa.files import read_plain
+from tpvqa.told import ToldModel, first_fault
 
 if TYPE_CHECKING:
     from tpvqa.belief.biases import Biases
@@ -26,7 +27,7 @@ Count = Annotated[float, Field(ge=0, le=MOST, strict=True)]
 Rate = Annotated[float, Field(gt=0, lt=1, strict=True)]
 
 
-class Experience(BaseModel):
+class Experience(ToldModel):
     """What was learned so far.
 
     Attributes:
@@ -147,7 +148,7 @@ class Experience(BaseModel):
         except OSError as error:
             raise CalibrationError(f"{path}: cannot be read ({error.strerror})") from error
         except ValidationError as error:
-            first = error.errors()[0]
+            first = first_fault(error)
             place = ".".join(map(str, first["loc"])) or "the file"
             raise CalibrationError(
                 f"{path}: it is no experience, or a damaged one ({place}: {first['msg']}). Name "

@@ -5,9 +5,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from tpvqa.belief.bounds import BOUND, EDGE, Counted
+from tpvqa.told import ToldModel
 
 FAILED = (0.1, 0.9)
 """How probable it is that a skill reports a failure where it worked, and where it failed, as long
@@ -25,7 +26,7 @@ LEAST = 1e-6
 """No report or reading is rarer than this."""
 
 
-class _Worth(BaseModel):
+class _Worth(ToldModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 

@@ -15,11 +15,12 @@ from math import ceil, floor
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field, ValidationError
 
 from tpvqa.belief.writing import write_json
 from tpvqa.errors import CalibrationError, PlacedError
 from tpvqa.text_files import read_bytes
+from tpvqa.told import ToldModel, first_fault
 
 Goal = Annotated[float, Field(ge=0, le=1)]
 _PLACES = 12
@@ -41,7 +42,7 @@ def _exact(risk: float) -> Fraction:
     return Fraction(repr(risk))
 
 
-class _Model(BaseModel):
+class _Model(ToldModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
@@ -122,7 +123,7 @@ class RiskCalibration(_Model):
         except PlacedError as error:
             raise CalibrationError(f"{error}. {remedy}") from error
         except ValidationError as error:
-            first = error.errors()[0]
+            first = first_fault(error)
             place = ".".join(map(str, first["loc"])) or "file"
             raise CalibrationError(
                 f"{path}: it is no risk calibration, or a damaged one ({place}: {first['msg']}). "

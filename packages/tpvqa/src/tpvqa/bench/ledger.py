@@ -16,6 +16,7 @@ from tpvqa.bench.published import differences, read_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError, WriteError
 from tpvqa.files import open_plain, write_all, write_whole
+from tpvqa.told import first_fault
 
 ROWS = "episodes.jsonl"
 SETTINGS = "bench.json"
@@ -82,7 +83,7 @@ class Ledger:
             except ValidationError as error:
                 raise BenchError(
                     f"{self.folder / ROWS}:{number}: not a row of this version "
-                    f"({error.errors()[0]['msg']}). Remove the folder, or name another"
+                    f"({first_fault(error)['msg']}). Remove the folder, or name another"
                 ) from None
 
     def missing(self, cell: Cell, episodes: int) -> list[int]:

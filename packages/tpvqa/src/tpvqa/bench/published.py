@@ -15,6 +15,7 @@ from pydantic import ValidationError
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError, MissingExtraError
 from tpvqa.files import write_whole
+from tpvqa.told import first_fault
 
 LEFT_OUT = ("seconds", "answers", "decisions")
 """Fields that are not kept."""
@@ -101,7 +102,7 @@ def read_published(path: Path, settings: Mapping[str, Any]) -> Iterator[EpisodeR
                 yield from map(EpisodeRow.model_validate, batch.to_pylist())
         except ValidationError as error:
             raise BenchError(
-                f"{file}: not rows of this version ({error.errors()[0]['msg']})"
+                f"{file}: not rows of this version ({first_fault(error)['msg']})"
             ) from None
 
 

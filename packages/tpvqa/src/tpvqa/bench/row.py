@@ -1,12 +1,13 @@
 """What is kept of an episode: one line of a file, and later one row of a table."""
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict, Field
 
 from tpvqa.bench.cell import Cell
 from tpvqa.events.events import BELIEVED
+from tpvqa.told import ToldModel
 
 
-class EpisodeRow(BaseModel):
+class EpisodeRow(ToldModel):
     """One episode in figures.
 
     Attributes:
@@ -66,8 +67,8 @@ class EpisodeRow(BaseModel):
     prompt_tokens: int | None = None
     completion_tokens: int | None = None
     error: str = ""
-    answers: dict[str, int] = {}
-    decisions: dict[str, int] = {}
+    answers: dict[str, int] = Field(default_factory=dict)
+    decisions: dict[str, int] = Field(default_factory=dict)
 
     @property
     def cell(self) -> Cell:

@@ -3,6 +3,7 @@ can guess."""
 
 import json
 import secrets
+import sys
 from functools import cached_property
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 HERE = "127.0.0.1"
 _LONGEST = 1_000
 """Bytes of a request's body."""
+_MOST_DIGITS = 9
+"""Python turns no more than some thousand into a number, and refuses with an error of its own."""
 _HEADERS = {
     "Cache-Control": "no-store",
     "Referrer-Policy": "no-referrer",
@@ -149,6 +152,11 @@ class _Server(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = True
 
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """A browser that goes away in the middle is not worth a line."""
+        if not isinstance(sys.exception(), OSError):
+            super().handle_error(request, client_address)
+
 
 class _Handler(BaseHTTPRequestHandler):
     server: _Server
@@ -166,7 +174,7 @@ class _Handler(BaseHTTPRequestHandler):
         elif what is not None and what.startswith("picture/"):
             number = what.removeprefix("picture/").partition("?")[0]
             try:
-                data = page.picture(int(number) if number.isdecimal() else -1)
+                data = page.picture(-1 if (found := _number(number)) is None else found)
                 self._send(data, picture_type(data))
             except PictureError as error:
                 self._refuse(HTTPStatus.NOT_FOUND, str(error))
@@ -178,11 +186,11 @@ class _Handler(BaseHTTPRequestHandler):
         if self._what() != "key":
             self._refuse(HTTPStatus.NOT_FOUND, "nothing is here")
             return
-        length = self.headers.get("Content-Length", "")
-        if not length.isdecimal() or int(length) > _LONGEST:
+        length = _number(self.headers.get("Content-Length", ""))
+        if length is None or length > _LONGEST:
             self._refuse(HTTPStatus.BAD_REQUEST, "what is said is too long")
             return
-        key = self.rfile.read(int(length)).decode(errors="replace")
+        key = self.rfile.read(length).decode(errors="replace")
         going = page.press(key)
         self._send_state(ended=not going)
         if not going:
@@ -217,3 +225,8 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, *_: object) -> None:
         """Requests are not worth a line."""
+
+
+def _number(digits: str) -> int | None:
+    """A number of few digits; None where it is none."""
+    return int(digits) if len(digits) <= _MOST_DIGITS and digits.isdecimal() else None

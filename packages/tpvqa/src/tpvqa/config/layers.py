@@ -12,6 +12,7 @@ from pydantic.fields import FieldInfo
 from tpvqa.config.model import TrialConfig
 from tpvqa.errors import ConfigError, cut
 from tpvqa.files import resolved
+from tpvqa.told import first_fault
 from tpvqa.yaml_places import Place, read_yaml
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ def combined(layers: Sequence[Layer]) -> TrialConfig:
     try:
         return TrialConfig.model_validate(nested)
     except ValidationError as error:
-        first_error = error.errors()[0]
+        first_error = first_fault(error)
         key = tuple(str(part) for part in first_error["loc"][:2])
         place = next((o for n in (2, 1) if (o := origin(key[:n], layers)) != DEFAULT), DEFAULT)
         if place == DEFAULT:  # two settings that do not go together
@@ -159,6 +160,8 @@ _KINDS = {
 def _what_is_wrong(error: "ErrorDetails") -> str:
     """What pydantic says of a value, in our words."""
     kind, told = error["type"], error.get("ctx", {})
+    if "input" not in error:  # one of very many
+        return f"does not fit: {error['msg']}"
     if kind == "value_error":
         return f"does not fit: {told['error']}"
     if kind in _BOUNDS:

@@ -3,10 +3,11 @@
 import re
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from tpvqa.addresses import checked_address
 from tpvqa.errors import shown
+from tpvqa.told import ToldModel
 
 DEVICE = re.compile(r"auto|cpu|mps|cuda(:[0-9]{1,2})?")
 """What a device is called."""
@@ -53,7 +54,7 @@ def _quality(value: str | None) -> str | None:
     raise ValueError(f"write a quality of JPEG from 1 to 100, or png, not {shown(value)}")
 
 
-class Part(BaseModel):
+class Part(ToldModel):
     """Some settings that belong together."""
 
     model_config = ConfigDict(

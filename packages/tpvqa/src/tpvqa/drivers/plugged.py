@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from tpvqa.errors import EpisodeError, PluginError, TpvqaError
 from tpvqa.pddl import State, Task
 from tpvqa.planning import Planner, PlanningResult
+from tpvqa.told import first_fault
 from tpvqa.vlm.capabilities import kind_of
 from tpvqa.worlds import Restorable, World
 
@@ -104,7 +105,7 @@ def put_back(part: Restorable, name: str, snapshot: Mapping[str, Any]) -> None:
 def malformed(part: object, method: str, error: Exception) -> PluginError:
     """What a method returned has the right type, but its insides are not what they must be."""
     if isinstance(error, ValidationError):
-        first = error.errors()[0]
+        first = first_fault(error)
         said = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"
     else:
         said = f"{type(error).__name__}: {error}"

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tpvqa.episodes.log import LOG, LogReader, episode_folder
-from tpvqa.episodes.strict_json import LONGEST
 from tpvqa.errors import EpisodeError
 from tpvqa.events import Ended, Event
 from tpvqa.files import opened_plain
+from tpvqa.told.strict_json import LONGEST
 
 POLL = 0.1
 """Seconds between two looks at the file."""

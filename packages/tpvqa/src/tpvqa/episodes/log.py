@@ -10,11 +10,12 @@ from pydantic import ValidationError
 
 from tpvqa import __version__
 from tpvqa.episodes.shape import LogShape
-from tpvqa.episodes.strict_json import LONGEST, check_json
 from tpvqa.errors import EpisodeError
 from tpvqa.events import EVENT, Event
 from tpvqa.events.events import SCHEMA
 from tpvqa.files import opened_plain
+from tpvqa.told import check_json, first_fault
+from tpvqa.told.strict_json import LONGEST
 
 LOG = "episode.jsonl"
 LARGEST = 2**28
@@ -45,7 +46,7 @@ class LogReader:
         except ValidationError as error:
             if self._number == 1:
                 _check_schema(self._path, line)
-            problem = error.errors(include_input=False, include_url=False)[0]
+            problem = first_fault(error)
             where = ".".join(map(str, problem["loc"]))[:200]
             raise EpisodeError(
                 f"{place}: not an event of this version ({where}: {problem['msg'][:300]})"

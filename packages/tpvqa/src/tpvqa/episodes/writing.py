@@ -12,7 +12,6 @@ from pydantic_core import PydanticSerializationError
 
 from tpvqa.episodes.log import LOG, events_in, whole_lines
 from tpvqa.episodes.shape import FRAMES, is_frame
-from tpvqa.episodes.strict_json import LONGEST
 from tpvqa.errors import EpisodeError, PluginError, WriteError
 from tpvqa.events import EVENT, Ended, Event
 from tpvqa.events.events import CAN_BE_GONE_ON_WITH
@@ -20,6 +19,7 @@ from tpvqa.events.records import depth_file
 from tpvqa.files import open_plain, write_all, write_whole_at
 from tpvqa.observation import Frame
 from tpvqa.pictures import MOST_BYTES
+from tpvqa.told.strict_json import LONGEST
 
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 _TORN = b'{"number":0,'

@@ -1,9 +1,11 @@
 """What asking a server took, as the log has it."""
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
+
+from tpvqa.told import ToldModel
 
 
-class Record(BaseModel):
+class Record(ToldModel):
     """A part of an event: strict, and never changed."""
 
     model_config = ConfigDict(

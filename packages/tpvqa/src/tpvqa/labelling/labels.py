@@ -8,20 +8,20 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field, ValidationError
 
 from tpvqa.episodes.log import whole_lines
-from tpvqa.episodes.strict_json import check_json
 from tpvqa.errors import CalibrationError, WriteError
 from tpvqa.files import open_plain, opened_plain, write_all
 from tpvqa.labelling.recorded import Asking, RecordedEpisode
+from tpvqa.told import ToldModel, check_json, first_fault
 
 LABELS = "labels.jsonl"
 SCHEMA: Literal[1] = 1
 Said = Literal["yes", "no", "cannot see"]
 
 
-class Label(BaseModel):
+class Label(ToldModel):
     """One line of the file: what a person says is the right answer.
 
     Attributes:
@@ -78,7 +78,7 @@ def _label(path: Path, number: int, line: bytes) -> Label:
         check_json(line)
         return Label.model_validate_json(line, strict=True)
     except ValidationError as error:
-        first = error.errors(include_input=False, include_url=False)[0]
+        first = first_fault(error)
         where = ".".join(map(str, first["loc"]))[:200]
         said = f"{where}: {first['msg'][:300]}"
     except ValueError as error:

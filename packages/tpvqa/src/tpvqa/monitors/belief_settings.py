@@ -12,6 +12,7 @@ from tpvqa.belief.other_words import OtherWords
 from tpvqa.belief.own_words import SkillWorth
 from tpvqa.errors import PluginError, suggestion
 from tpvqa.monitors.stated_risk import risk_from
+from tpvqa.told import first_fault
 
 _RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate")
 _REPORTS = ("notices", "false_alarms")
@@ -81,7 +82,7 @@ class BeliefSettings:
             reports = {key: float(given.pop(key)) for key in _REPORTS if key in given}
             costs = Costs.model_validate(given)
         except ValidationError as error:
-            first = error.errors()[0]
+            first = first_fault(error)
             where = ".".join(map(str, first["loc"]))
             known = (*Costs.model_fields, *_RATES, *_REPORTS, "without", "risk", "words")
             what = (

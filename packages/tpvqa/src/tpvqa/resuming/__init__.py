@@ -21,6 +21,7 @@ from tpvqa.events import Ended, Started
 from tpvqa.pddl import Task, task_from_text
 from tpvqa.questions import QuestionBook
 from tpvqa.resuming.naming import NOTHING, config_of
+from tpvqa.told import first_fault
 from tpvqa.vlm import VLM
 from tpvqa.worlds.world_file import load_world_file
 
@@ -157,7 +158,7 @@ def _read(kind: type[M], values: dict[str, Any] | None, place: str) -> M | None:
     try:
         return None if values is None else kind.model_validate(values)
     except ValidationError as error:
-        first = error.errors(include_input=False, include_url=False)[0]
+        first = first_fault(error)
         where = ".".join(map(str, first["loc"]))
         raise EpisodeError(
             f"{place}: the log's {kind.__name__.lower()} is damaged ({where}: {first['msg']}). "

@@ -112,6 +112,11 @@ class Endpoint:
 
     async def _complete(self, request: Request) -> Response:
         self._door.check(request.headers)
+        try:
+            self._door.check_kind(request.headers)
+        except Refusal:
+            await self._let_pass(request)
+            raise
         declared = _length(request)
         if declared is not None and declared > self._limits.body:
             await self._let_pass(request)

@@ -64,7 +64,9 @@ class Door:
     """Lets requests in, or refuses them.
 
     Without a token the server is on loopback. A page in the browser of somebody on this machine
-    reaches it there, too, under a name of its own; so it has to be called by a name of loopback.
+    reaches it there, too. Under a name of its own it does not, as the server has to be called by a
+    name of loopback; and where it calls the server by that, the browser says whose page it is, or
+    asks beforehand whether it may send JSON.
 
     Args:
         token: What has to be given; None for nothing.
@@ -96,15 +98,45 @@ class Door:
         """See whether the server is called by a name that is its own, where that can be told.
 
         Raises:
-            Refusal: It is not.
+            Refusal: It is not, or a page of another site calls it.
         """
-        try:
-            host = urlsplit(f"//{headers.get('host', '')}").hostname or ""
-        except ValueError:
-            host = ""
-        if self._token is None and not is_loopback(host):
+        if self._token is not None:
+            return
+        if not is_loopback(_host(f"//{headers.get('host', '')}")):
             raise Refusal(
                 403,
                 "This server listens on this machine alone; call it 127.0.0.1 or localhost.",
                 code="foreign_host",
             )
+        origin = headers.get("origin")
+        foreign = origin is not None and not is_loopback(_host(origin))
+        if foreign or headers.get("sec-fetch-site") == "cross-site":
+            raise Refusal(
+                403,
+                "This server answers no web page of another site. Give it a token (--token-file) "
+                "and the page the same, or ask it from a program.",
+                code="foreign_origin",
+            )
+
+    def check_kind(self, headers: Mapping[str, str]) -> None:
+        """See whether a body is said to be JSON: a page may send anything else without asking.
+
+        Raises:
+            Refusal: It is not.
+        """
+        kind = headers.get("content-type", "").partition(";")[0].strip().lower()
+        if self._token is None and kind != "application/json":
+            raise Refusal(
+                415,
+                "The body has to be JSON and to be sent as such, with the header "
+                "Content-Type: application/json.",
+                code="unsupported_media_type",
+            )
+
+
+def _host(address: str) -> str:
+    """The host of an address; empty where it has none."""
+    try:
+        return urlsplit(address).hostname or ""
+    except ValueError:
+        return ""

@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from random import Random
 from typing import Any, Literal
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from tpvqa.serving.asked import question_in, says_more
 from tpvqa.serving.refusal import Refusal
 from tpvqa.serving.spoken import Spoken, certain
+from tpvqa.told import ToldModel, first_fault
 from tpvqa.vlm.answer import Reply
 
 MOST_QUESTIONS = 64
@@ -24,20 +25,20 @@ MOST_QUESTIONS = 64
 _NEEDED = frozenset({Reply.YES.value, Reply.NO.value, Reply.UNKNOWN.value})
 
 
-class _Word(BaseModel):
+class _Word(ToldModel):
     enum: list[str]
 
 
-class _Object(BaseModel):
+class _Object(ToldModel):
     type: Literal["object"]
     properties: dict[str, _Word] = Field(min_length=1, max_length=MOST_QUESTIONS)
 
 
-class _Named(BaseModel):
+class _Named(ToldModel):
     schema_: _Object = Field(alias="schema")
 
 
-class ResponseFormat(BaseModel):
+class ResponseFormat(ToldModel):
     """`response_format` of a request, as far as it is read."""
 
     type: str
@@ -61,7 +62,7 @@ def form_of(wanted: ResponseFormat | None) -> Form | None:
     try:
         schema = _Named.model_validate(wanted.json_schema).schema_
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False)[0]
+        first = first_fault(error)
         place = ".".join(("json_schema", *map(str, first["loc"])))
         raise _refused(
             f"has to be the schema of an object whose properties each have an enum ({place}: "

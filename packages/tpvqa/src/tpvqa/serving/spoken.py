@@ -15,6 +15,8 @@ from tpvqa.vlm.answer import Answer, Reply
 YES, NO = Reply.YES.value, Reply.NO.value
 _LEAST = -9999.0
 """What stands for the logarithm of nothing, for which JSON has no number; OpenAI has the same."""
+_COLDEST = 1e-6
+"""A temperature below it is 0: whatever is less sure than the surest word never comes."""
 _MOST_LEFT = 0.49
 """Of the probability, for neither yes nor no where the answer is one of them."""
 
@@ -35,7 +37,7 @@ class Spoken:
 
     def sampled(self, temperature: float, random: Random) -> str:
         """One word drawn at a temperature; what is surest at 0."""
-        if not temperature or self.odds is None:
+        if temperature < _COLDEST or self.odds is None:
             return self.word
         words = [word for word, p in self.odds.items() if p > 0]
         logarithms = [math.log(self.odds[word]) / temperature for word in words]

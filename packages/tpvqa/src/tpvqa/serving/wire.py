@@ -8,47 +8,52 @@ from dataclasses import dataclass
 from random import Random
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, TypeAdapter, ValidationError
+from pydantic import Field, ValidationError
 
 from tpvqa.serving.refusal import Refusal
 from tpvqa.serving.several import Form, ResponseFormat, SpokenTogether, form_of
 from tpvqa.serving.spoken import NO, YES, Spoken
+from tpvqa.told import ToldModel, first_fault
 
 MOST_CHOICES = 16
+_MOST_MESSAGES = 1000
+_MOST_PARTS = 1000
 
 
-class _ImageURL(BaseModel):
+class _ImageURL(ToldModel):
     url: str
 
 
-class _ImagePart(BaseModel):
+class _ImagePart(ToldModel):
     type: Literal["image_url"]
     image_url: _ImageURL
 
 
-class _TextPart(BaseModel):
+class _TextPart(ToldModel):
     type: Literal["text"]
     text: str
 
 
-_Part = Annotated[_ImagePart | _TextPart, Field(discriminator="type")]
-_Content = TypeAdapter[list[_ImagePart | _TextPart]](list[_Part])
+class _Content(ToldModel):
+    content: list[Annotated[_ImagePart | _TextPart, Field(discriminator="type")]] = Field(
+        max_length=_MOST_PARTS
+    )
 
 
-class _Message(BaseModel):
+class _Message(ToldModel):
     role: str
     content: Any = None
 
 
-class _StreamOptions(BaseModel):
+class _StreamOptions(ToldModel):
     include_usage: bool | None = None
 
 
-class _Request(BaseModel):
+class _Request(ToldModel):
     """What of a request is read; what else a client says is let pass."""
 
     model: str
-    messages: list[_Message] = Field(min_length=1)
+    messages: list[_Message] = Field(min_length=1, max_length=_MOST_MESSAGES)
     logprobs: bool | None = None
     top_logprobs: int | None = Field(None, ge=0, le=20)
     max_tokens: int | None = Field(None, ge=1)
@@ -113,9 +118,9 @@ def read_request(body: bytes) -> Asking:
         texts, urls = [last.content], []
     else:
         try:
-            parts = _Content.validate_python(last.content)
+            parts = _Content(content=last.content).content
         except ValidationError as error:
-            raise _refusal(error, f"{place}.content") from None
+            raise _refusal(error, place) from None
         texts = [part.text for part in parts if isinstance(part, _TextPart)]
         urls = [part.image_url.url for part in parts if isinstance(part, _ImagePart)]
     options = request.stream_options
@@ -134,7 +139,7 @@ def read_request(body: bytes) -> Asking:
 
 
 def _refusal(error: ValidationError, place: str) -> Refusal:
-    first = error.errors(include_url=False, include_input=False)[0]
+    first = first_fault(error)
     param = ".".join(part for part in (place, *map(str, first["loc"])) if part)
     message = re.sub(r"\s+", " ", first["msg"])
     if not param:

@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from tpvqa.observation import Frame
+from tpvqa.told import ToldModel, check_names
 from tpvqa.vlm.answer import Reply
 from tpvqa.vlm.prompt import Prompt
 from tpvqa.vlm.reading import Reading
@@ -80,7 +81,7 @@ class Dialect:
             return replace(self, several=False)
         if self.logprobs and re.search(r"log_?prob", complaint):
             at_most = re.search(
-                r"(?:<=|at most|more than|maximum[^\d]*|equal to)\s*(\d+)", complaint
+                r"(?:(?:<=|at most|more than|equal to)\s*|maximum\D*+)(\d+)", complaint
             )
             fewer = int(at_most[1]) if at_most else 0
             return replace(self, logprobs=fewer if 0 < fewer < self.logprobs else 0)
@@ -163,7 +164,7 @@ def data_url(frame: Frame) -> str:
     return f"data:{frame.media_type};base64,{base64.b64encode(frame.data).decode('ascii')}"
 
 
-class _Alternative(BaseModel):
+class _Alternative(ToldModel):
     token: str
     logprob: float
 
@@ -172,25 +173,25 @@ class _Token(_Alternative):
     top_logprobs: list[_Alternative] | None = None
 
 
-class _Logprobs(BaseModel):
+class _Logprobs(ToldModel):
     content: list[_Token] | None = None
 
 
-class _Message(BaseModel):
+class _Message(ToldModel):
     role: str | None = None
     content: str | None = None
     refusal: str | None = None
     tool_calls: Any = None
 
 
-class Choice(BaseModel):
+class Choice(ToldModel):
     message: _Message
     finish_reason: str | None = None
     # Its shape is checked apart: broken probabilities must not cost a clear word.
     logprobs: Any = None
 
 
-class _Completion(BaseModel):
+class _Completion(ToldModel):
     choices: list[Choice] = Field(min_length=1)
     error: Any = None
 
@@ -212,17 +213,21 @@ def read_completion(body: str | bytes, question: str | None = None) -> Reading:
     return readings[0]
 
 
-def read_choices(body: str | bytes, question: str | None = None) -> list[Reading]:
-    """Read each choice of a reply by itself, as `read_completion` does; one at least."""
-    choices = choices_of(body)
-    if isinstance(choices, Reading):
-        return [choices]
-    return [_read_choice(choice, question) for choice in choices]
+def read_choices(
+    body: str | bytes, question: str | None = None, choices: int = _MOST_CHOICES
+) -> list[Reading]:
+    """Read each choice of a reply by itself, as `read_completion` does, up to so many; one at
+    least."""
+    found = choices_of(body)
+    if isinstance(found, Reading):
+        return [found]
+    return [_read_choice(choice, question) for choice in found[:choices]]
 
 
 def choices_of(body: str | bytes) -> list[Choice] | Reading:
     """The choices of a reply, or why there are none."""
     try:
+        check_names(body)  # of two contents one would count, and nobody knows which is meant
         completion = _Completion.model_validate_json(body)
     except (ValidationError, ValueError, RecursionError):
         shown = body if isinstance(body, str) else body.decode("utf-8", "replace")

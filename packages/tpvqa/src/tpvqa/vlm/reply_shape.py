@@ -3,10 +3,10 @@
 A model is asked for one word. What it says counts only in one of two shapes; all else is *unknown*,
 as a wrong yes or no does more harm than an abstention.
 
-First the wrapping is taken off, however deep: white space, quotes, Markdown emphasis and code
-fences around the whole; reasoning before the answer (`<think>…</think>`); `<answer>…</answer>`; a
-label ("Answer:", "The final answer is"); the JSON object `{"answer": "yes"}` with that field alone.
-What is left must be
+First its wrapping is taken off, a dozen layers at most: white space, quotes, Markdown emphasis and
+code fences around the whole; reasoning before the answer (`<think>…</think>`);
+`<answer>…</answer>`; a label ("Answer:", "The final answer is"); the JSON object
+`{"answer": "yes"}` with that field alone. What is left must have 2,000 characters at most and be
 
 1. **the word alone**, yes or no, with at most one full stop or exclamation mark after it; or
 2. **the word, a separator** (one of `, . ; : ! –` or a new line) **and one or two clauses, each of
@@ -23,6 +23,9 @@ What is left must be
 So whatever else is said takes the reply out of both shapes: doubt, percentages, a person ("I"), a
 contradiction, an excuse, another language, a word that only begins with yes or no. There is no list
 of phrases to be kept. Words are English, in ASCII letters.
+
+Whoever asks waits while a reply is read, and a reply may be made to be read slowly: every pattern
+here takes time in proportion to the text.
 """
 
 import itertools
@@ -35,7 +38,7 @@ _THOUGHTS = r"<(think|thinking|reasoning)>"
 _WRAPPINGS = tuple(
     re.compile(pattern, re.DOTALL | re.IGNORECASE | re.ASCII)
     for pattern in (
-        r"```(?:json|text)?[ \t]*\n?(?P<inside>[^`]*)```",
+        r"```(?:json|text)?[ \t]*+\n?(?P<inside>[^`]*)```",
         r"`(?P<inside>[^`]*)`",
         r"<answer>(?P<inside>[^<>]*)</answer>",
         r'\{\s*"answer"\s*:\s*"(?P<inside>[^"\\{}]*)"\s*\}',
@@ -61,9 +64,12 @@ _MORE = re.compile(
     r"(yes|no)(?:\s*[,.;:!]\s+|\s+[-–—]+\s+|\s*—\s*|\s*\n\s*)(\S.*)",
     re.IGNORECASE | re.ASCII | re.DOTALL,
 )
-_CLAUSE_ENDS = re.compile(r"\s*(?:[.!;]\s+|\n+\s*)")
+_CLAUSE_ENDS = re.compile(r"[.!;]\s+|\n\s*")
 _CLAUSE = re.compile(r"[a-z]+(?:['-][a-z]+)*(?: [a-z]+(?:['-][a-z]+)*)*", re.ASCII)
 _MOST_CLAUSES = 2
+_MOST_WRAPPINGS = 12
+_LONGEST = 2000
+"""Characters of an answer without its wrapping."""
 
 _SLIGHT = frozenset(
     ["the", "a", "an", "it", "its", "is", "are", "there", "they", "does", "do", "has", "have"]
@@ -118,7 +124,7 @@ def read_words(text: str, question: str | None = None, *, cut: bool = False) -> 
             stop: what looks like a "No" may be the beginning of "Not sure".
     """
     said = unwrapped(text)
-    if cut and not said.endswith((".", "!")):
+    if len(said) > _LONGEST or (cut and not said.endswith((".", "!"))):
         return Reply.UNKNOWN
     alone = _ALONE.fullmatch(said)
     if alone and not (alone[3] and alone[4]):
@@ -127,7 +133,8 @@ def read_words(text: str, question: str | None = None, *, cut: bool = False) -> 
     if more is None:
         return Reply.UNKNOWN
     reply = Reply(more[1].lower())
-    clauses = [clause for clause in _CLAUSE_ENDS.split(_without_stop(more[2])) if clause]
+    parts = map(str.strip, _CLAUSE_ENDS.split(_without_stop(more[2])))
+    clauses = [clause for clause in parts if clause]
     if len(clauses) > _MOST_CLAUSES:
         return Reply.UNKNOWN
     same = [_answers(clause, reply is Reply.YES, question) for clause in clauses]
@@ -135,7 +142,7 @@ def read_words(text: str, question: str | None = None, *, cut: bool = False) -> 
 
 
 def unwrapped(text: str) -> str:
-    """A reply without its wrapping."""
+    """A reply without its wrapping; nothing is left of one that is wrapped too deeply."""
     said = _without(_REASONING, text.strip())
     said = _unpacked(said)
     return _unpacked(_without(_LABEL, said))
@@ -143,13 +150,14 @@ def unwrapped(text: str) -> str:
 
 def _unpacked(said: str) -> str:
     """Without what stands around the whole of it."""
-    before = None
-    while said != before:
+    for _ in range(_MOST_WRAPPINGS):
         before = said
         said = _EMPHASIS.sub(r"\2", said.translate(_STRAIGHT))
         for wrapping in _WRAPPINGS:
             said = _without(wrapping, said)
-    return said
+        if said == before:
+            return said
+    return ""
 
 
 def _without(wrapping: re.Pattern[str], said: str) -> str:

@@ -1,7 +1,9 @@
 """Answers to several questions in one reply: each read by itself, from one JSON object."""
 
+import itertools
 import json
 import re
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,19 +21,24 @@ from tpvqa.vlm.reply_shape import unwrapped
 from tpvqa.vlm.yes_no import Token, mass, meaning
 
 
-def read_together(body: str | bytes, count: int) -> list[list[Reading]]:
+def read_together(body: str | bytes, count: int, choices: int = 1) -> list[list[Reading]]:
     """Read the body of a reply to so many questions.
 
     An answer that is missing, doubled, or none of yes, no and unknown is *unknown* by itself; where
     there is no JSON object at all, every answer is.
 
+    Args:
+        body: What the server sent.
+        count: How many questions it was asked.
+        choices: How many replies it was asked for; what it says beyond them is not read.
+
     Returns:
         For each choice the readings, in the order of the questions.
     """
-    choices = choices_of(body)
-    if isinstance(choices, Reading):
-        return [[choices] * count]
-    return [_read(choice, count) for choice in choices]
+    found = choices_of(body)
+    if isinstance(found, Reading):
+        return [[found] * count]
+    return [_read(choice, count) for choice in found[:choices]]
 
 
 def _read(choice: Choice, count: int) -> list[Reading]:
@@ -58,14 +65,13 @@ def _read(choice: Choice, count: int) -> list[Reading]:
     if not isinstance(pairs, tuple):
         return none(f"no JSON object: {said[:200]}")
     times, told = Counter(key for key, _ in pairs), dict(pairs)
-    tokens = tokens_of(choice.logprobs)
+    tokens = _Tokens(tokens_of(choice.logprobs), said)
     return [
-        _one(f"q{at}", times[f"q{at}"], told.get(f"q{at}"), said, tokens)
-        for at in range(1, count + 1)
+        _one(f"q{at}", times[f"q{at}"], told.get(f"q{at}"), tokens) for at in range(1, count + 1)
     ]
 
 
-def _one(key: str, times: int, value: object, said: str, tokens: Sequence[Token]) -> Reading:
+def _one(key: str, times: int, value: object, tokens: "_Tokens") -> Reading:
     if times != 1:
         return Reading(Reply.UNKNOWN, text="answered twice" if times else "not in the reply")
     word = value.strip().lower() if isinstance(value, str) else ""
@@ -73,7 +79,7 @@ def _one(key: str, times: int, value: object, said: str, tokens: Sequence[Token]
         shown = json.dumps(value)[:200] if isinstance(value, str) else "not a text"
         return Reading(Reply.UNKNOWN, text=shown if word == "unknown" else f"no answer: {shown}")
     reading = Reading(Reply(word), text=word)
-    token = _token(key, said, tokens)
+    token = tokens.answering(key)
     if token is None or meaning(token.text) != word:
         return reading
     found = mass(token.alternatives.items())
@@ -83,20 +89,34 @@ def _one(key: str, times: int, value: object, said: str, tokens: Sequence[Token]
     return replace(reading, source="logprobs", p_yes=found.p_yes, leftover=found.leftover)
 
 
-def _token(key: str, said: str, tokens: Sequence[Token]) -> Token | None:
-    """The token that begins a key's answer; None where tokens and text do not fit together."""
-    written = "".join(token.text for token in tokens)
-    # llama.cpp's content leaves out the white space and the code fence around what its tokens say.
-    fence = re.fullmatch(r"\s*```(?:json)?\s*(.*?)\s*```\s*", written, re.DOTALL)
-    if said.strip() not in (written.strip(), fence and fence[1]):
+class _Tokens:
+    """The tokens of a reply.
+
+    Args:
+        tokens: As the server lists them.
+        said: The reply's text. Where tokens and text do not fit together, no token counts.
+    """
+
+    def __init__(self, tokens: Sequence[Token], said: str):
+        written = "".join(token.text for token in tokens)
+        fits = said.strip() in (written.strip(), _unfenced(written))
+        self._tokens = tokens if fits else ()
+        self._written = written if fits else ""
+        self._ends = list(itertools.accumulate(len(token.text) for token in self._tokens))
+
+    def answering(self, key: str) -> Token | None:
+        """The token that begins a key's answer; None where there is no such token."""
+        places = list(re.finditer(rf'"{key}"\s*:\s*"\s*', self._written))
+        at = bisect_right(self._ends, places[0].end()) if len(places) == 1 else len(self._ends)
+        return self._tokens[at] if at < len(self._ends) else None
+
+
+def _unfenced(written: str) -> str | None:
+    """What stands in a code fence; None where there is none.
+
+    llama.cpp's content leaves out the white space and the fence around what its tokens say.
+    """
+    fenced = written.strip()
+    if len(fenced) < 6 or not (fenced.startswith("```") and fenced.endswith("```")):
         return None
-    found = re.findall(rf'"{key}"\s*:\s*"', written)
-    place = re.search(rf'"{key}"\s*:\s*"\s*', written)
-    if place is None or len(found) != 1:
-        return None
-    start = 0
-    for token in tokens:
-        if start <= place.end() < start + len(token.text):
-            return token
-        start += len(token.text)
-    return None
+    return fenced[3:-3].removeprefix("json").strip()

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import Field, ValidationError
 
+from tpvqa.told import ToldModel
 from tpvqa_household.images.sources.picture_file import read_picture
 
 
@@ -20,12 +21,12 @@ class Elsewhere:
     url: str
 
 
-class _Image(BaseModel):
+class _Image(ToldModel):
     b64_json: str | None = None
     url: str | None = None
 
 
-class _Reply(BaseModel):
+class _Reply(ToldModel):
     data: list[_Image] = Field(min_length=1)
 
 

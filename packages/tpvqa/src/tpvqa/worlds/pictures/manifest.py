@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Annotated, Generic, TypeVar
 from typing import Literal as Choice
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, ConfigDict, Field, ValidationError
 
 from tpvqa.errors import PictureError, PictureSetError
 from tpvqa.pddl import Atom, State
 from tpvqa.pictures import read_file
+from tpvqa.told import ToldModel, first_fault
 
 MANIFEST = "manifest.json"
 _LONGEST_NAME = 300
@@ -47,7 +48,7 @@ def _below(file: str) -> str:
 File = Annotated[str, AfterValidator(_below)]
 
 
-class Picture(BaseModel):
+class Picture(ToldModel):
     """One picture and what is true in it.
 
     Attributes:
@@ -95,7 +96,7 @@ class Picture(BaseModel):
 P = TypeVar("P", bound=Picture)
 
 
-class Manifest(BaseModel, Generic[P]):
+class Manifest(ToldModel, Generic[P]):
     """All pictures of a set.
 
     Attributes:
@@ -137,15 +138,11 @@ def read_manifest(folder: Path, kind: type[M], *, missing: str, broken: str) -> 
     try:
         return kind.model_validate_json(text)
     except ValidationError as error:
-        first, count = error.errors()[0], error.error_count()
+        first = first_fault(error)
         if first["loc"] == ("pictures",) and first["type"] == "too_short":
             raise PictureSetError(f"{path}: the set has no pictures. {broken}") from error
         place = ".".join(map(str, first["loc"]))
-        raise PictureSetError(
-            f"{path}: {place or 'the file'}: {first['msg']} "
-            f"({'1 fault' if count == 1 else f'{count} faults'} in all). "
-            f"{broken}"
-        ) from error
+        raise PictureSetError(f"{path}: {place or 'the file'}: {first['msg']}. {broken}") from error
 
 
 def digest(data: bytes) -> str:

@@ -1,4 +1,4 @@
-"""One line of JSON, read without mercy: what another reader could take otherwise is refused."""
+"""JSON, read without mercy: what another reader could take otherwise is refused."""
 
 import json
 import math
@@ -12,10 +12,11 @@ _NUMBER = 400
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) != len(pairs):
-        twice = next(name for at, (name, _) in enumerate(pairs) if name in dict(pairs[:at]))
-        raise ValueError(f"{twice[:40]!r} is given twice")
+    found: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in found:
+            raise ValueError(f"{name[:40]!r} is given twice")
+        found[name] = value
     return found
 
 
@@ -39,6 +40,9 @@ def _never(text: str) -> None:
 _DECODER = json.JSONDecoder(
     object_pairs_hook=_unique, parse_int=_whole, parse_float=_real, parse_constant=_never
 )
+_NAMES = json.JSONDecoder(
+    object_pairs_hook=_unique, parse_int=str, parse_float=str, parse_constant=str
+)
 
 
 def check_json(line: bytes) -> None:
@@ -56,3 +60,14 @@ def check_json(line: bytes) -> None:
         raise ValueError("it is nested too deeply") from None
     except UnicodeDecodeError as error:
         raise ValueError(f"it is not UTF-8 ({error.reason})") from None
+
+
+def check_names(text: str | bytes) -> None:
+    """See that a text is one value of JSON and has no name twice in an object; its numbers may be
+    any.
+
+    Raises:
+        ValueError: It is not; says why.
+        RecursionError: It is nested too deeply.
+    """
+    _NAMES.decode(text if isinstance(text, str) else text.decode("utf-8"))
