@@ -165,7 +165,7 @@ def _tried(events: list[Event]) -> Iterator[tuple[str, str]]:
 
 
 def _believed(monitor: object) -> Iterator[tuple[str, float, float]]:
-    """Of every action how often it was tried and failed, as a belief monitor reckons."""
+    """Of every skill how often it was tried and failed, as a belief monitor reckons."""
     chances = getattr(monitor, "chances", None)
     if chances is None:
         return
@@ -204,20 +204,23 @@ def table(bench: Bench, rows: list[dict[str, Any]]) -> None:
         print(f"{action}: failed {count['failed']} of {count['tried']}", reasons)
     print("as the belief monitor reckons, and in truth in the same trials:")
     reckoned: dict[str, list[float]] = defaultdict(lambda: [0.0, 0.0])
-    same: dict[str, list[int]] = defaultdict(lambda: [0, 0])
     for row in rows:
         if row["monitor"] != "belief":
             continue
-        for action, times, failed in row["believed"]:
-            reckoned[action][0] += times
-            reckoned[action][1] += failed
-        for action, came in row["tried"]:
-            same[action][0] += 1
-            same[action][1] += came != "done"
-    for action in sorted(reckoned):
-        times, failed = reckoned[action]
-        tries, fails = same[action]
-        print(f"| `{action}` | {failed:.1f} of {times:.1f} | {fails} of {tries} |")
+        for skill, times, failed in row["believed"]:
+            reckoned[skill][0] += times
+            reckoned[skill][1] += failed
+    for skill in sorted(reckoned):
+        times, failed = reckoned[skill]
+        # An action without the arguments that its skill does not take: its last ones here.
+        same = [
+            came
+            for row in rows
+            for action, came in row["tried"]
+            if row["monitor"] == "belief" and f"{action[:-1]} ".startswith(f"{skill[:-1]} ")
+        ]
+        fails = sum(came != "done" for came in same)
+        print(f"| `{skill}` | {failed:.1f} of {times:.1f} | {fails} of {len(same)} |")
 
 
 def main(bench: Bench, file: Path, trials: int, taught: Path) -> None:
