@@ -110,8 +110,8 @@ def test_what_cannot_be_written_has_an_exit_code_of_its_own(tpvqa: Run, tmp_path
 
 def test_where_nobody_reads_what_is_printed_it_ends_as_well(tpvqa: Run) -> None:
     """`>&-`: a program that is begun without standard output."""
-    command = f"exec {sys.executable} -m tpvqa plan build_tower >&-"
-    done = subprocess.run(["sh", "-c", command], stderr=subprocess.PIPE)
+    command = ["sh", "-c", 'exec "$0" -m tpvqa plan build_tower >&-', sys.executable]
+    done = subprocess.run(command, stderr=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (0, b"")
 
 
