@@ -58,7 +58,8 @@ def test_what_fails_has_a_common_cause(kitchen: Task) -> None:
 
 
 def test_tries_in_vain_are_those_of_what_may_be_dead(kitchen: Task) -> None:
-    """With whatever, as long as none has worked; else with what it fails at alone."""
+    """With whatever, as long as none has worked; else with the hand, or the thing, with which none
+    has."""
     chances, apple, knife = Chances(), grasp(kitchen), grasp(kitchen, "knife", "left", "counter")
     for action in (apple, apple, knife):
         chances.learn(FAILED, action)
@@ -66,7 +67,15 @@ def test_tries_in_vain_are_those_of_what_may_be_dead(kitchen: Task) -> None:
     chances.learn(WORKED, knife)
     assert chances.skill(apple).vain == 2.0
     assert chances.skill(knife).vain == 1.0
-    assert chances.skill(grasp(kitchen, "apple", "right", "floor")).vain == 0.0
+    assert chances.skill(grasp(kitchen, "apple", "right", "floor")).vain == 2.0
+    assert chances.skill(grasp(kitchen, "plate", "right", "floor")).vain == 0.0
+    for action in (apple, grasp(kitchen, "plate", "left", "counter")):
+        chances = Chances()
+        chances.learn(WORKED, grasp(kitchen, "knife", "right", "counter"))
+        for _ in range(3):
+            chances.learn(FAILED, action)
+            chances.learn(FAILED, grasp(kitchen, "knife", "left", "counter"))
+        assert chances.skill(action).vain == 6.0  # the left hand
 
 
 def test_actions_that_differ_in_what_the_skill_does_not_take_are_one_skill() -> None:

@@ -8,6 +8,7 @@ try adds a likelihood over rates, not a count.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from math import inf
 from operator import is_not
 
 import numpy as np
@@ -56,8 +57,8 @@ class SkillState:
         shown: Probability that every try fails, by its own tries: what those with other objects
             came to makes it suspected, and no more.
         at_worst: The probability of `dead` if its latest tries in a row have all failed.
-        vain: Tries of the skill that are thought to have failed: whatever with, or with these
-            objects alone, where it has worked with others.
+        vain: Tries in vain that may have the same cause: with just these objects, or of the skill
+            or with one of them as far as none has worked.
     """
 
     failure: float
@@ -280,8 +281,11 @@ class _Shared:
         self._own, self._prior = own, _prior(mean, strength)
         self._causes = _causes(own, self._prior) if own else {}
         self._strength, self._times = strength, sum(tried.times for tried in own.values())
-        self._works = any(each.works for each in own.values())
-        self._vain = sum(each.failed for each in own.values())
+        self._vain: dict[Cause, float] = {}
+        for action, tried in own.items():
+            for cause in _covering(action):
+                vain = -inf if tried.works else tried.failed
+                self._vain[cause] = self._vain.get(cause, 0.0) + vain
         told = [tried.likelihood[:-1] for tried in own.values()]
         before, after = [self._prior], [np.ones_like(self._prior)]
         for each, last in zip(told, reversed(told), strict=True):
@@ -311,9 +315,9 @@ class _Shared:
             likelihood = own[action].likelihood
             works = (1 - SUSPECT) * float(self._prior @ likelihood[:-1])
             shown = SUSPECT * likelihood[-1] / (SUSPECT * likelihood[-1] + works)
-        failed, vain = dead + (1 - dead) * failure, self._vain
-        if self._works:
-            vain = own[action].failed if action in own else 0.0
+        tried = own[action].failed if action in own else 0.0
+        vain = max(tried, *(self._vain.get(cause, 0.0) for cause in _covering(action)))
+        failed = dead + (1 - dead) * failure
         return SkillState(failed, dead, tries, min(dead, shown), dead, vain)
 
 
