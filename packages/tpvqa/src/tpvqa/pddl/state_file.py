@@ -101,14 +101,16 @@ def _json_atoms(text: str, path: Path) -> list[tuple[int | None, str]]:
     if not isinstance(entries, list):
         raise PDDLError('expected a JSON list of atoms, such as ["(on plate table)"]', file=path)
     atoms: list[tuple[int | None, str]] = []
-    at, row = 0, 1
+    at, row = 0, 1  # where the last entry stands; -1 once one was written otherwise
     for nth, entry in enumerate(entries, start=1):
         line = None
         if isinstance(entry, list) and entry and all(isinstance(word, str) for word in entry):
             entry = Atom(entry[0], tuple(entry[1:])).pddl()
-        elif isinstance(entry, str) and (found := text.find(json.dumps(entry), at)) >= 0:
-            row += text.count("\n", at, found)
-            at, line = found, row
+        elif isinstance(entry, str) and at >= 0:
+            found = text.find(json.dumps(entry), at)
+            if found >= 0:
+                line = row = row + text.count("\n", at, found)
+            at = found
         if not isinstance(entry, str):
             raise PDDLError(
                 f"entry {nth} of the list is no atom: {shown(json.dumps(entry))}; expected "

@@ -41,17 +41,17 @@ def check_costs(task: Any, functions: Collection[str]) -> None:
         called = action.cost.expression if action.cost else None
         if not isinstance(called, pddl.PrimitiveNumericExpression):
             continue
+        why = ""
         if called.symbol == "total-cost":
-            raise ReadingError(
-                f"the cost of the action {shown(action.name)} is the total cost itself; expected a "
-                "number or another function",
-                "domain",
-                line_of(called.symbol) or line_of(action.name),
+            why = "the total cost itself; expected a number or another function"
+        elif called.symbol not in functions:
+            why = (
+                f"{shown(called.symbol)}, which is no whole number and no function that "
+                "(:functions …) declares"
             )
-        if called.symbol not in functions:
+        if why:
             raise ReadingError(
-                f"the cost of the action {shown(action.name)} is {shown(called.symbol)}, which is "
-                "no whole number and no function that (:functions …) declares",
+                f"the cost of the action {shown(action.name)} is {why}",
                 "domain",
                 line_of(called.symbol) or line_of(action.name),
             )

@@ -111,7 +111,7 @@ def stats(path: Path) -> Stats:
     """
     file = AnswerFile(path, writing=False)
     try:
-        file.models()  # with their parameters, which are read again below
+        file.models()  # which sees to their parameters: whoever shows them reads them again
         with file.reading() as connection:
             told = Stats(
                 file=str(path),
@@ -160,7 +160,6 @@ def exported(path: Path) -> Iterator[dict[str, Any]]:
         CacheError: The file cannot be read.
     """
     file = AnswerFile(path, writing=False)
-    file.models()
     told = (
         "SELECT m.spec, m.parameters, hex(a.picture), q.text, q.way, q.subject, hex(a.trial), "
         "a.draw, a.reply, a.p_yes, a.p_cannot_see, a.leftover, a.source, a.text, a.seconds, a.at "
@@ -168,6 +167,7 @@ def exported(path: Path) -> Iterator[dict[str, Any]]:
         "ORDER BY a.id"
     )
     try:
+        file.models()
         with file.reading() as connection:
             for row in connection.execute(told):
                 entry = dict(zip(COLUMNS, row, strict=True))
