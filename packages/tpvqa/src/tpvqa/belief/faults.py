@@ -6,7 +6,7 @@ from functools import partial
 from hashlib import blake2b
 from itertools import groupby
 from operator import itemgetter
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from tpvqa.belief.memory import Past, Undoing, memory_of
 from tpvqa.belief.packed import Bytes, Packed, held
 from tpvqa.belief.rebinding import Rebinding
 from tpvqa.pddl import Action, Atom, State, Task
+
+Found = TypeVar("Found")
 
 
 class Showing(Protocol):
@@ -102,27 +104,14 @@ class Outcomes:
         return self.model.undone(self.intended)
 
 
-class Truth(dict[int, bool]):
-    """In which joint states any of some facts holds, by number; worked out as they are met."""
+class _Met(dict[int, Found]):
+    """Something about joint states, by number; worked out as they are met."""
 
-    def __init__(self, atoms: Iterable[Atom], joint_states: Sequence[JointState]):
-        super().__init__()
-        self._atoms, self._joint_states = frozenset(atoms), joint_states
-
-    def __missing__(self, number: int) -> bool:
-        holds = not self._atoms.isdisjoint(self._joint_states[number].state)
-        self[number] = holds
-        return holds
-
-
-class _OutcomesOf(dict[int, Outcomes]):
-    """What one action can lead to, by number; worked out as they are met."""
-
-    def __init__(self, work_out: Callable[[int], Outcomes]):
+    def __init__(self, work_out: Callable[[int], Found]):
         super().__init__()
         self._work_out = work_out
 
-    def __missing__(self, number: int) -> Outcomes:
+    def __missing__(self, number: int) -> Found:
         found = self[number] = self._work_out(number)
         return found
 
@@ -176,7 +165,7 @@ class FaultModel:
         self.facts = 0
         self._numbers: dict[JointState, int] = {}
         self._outcomes: dict[Action, Mapping[int, Outcomes]] = {}
-        self._truths: dict[tuple[Atom, ...], Truth] = {}
+        self._truths: dict[tuple[Atom, ...], Mapping[int, bool]] = {}
         self._bound: dict[tuple[Action, State], Action] = {}
         self._undone: dict[int, tuple[tuple[float, int], ...]] = {}
 
@@ -261,18 +250,25 @@ class FaultModel:
         """Whether the goal holds in a joint state."""
         if self._goal is None:
             return self.task.goal_holds(self.state(number))
-        (needed, barred), holding = self._goal, self.holding(number)
+        return self.goal_within(self.holding(number))
+
+    def goal_within(self, holding: int) -> bool:
+        """Whether the goal holds where some facts do, as bits; it is a conjunction of such."""
+        assert self._goal is not None
+        needed, barred = self._goal
         return not (needed & ~holding or barred & holding)
 
     def first(self, number: int) -> int:
         """The first joint state that was met in which the same facts hold."""
         return self._firsts[self._kinds[number]]
 
-    def truth(self, atoms: tuple[Atom, ...]) -> Truth:
+    def truth(self, atoms: tuple[Atom, ...]) -> Mapping[int, bool]:
         """In which joint states any of some facts holds, by number."""
         found = self._truths.get(atoms)
         if found is None:
-            found = self._truths[atoms] = Truth(atoms, self.joint_states)
+            any_of = frozenset(atoms)
+            found = _Met(lambda number: not any_of.isdisjoint(self.state(number)))
+            self._truths[atoms] = found
         return found
 
     def truths(self, facts: Sequence[tuple[Atom, ...]], numbers: Sequence[int]) -> Floats:
@@ -307,9 +303,17 @@ class FaultModel:
         """What an action can lead to, by the number of the joint state."""
         found = self._outcomes.get(action)
         if found is None:
-            found = _OutcomesOf(partial(self._work_out, action))
-            self._outcomes[action] = found
+            found = self._outcomes[action] = _Met(partial(self._work_out, action))
         return found
+
+    def masks(self, actions: Iterable[Action]) -> list[Compiled] | None:
+        """Actions as masks; None where these do not tell all of the actions and of the goal."""
+        if self.rebind or self.task.derived or self._goal is None:
+            return None
+        known = self.task.static - self.task.left_open
+        found = [self._masks(action) for action in actions]
+        told = [each for each in found if each is not None and each.fixed <= known]
+        return told if len(told) == len(found) else None
 
     def _work_out(self, action: Action, number: int) -> Outcomes:
         state = self.state(number)

@@ -8,6 +8,7 @@ import numpy as np
 from tpvqa.belief.annotated import AnnotatedPlan, Wanted
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.needed import Needed
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.skills import DOUBTED, FOREGONE, GIVEN_UP, NAMED, SHOWN, SkillState
 from tpvqa.pddl import Action, State, Task
@@ -190,6 +191,11 @@ class Outlook:
                 self._model.goal_holds(number) if own else self.reached(self._model.state(number))
             )
         return self._goals[kind]
+
+    def needed(self, plan: AnnotatedPlan) -> Needed | None:
+        """The steps of a plan as masks; None where these do not tell all of it, or of the goal."""
+        masks = None if self._task is not self._model.task else self._model.masks(plan.actions)
+        return None if masks is None else Needed(masks)
 
     def rest(self, place: int, plan: AnnotatedPlan) -> float:
         """What a plan costs from a place on."""

@@ -7,6 +7,7 @@ backward from the end, in every joint state, in the belief's own model.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import compress
 from math import prod
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import Floats
+from tpvqa.belief.needed import Needed
 from tpvqa.belief.outlook import Outlook
 from tpvqa.belief.steps import Steps
 from tpvqa.pddl import Action, State
@@ -70,8 +72,9 @@ class Unseen:
     def __init__(self, model: FaultModel, ahead: Outlook, costs: Costs):
         self._model, self._ahead, self._costs = model, ahead, costs
         self._steps = Steps(model)
-        self._walks: dict[AnnotatedPlan, dict[tuple[int, int], tuple[int, ...] | None]] = {}
+        self._needed: dict[AnnotatedPlan, Needed | None] = {}
         self._repeats: dict[tuple[int, int], int] = {}
+        self._working: dict[tuple[int, int], list[float]] = {}
         self._known: dict[tuple[int, int, object], list[tuple[Floats, Floats]]] = {}
         self._worked_out_for: tuple[int, int] = (-1, -1)
         self.following: tuple[Action, ...] = ()
@@ -81,7 +84,7 @@ class Unseen:
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
         self._model, self._steps = model, Steps(model)
-        self._walks.clear()
+        self._needed.clear()
         self._known.clear()
 
     def acted(self, action: Action, state: State) -> None:
@@ -173,8 +176,9 @@ class Unseen:
             self._worked_out_for = version
             self._known.clear()
             self._repeats.clear()
-            for old in self._walks.keys() - {*self._ahead.plans}:
-                del self._walks[old]
+            self._working.clear()
+            for old in self._needed.keys() - {*self._ahead.plans}:
+                del self._needed[old]
         return masses, ways
 
     def _ways(self, predicted: Iterable[tuple[int, float]], actions: Sequence[Action]) -> list[Way]:
@@ -290,8 +294,15 @@ class Unseen:
         paid = times * steps * self._costs.action
         if needed is None:
             return paid + self._ahead.failure
-        works = prod(self._works(plan.actions[step], times) for step in needed)
+        works = prod(compress(self._all_work(plan, times)[place:], needed))
         return paid + (1 - works) * self._ahead.failure
+
+    def _all_work(self, plan: AnnotatedPlan, times: int) -> list[float]:
+        """Of every step of a plan the probability that some tries do what is wanted."""
+        known = self._working.get((id(plan), times))
+        if known is None:
+            known = self._working[id(plan), times] = [self._works(a, times) for a in plan.actions]
+        return known
 
     def _works(self, action: Action, times: int) -> float:
         """Probability that some tries do what is wanted, and nothing else."""
@@ -303,26 +314,27 @@ class Unseen:
         """How often every step is best repeated where the way is the right one."""
         known = self._repeats.get((id(plan), place))
         if known is None:
-            rest = plan.actions[place:]
+            steps = len(plan.actions) - place
 
             def paid(times: int) -> float:
-                lost = 1 - prod(self._works(each, times) for each in rest)
-                return times * len(rest) * self._costs.action + lost * self._ahead.failure
+                lost = 1 - prod(self._all_work(plan, times)[place:])
+                return times * steps * self._costs.action + lost * self._ahead.failure
 
             known = self._repeats[id(plan), place] = min(TIMES, key=paid)
         return known
 
-    def _walk(self, plan: AnnotatedPlan, place: int, number: int) -> tuple[int, ...] | None:
-        """The steps of a plan that change something on the way from a joint state to the goal;
-        None where it does not lead there."""
-        walks = self._walks.setdefault(plan, {})
-        key = place, self._model.kind(number)
-        if key not in walks:
-            needed: list[int] = []
-            for step in range(place, len(plan.actions)):
-                there = self._model.outcomes(plan.actions[step])[number].intended
-                if there is not None and there != number:
-                    needed.append(step)
-                    number = there
-            walks[key] = tuple(needed) if self._ahead.is_goal(number) else None
-        return walks[key]
+    def _walk(self, plan: AnnotatedPlan, place: int, number: int) -> Sequence[bool] | None:
+        """Which steps of a plan change something on the way from a joint state to the goal; None
+        where it does not lead there."""
+        if plan not in self._needed:
+            self._needed[plan] = self._ahead.needed(plan)
+        quick = self._needed[plan]
+        if quick is not None:
+            needed, holding = quick.walk(place, self._model.holding(number))
+            return needed if self._model.goal_within(holding) else None
+        needed = []
+        for action in plan.actions[place:]:
+            there = self._model.outcomes(action)[number].intended
+            needed.append(there is not None and there != number)
+            number = number if there is None else there
+        return needed if self._ahead.is_goal(number) else None
