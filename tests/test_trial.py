@@ -13,6 +13,7 @@ from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import TpvqaError, UnknownNameError
 from tpvqa.events import Started
+from tpvqa.pddl import Atom, Literal
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.resuming import config_of, resume, trial_of
@@ -48,6 +49,19 @@ def test_without_pictures_the_vlm_is_a_noise_model_and_is_called_so(planner: Pla
     with Trial(symbolic(world="images"), planner=planner) as trial:
         started = trial.started()
     assert (started.vlm, started.noise_model) == ("embedded", False)
+
+
+def test_only_who_looks_at_pictures_may_be_shown_what_holds_no_more(
+    planner: Planner, tmp_path: Path
+) -> None:
+    given, questions = find_task("clean_dishes").questions, tmp_path / "questions.yaml"
+    assert given is not None
+    questions.write_text(given.read_text() + '\nstill_shown: ["(near ?x)"]\n')
+    near = Literal(Atom("near", ("sink",)))
+    for world, shown in (("symbolic", False), ("images", True)):
+        config = symbolic(world=world, monitor="belief", questions=str(questions))
+        with Trial(config, planner=planner) as trial:
+            assert trial.book.fact(near).still_shown is shown
 
 
 def test_a_vlm_that_looks_is_refused_where_there_is_nothing_to_see(planner: Planner) -> None:

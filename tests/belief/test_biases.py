@@ -1,5 +1,6 @@
 """Predicates of which yes is said too readily, or too rarely."""
 
+from dataclasses import replace
 from math import exp, log
 from random import Random
 
@@ -131,6 +132,17 @@ def test_a_yes_never_speaks_for_no_by_it() -> None:
     question = about("on")[0]
     assert biases.worth(question, SAID, 0.2, yes=True) == 0.0
     assert biases.worth(question, SAID, -0.2, yes=True) == -0.2  # it did before
+
+
+def test_what_a_picture_may_show_anyway_says_nothing_of_the_vlm() -> None:
+    question = replace(about("on")[0], still_shown=True)
+    belief = Belief(FaultModel(TASK, load_world_file(FILES.world, TASK)))
+    evidence = Evidence(belief, CALIBRATION, Trust.after(1000))
+    for look in range(3):
+        evidence.take(question, Answer(question, Reply.NO), look, None)
+    evidence.leave()
+    assert evidence.biases.told == {}
+    assert taught(0.94, 0.5, scenes=50).rates(question, SAID) == SAID
 
 
 def test_what_was_learned_is_bounded_and_goes_from_trial_to_trial() -> None:

@@ -1,6 +1,7 @@
 """Control questions: what is known is asked, as long as it matters whether answers are worth
 anything."""
 
+from dataclasses import replace
 from random import Random
 
 from hypothesis import given
@@ -22,7 +23,7 @@ from tpvqa.vlm import Answer, Reply
 PRECONDITION: FactWay = Way.PRECONDITION
 
 
-def asked(right: float, seed: int) -> tuple[Evidence, list[bool]]:
+def asked(right: float, seed: int, *, still_shown: bool = False) -> tuple[Evidence, list[bool]]:
     """What control questions come to, at the start of a task, of answers right in so many cases;
     and to which of them yes was right."""
     files = find_task("serve_breakfast")
@@ -34,7 +35,8 @@ def asked(right: float, seed: int) -> tuple[Evidence, list[bool]]:
     controls, random = Controls(evidence, Costs()), Random(seed)
     literals = {literal.atom for a in plan_of(task) for literal in _changed(a)}
     facts = [Literal(atom) for atom in sorted(literals) if book.asked(Literal(atom), None)]
-    questions = [book.fact(fact, way=PRECONDITION) for fact in facts]
+    plain = [book.fact(fact, way=PRECONDITION) for fact in facts]
+    questions = [replace(question, still_shown=still_shown) for question in plain]
     truths = list[bool]()
 
     def likely(question: FactQuestion) -> float:
@@ -63,6 +65,11 @@ def test_answers_that_are_worth_nothing_are_suspected_before_anything_is_done() 
 
 def test_good_answers_are_soon_believed() -> None:
     assert all(len(asked(1.0, seed)[1]) <= 6 for seed in range(3))
+
+
+def test_what_a_picture_may_still_show_is_not_asked_where_it_is_known_not_to_hold() -> None:
+    assert set(asked(0.5, 0)[1]) == {True, False}
+    assert set(asked(0.5, 0, still_shown=True)[1]) == {True}
 
 
 def test_who_always_says_yes_is_asked_what_is_not_so() -> None:

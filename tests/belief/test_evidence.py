@@ -1,5 +1,6 @@
 """Answers as evidence: repeats, abstentions, surprises, trust."""
 
+from dataclasses import replace
 from math import isclose
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from tpvqa.belief import AnswerRates, Calibration, Group
 from tpvqa.belief.belief import Belief
-from tpvqa.belief.evidence import Evidence
+from tpvqa.belief.evidence import ANYWAY, Evidence
 from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.heard import Heard
 from tpvqa.belief.information import LATE, answers_to_be_sure
@@ -198,6 +199,29 @@ def test_what_is_expected_of_an_answer_is_a_probability(
     expected = evidence.expect(QUESTION, None)
     assert 0 <= expected.yes_if_true <= 1
     assert 0 <= expected.yes_if_false <= 1
+
+
+def test_what_is_still_shown_is_believed_a_little_once_and_says_nothing_of_the_vlm() -> None:
+    belief = Belief(MODEL)
+    belief.act(FIND, Rates(0.25, 0.25, 0.0))
+    calibration = Calibration.default()
+    evidence = Evidence(belief, calibration, Trust.after(calibration.rows), unexplained=0.0)
+    question = replace(QUESTION, still_shown=True)
+    before, nothing = odds(belief), evidence.worth.nothing
+    evidence.take(question, told(Reply.YES), 0, None)
+    once = odds(belief)
+    assert before < once < before / ANYWAY
+    evidence.take(question, told(Reply.YES), 1, None)
+    assert odds(belief) == once
+    other = replace(question, text="Are you near the plate?", wording=1, first=question.text)
+    assert evidence.affirmed(other)
+    assert evidence.take(other, Answer(other, Reply.YES), 1, None) == 1.0
+    assert odds(belief) == once
+    assert isclose(evidence.worth.nothing, nothing)
+    evidence.acted("find")
+    assert not evidence.affirmed(question)
+    evidence.take(question, told(Reply.NO), 2, None)
+    assert odds(belief) < once
 
 
 def test_a_vlm_is_not_asked_the_more_the_less_is_known_of_it() -> None:

@@ -106,6 +106,20 @@ def test_what_no_action_changes_is_not_asked_unless_the_file_doubts_it(
         book_of(task, tmp_path, "in_doubt: [(powr)]")
 
 
+def test_a_file_says_what_a_picture_may_show_though_it_holds_no_more(
+    task: Task, tmp_path: Path
+) -> None:
+    book = book_of(task, tmp_path, "still_shown: ['(lit ?l)']")
+    lit, power = Literal(Atom("lit", ("big_lamp",))), Literal(Atom("power"))
+    assert book.fact(lit).still_shown
+    assert not book.fact(power).still_shown
+    assert not QuestionBook.load(None, task).fact(lit).still_shown
+    with pytest.raises(QuestionsError, match=r"questions.yaml:1: .*no predicate 'powr'"):
+        book_of(task, tmp_path, "still_shown: [(powr)]")
+    with pytest.raises(QuestionsError, match=r"questions.yaml:1: .*without 'not'"):
+        book_of(task, tmp_path, "still_shown: ['(not (lit ?l))']")
+
+
 def test_a_fact_of_objects_that_no_action_is_for_is_not_asked(tmp_path: Path) -> None:
     (tmp_path / "d.pddl").write_text(
         """(define (domain d) (:requirements :typing) (:types item place)

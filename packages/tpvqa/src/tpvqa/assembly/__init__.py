@@ -177,13 +177,16 @@ class Trial:
         self.known = experience
         self.calibration = calibration or shipped_calibration(self.vlm_spec)
         self.risk = stated_bound(self, risk, reading=self._begun_as is None)
+        noise_model = is_noise_model(vlm or load_spec(Kind.VLM, self.vlm_spec))
+        self.book = self.book.of_states() if noise_model else self.book
         context |= {
+            "book": self.book,
             "risk": self.risk,
             "calibration": self.calibration,
             "experience": None
             if self.known is None
             else self.known.with_vlm(self.vlm_spec, self.calibration),
-            "noise_model": is_noise_model(vlm or load_spec(Kind.VLM, self.vlm_spec)),
+            "noise_model": noise_model,
         }
         self.monitor: Monitor
         self.monitor, by_monitor = make_monitor(config.monitor.named, context)

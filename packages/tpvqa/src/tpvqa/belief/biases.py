@@ -109,7 +109,7 @@ class Biases:
     def _by(self, question: FactQuestion, said: Pair) -> float:
         predicate = question.atom.predicate
         rows = self._known.get(predicate, ())
-        if not rows or not _possible(said):
+        if not rows or question.still_shown or not _possible(said):
             return 0.0
         known = self._moved.get((predicate, said))
         if known is None:

@@ -66,6 +66,8 @@ class Controls:
             asked = self._asked.get(question.text, 0)
             if question.wording or asked >= TIMES or KNOWN < likely(question) < 1 - KNOWN:
                 continue
+            if question.still_shown and likely(question) < 0.5:
+                continue  # a yes may be right
             if views(question):
                 found[asked, (likely(question) > 0.5) == more, place] = question
         if not found:

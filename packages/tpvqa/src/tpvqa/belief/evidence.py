@@ -36,6 +36,8 @@ SUSPECTED = 0.02
 """That chance where an action that rests on the fact seems never to work."""
 MANY = 48
 """Joint states from which on it saves time to leave out of them what is next to impossible."""
+ANYWAY = 0.25
+"""How often a picture shows what holds no more, where a file says that it may."""
 PERSON = 0.99
 """How often a person's answer is right."""
 PERSONS_VIEW = "a person's"
@@ -85,6 +87,7 @@ class Evidence(Expected):
         self._readings = Readings(belief, calibration.sensors)
         self._opened: set[tuple[Atom, ...]] = set()
         self._silent: set[tuple[str, str | None]] = set()
+        self._affirmed: set[str] = set()
 
     def weigh(self, belief: Weighed) -> None:
         """Weigh something else from now on; what was answered before stays known."""
@@ -120,6 +123,7 @@ class Evidence(Expected):
         self._tell_apart()
         self._opened.clear()
         self._silent.clear()
+        self._affirmed.clear()
 
     def _take_report(self, action: str, failed: bool | None) -> None:
         likely = self.reports.take(action, failed=failed)
@@ -197,6 +201,10 @@ class Evidence(Expected):
         """The questions that were found to have no answer since the last action."""
         return {text for text, _ in self._silent}
 
+    def affirmed(self, question: FactQuestion) -> bool:
+        """Whether a yes has said all that there is to it in this scene, in whatever words."""
+        return question.family in self._affirmed
+
     @property
     def unseen(self) -> bool:
         """Whether any question found no answer since the last action."""
@@ -213,6 +221,8 @@ class Evidence(Expected):
         if answer.reply not in (Reply.YES, Reply.NO):
             self.silence(question.text, view)
             return 1.0
+        if question.still_shown and answer.reply is Reply.YES:
+            return self._take_affirmed(question)
         atoms = question.atoms
         last = self._hearing.last.get(question.text)
         if last is not None and picture in last.pictures:
@@ -254,7 +264,7 @@ class Evidence(Expected):
 
     def _biased(self, question: FactQuestion, ratio: float, *, yes: bool) -> float:
         """What an answer is worth, by what those about its predicate were."""
-        if not self._finds_biases:
+        if not self._finds_biases or question.still_shown:
             return ratio
         said = self._rates_said(question)
         self.biases.hear(question, said, yes=yes)
@@ -270,6 +280,22 @@ class Evidence(Expected):
 
     def _likely_yes(self, question: FactQuestion) -> float:
         return self._belief.probability(question.atom, question.alike)
+
+    def _take_affirmed(self, question: FactQuestion) -> float:
+        """Weigh the belief by a yes that may be right where the fact does not hold any more.
+
+        That belongs to the scene, so that a second yes says nothing more; and it says nothing of
+        the VLM.
+        """
+        if self.affirmed(question):
+            return 1.0
+        self._affirmed.add(question.family)
+        true = self._weighed.probability(question.atom, question.alike)
+        expected = self.worth.expect(self._rates(question))
+        if_true, wrongly = expected.yes_if_true, expected.yes_if_false
+        if_false = ANYWAY * if_true + (1 - ANYWAY) * wrongly
+        self._weighed.see(question.atoms, if_true, if_false)
+        return true * if_true + (1 - true) * if_false
 
     def _weigh_answer(
         self,

@@ -83,6 +83,7 @@ def in_vain(task: Task, given: Wordings, file: Path | None) -> Iterator[Finding]
     for section, patterns in (
         ("never_asked", given.never_asked),
         ("in_doubt", given.in_doubt),
+        ("still_shown", given.still_shown),
     ):
         for pattern in patterns:
             fact = pattern.fact

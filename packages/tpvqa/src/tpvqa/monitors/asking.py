@@ -83,9 +83,9 @@ class Asking:
         """From where a question may still find an answer, the next one first.
 
         They go round: another view repeats the last answer less than the same one does. From none
-        where it has said since the last action what it can (`Evidence.exhausted`).
+        where it has said since the last action what it can (`Evidence.exhausted`, `affirmed`).
         """
-        if self._exhausted(question.text):
+        if self._exhausted(question.text) or self._evidence.affirmed(question):
             return []
         turn = self.now.looks % len(self._views) if self._views else 0
         views: list[str | None] = [*self._views[turn:], *self._views[:turn]]
@@ -167,5 +167,7 @@ class Asking:
         """Whether the latest picture may tell more than what a question was answered before."""
         text, now = question.text, self.now
         if now.picture is None or self._evidence.asked_of(text, now.picture):
+            return False
+        if self._evidence.affirmed(question):
             return False
         return not self._evidence.silent(text, now.view)

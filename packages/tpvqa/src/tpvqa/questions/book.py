@@ -1,6 +1,7 @@
 """The questions of a task: facts and actions put into words."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
@@ -71,6 +72,12 @@ class QuestionBook:
             return self
         return QuestionBook(self.task, self._wordings, wording)
 
+    def of_states(self) -> "QuestionBook":
+        """The book for whoever answers from a state: no picture shows what holds no more."""
+        if not self._wordings.still_shown:
+            return self
+        return QuestionBook(self.task, replace(self._wordings, still_shown=()), self.wording)
+
     # Facts
 
     def fact(
@@ -85,7 +92,9 @@ class QuestionBook:
         """
         text, alike = self._said(literal.atom, wording)
         first = self._said(literal.atom, 0)[0] if wording else ""
-        return FactQuestion(text, way, literal.atom, literal.positive, alike, wording, first)
+        fact = Literal(literal.atom)
+        still = any(each.matches(fact, None, {}, self.task) for each in self._wordings.still_shown)
+        return FactQuestion(text, way, fact.atom, literal.positive, alike, wording, first, still)
 
     def in_other_words(self, question: FactQuestion) -> tuple[FactQuestion, ...]:
         """A question in every other wording of it that differs; none where a file gives one."""

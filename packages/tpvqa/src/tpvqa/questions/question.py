@@ -2,7 +2,7 @@
 
 import typing
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import ClassVar, TypeAlias
 
@@ -41,6 +41,7 @@ class FactQuestion:
             robot's hand, yes is right whichever hand it is in.
         wording: Which of the wordings that a file gives of it, counted from 0.
         first: What it is in the first of them; "" where this is the first.
+        still_shown: Whether a picture may show the fact though it does not hold any more.
     """
 
     text: str
@@ -50,6 +51,7 @@ class FactQuestion:
     alike: tuple[Atom, ...] = ()
     wording: int = 0
     first: str = ""
+    still_shown: bool = field(default=False, compare=False)
 
     def __hash__(self) -> int:
         return hash((self.text, self.way))

@@ -44,6 +44,7 @@ class Wordings:
         of_objects: Attributes by object.
         never_asked: What no camera shows.
         in_doubt: What is asked although no action changes it.
+        still_shown: What a picture may show though it does not hold any more.
         ways: How a whole action is asked about.
         notices: What the reader of the file should know.
         numbers: The question about each number, see `tpvqa.questions.numbers`.
@@ -58,6 +59,7 @@ class Wordings:
     of_objects: Mapping[str, Mapping[str, Template]] = field(default_factory=dict)
     never_asked: Sequence[NeverAsked] = ()
     in_doubt: Sequence[NeverAsked] = ()
+    still_shown: Sequence[NeverAsked] = ()
     ways: Mapping[ActionWay, Template] = field(
         default_factory=lambda: {way: Template.parse(text) for way, text in WAYS.items()}
     )
@@ -104,6 +106,7 @@ def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None 
         "objects",
         "never_asked",
         "in_doubt",
+        "still_shown",
         "ways",
         "numbers",
     )
@@ -156,6 +159,7 @@ def read_wordings(path: Path, task: Task, *, wrong: list[QuestionsError] | None 
         of_objects=of_objects,
         never_asked=patterns("never_asked", _never_asked),
         in_doubt=patterns("in_doubt", _pattern),
+        still_shown=patterns("still_shown", _still_shown),
         ways=_ways(sections.get("ways")),
         notices=notices,
         numbers=named(
@@ -292,6 +296,15 @@ def _pattern(place: Place, task: Task) -> NeverAsked:
         return NeverAsked.parse(place.text(), task)
     except PDDLError as error:
         raise place.wrong(error.message) from None
+
+
+def _still_shown(place: Place, task: Task) -> NeverAsked:
+    pattern = _pattern(place, task)
+    if pattern.positive is False:
+        raise place.wrong(
+            f"name the fact itself that is still shown, without 'not': {pattern.fact}"
+        )
+    return pattern
 
 
 def _never_asked(place: Place, task: Task) -> NeverAsked:
