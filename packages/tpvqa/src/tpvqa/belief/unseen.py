@@ -75,6 +75,7 @@ class Unseen:
         self._needed: dict[AnnotatedPlan, Needed | None] = {}
         self._repeats: dict[tuple[int, int], int] = {}
         self._working: dict[tuple[int, int], list[float]] = {}
+        self._rests: dict[tuple[int, int], Floats] = {}
         self._known: dict[tuple[int, int, object], list[tuple[Floats, Floats]]] = {}
         self._worked_out_for: tuple[int, int] = (-1, -1)
         self.following: tuple[Action, ...] = ()
@@ -84,8 +85,8 @@ class Unseen:
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
         self._model, self._steps = model, Steps(model)
-        self._needed.clear()
-        self._known.clear()
+        for by_number in (self._needed, self._known, self._rests):
+            by_number.clear()
 
     def acted(self, action: Action, state: State) -> None:
         """Note that an action is executed, where a state is most probable."""
@@ -175,8 +176,8 @@ class Unseen:
         if version != self._worked_out_for:
             self._worked_out_for = version
             self._known.clear()
-            self._repeats.clear()
-            self._working.clear()
+            for worked_out in (self._repeats, self._working, self._rests):
+                worked_out.clear()
             for old in self._needed.keys() - {*self._ahead.plans}:
                 del self._needed[old]
         return masses, ways
@@ -228,8 +229,7 @@ class Unseen:
             return known
         stop = min(len(plan.actions), place + HORIZON)
         if stop < len(plan.actions):
-            rest = [*(self._rest(plan, stop, n) for n in self._steps.numbers), self._ahead.failure]
-            after = np.repeat(np.array(rest)[:, None], after.shape[1], axis=1)
+            after = np.repeat(self._rests_of(plan, stop)[:, None], after.shape[1], axis=1)
         wide = after.shape[1]  # of what is done so often, the most often first: one call for all
         values = np.tile(after, len(TIMES))
         before = values.copy()
@@ -285,6 +285,14 @@ class Unseen:
             found += [action for action in plan.actions[place:] for _ in range(part.times)]
             part = part.then
         return tuple(found[1:] if found[:1] == [done] else found)
+
+    def _rests_of(self, plan: AnnotatedPlan, place: int) -> Floats:
+        """What the rest costs from all joint states that are told apart, and last from others."""
+        known = self._rests.get((id(plan), place))
+        if known is None:
+            rests = [self._rest(plan, place, number) for number in self._steps.numbers]
+            known = self._rests[id(plan), place] = np.array([*rests, self._ahead.failure])
+        return known
 
     def _rest(self, plan: AnnotatedPlan, place: int, number: int) -> float:
         """What the rest of a long plan costs from a joint state, roughly."""
