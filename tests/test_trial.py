@@ -61,7 +61,12 @@ def test_only_who_looks_at_pictures_may_be_shown_what_holds_no_more(
     for world, shown in (("symbolic", False), ("images", True)):
         config = symbolic(world=world, monitor="belief", questions=str(questions))
         with Trial(config, planner=planner) as trial:
-            assert trial.book.fact(near).still_shown is shown
+            assert trial.parts.book.fact(near).still_shown is shown
+            started = trial.started()
+        assert started.questions is not None
+        assert "still_shown" in started.questions
+        with trial_of(started) as again:
+            assert again.parts.book.fact(near).still_shown is shown
 
 
 def test_a_vlm_that_looks_is_refused_where_there_is_nothing_to_see(planner: Planner) -> None:

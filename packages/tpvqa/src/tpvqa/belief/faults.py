@@ -310,9 +310,8 @@ class FaultModel:
         """Actions as masks; None where these do not tell all of the actions and of the goal."""
         if self.rebind or self.task.derived or self._goal is None:
             return None
-        known = self.task.static - self.task.left_open
         found = [self._masks(action) for action in actions]
-        told = [each for each in found if each is not None and each.fixed <= known]
+        told = [each for each in found if each is not None]
         return told if len(told) == len(found) else None
 
     def _work_out(self, action: Action, number: int) -> Outcomes:

@@ -10,6 +10,7 @@ from operator import or_
 from typing import NamedTuple
 
 from tpvqa.belief.compiled import Compiled
+from tpvqa.pddl import Atom
 
 
 class _Gone(NamedTuple):
@@ -26,10 +27,14 @@ class Needed:
 
     Args:
         steps: They, as masks.
+
+    Attributes:
+        fixed: Facts that no action changes; only where all of them hold do the masks tell all.
     """
 
     def __init__(self, steps: Sequence[Compiled]):
         self._steps = steps
+        self.fixed = frozenset[Atom]().union(*(each.fixed for each in steps))
         self._touched = [each.add | each.delete | each.need | each.bar for each in steps]
         self._later = [*accumulate(reversed(self._touched), or_, initial=0)][::-1]
         self._gone: _Gone | None = None

@@ -337,7 +337,7 @@ class Unseen:
         if plan not in self._needed:
             self._needed[plan] = self._ahead.needed(plan)
         quick = self._needed[plan]
-        if quick is not None:
+        if quick is not None and quick.fixed <= self._model.state(number):
             needed, holding = quick.walk(place, self._model.holding(number))
             return needed if self._model.goal_within(holding) else None
         needed = []
