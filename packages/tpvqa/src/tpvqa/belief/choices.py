@@ -162,13 +162,14 @@ class Chooser:
         if self._stuck(ranked) or self.ahead.left == 0:
             choices = [each for each in choices if each.action is None]
         found: list[tuple[Choice, Floats, Floats]] = []
+        undone = self.ahead.rates.undone
         blind = self._blind(choices, ranked, rates) if self.settles < SETTLED else {}
         for each in choices:
             if each.action is None:
                 found += [(each, column, work[each]) for column in self._ends(ranked)]
                 continue
             more = 0.0 if self._in(each, current) else self._costs.replan
-            dearer = self.rounds.dearer(each.action, ranked[0][0], self.ahead.progress)
+            dearer = self.rounds.dearer(each.action, ranked[0][0], self.ahead.progress, undone)
             more += self.settles * dearer if blind else dearer
             seen = self._column(each.action, ranked, kinds, rates) + more
             if self.settles >= SETTLED:

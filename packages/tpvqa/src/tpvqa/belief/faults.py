@@ -57,6 +57,11 @@ class Rates:
     disturbance: float = 0.25
     spontaneous: float = 0.01
 
+    @property
+    def undone(self) -> float:
+        """How often an action undoes something achieved."""
+        return self.failure * self.disturbance + (1 - self.failure) * self.spontaneous
+
 
 @dataclass(frozen=True, slots=True)
 class JointState:

@@ -27,18 +27,21 @@ class Rounds:
         """Go on with other numbers of the joint states."""
         self._done = [(numbers.get(number, -1), action) for number, action in self._done]
 
-    def dearer(self, action: Action, number: int, progress: float) -> float:
+    def dearer(self, action: Action, number: int, progress: float, undone: float) -> float:
         """What an action costs more each time that the trial comes back to it.
 
         To repeat it is no coming back; to do something else in between, and to believe again what
-        was believed then, is going round in a circle. So often as faults explain it costs nothing.
+        was believed then, is going round in a circle. So often as faults explain it costs nothing:
+        whatever was undone may have led back.
 
         Args:
             action: It.
             number: The joint state that is most probable now.
             progress: How often a step is one.
+            undone: How often an action undoes something.
         """
-        times = self._returns(action, number) - ROUNDS / progress
+        explained = ROUNDS / progress + undone * len(self._done)
+        times = self._returns(action, number) - explained
         return self._price * max(0.0, times) ** 2
 
     def _returns(self, action: Action, number: int) -> int:

@@ -74,8 +74,7 @@ class Steps:
             return
         self.version += 1
         self._covered = frozenset(actions)
-        undone = rates.failure * rates.disturbance + (1 - rates.failure) * rates.spontaneous
-        self.numbers = self._reached(masses, min(1.0, TRIES * undone))
+        self.numbers = self._reached(masses, min(1.0, TRIES * rates.undone))
         self.place = {number: place for place, number in enumerate(self.numbers)}
         self._leads.clear()
         self._falls = None
