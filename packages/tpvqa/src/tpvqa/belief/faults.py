@@ -17,7 +17,7 @@ from tpvqa.belief.packed import Bytes, Packed, held
 from tpvqa.belief.rebinding import Rebinding
 from tpvqa.pddl import Action, Atom, State, Task
 
-Found = TypeVar("Found")
+_Found = TypeVar("_Found")
 
 
 class Showing(Protocol):
@@ -109,14 +109,14 @@ class Outcomes:
         return self.model.undone(self.intended)
 
 
-class _Met(dict[int, Found]):
+class _Met(dict[int, _Found]):
     """Something about joint states, by number; worked out as they are met."""
 
-    def __init__(self, work_out: Callable[[int], Found]):
+    def __init__(self, work_out: Callable[[int], _Found]):
         super().__init__()
         self._work_out = work_out
 
-    def __missing__(self, number: int) -> Found:
+    def __missing__(self, number: int) -> _Found:
         found = self[number] = self._work_out(number)
         return found
 
