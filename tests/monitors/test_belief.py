@@ -154,6 +154,13 @@ def test_a_budget_for_the_trial_is_kept(planner: Planner, budget: str, counted: 
     assert max(used) == limit
 
 
+@pytest.mark.parametrize("budget", ["questions_per_trial=30", "looks_per_trial=20"])
+def test_once_a_budget_is_spent_it_goes_on_unseen_and_ends(planner: Planner, budget: str) -> None:
+    several = [run(planner, f"belief:{budget}", limits=Limits(actions=600), episode=n)[0] for n in range(1, 5)]
+    assert all(each.actions < 150 for each in several)
+    assert sum(bool(each.goal_holds) for each in several) >= 2
+
+
 @pytest.mark.parametrize("what", ["questions", "looks"])
 def test_a_budget_between_two_actions_is_kept(planner: Planner, what: str) -> None:
     _, events, _ = run(planner, f"belief:{what}_per_step=2")

@@ -65,14 +65,22 @@ class Asking:
     def _begun(self, action: Action | None) -> Inspection:
         return Inspection(action, next(iter(self._views), None))
 
+    def _left(self) -> Budget:
+        costs = self._costs
+        return Budget(costs.questions_per_trial - self.questions, costs.looks_per_trial - self.looks)
+
+    @property
+    def may_go_on(self) -> bool:
+        """Whether the trial may still cost a question and the look for it."""
+        left = self._left()
+        return min(left.questions, left.looks) > 0
+
     def budget(self) -> Budget:
         """What may still be asked and looked at before the next action."""
-        costs, now = self._costs, self.now
-        questions = costs.questions_per_trial - self.questions
-        looks = costs.looks_per_trial - self.looks
+        costs, now, left = self._costs, self.now, self._left()
         return Budget(
-            min(costs.questions_per_step - now.questions, questions),
-            min(costs.looks_per_step - now.looks, looks),
+            min(costs.questions_per_step - now.questions, left.questions),
+            min(costs.looks_per_step - now.looks, left.looks),
         )
 
     def likely(self, question: FactQuestion) -> float:

@@ -19,7 +19,7 @@ from tpvqa.belief.inquiry import DOUBT, Inquirer, Inquiry
 from tpvqa.belief.learned import Learned
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.risk import RiskBound, confidence
-from tpvqa.belief.settling import Settlings
+from tpvqa.belief.settling import Settling, Settlings
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.table import Choice, Table
 from tpvqa.belief.trust import Trust
@@ -317,7 +317,9 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _settle(self, step: Step) -> None:
         """Work out how far it can be found out what is true, and what that costs."""
-        found = self.evidence.settling(self._about_needs(step.book))
+        nothing = Settling(0.0, new=0.0)
+        asks = self._asking.may_go_on
+        found = self.evidence.settling(self._about_needs(step.book)) if asks else nothing
         self._telling = found.share
         self._chooser.settles = self._settlings.taken(found, self._task_ways.ahead(self.belief))
         self._chooser.blind = self.evidence.worthless(found)
