@@ -156,7 +156,10 @@ def test_a_budget_for_the_trial_is_kept(planner: Planner, budget: str, counted: 
 
 @pytest.mark.parametrize("budget", ["questions_per_trial=30", "looks_per_trial=20"])
 def test_once_a_budget_is_spent_it_goes_on_unseen_and_ends(planner: Planner, budget: str) -> None:
-    several = [run(planner, f"belief:{budget}", limits=Limits(actions=600), episode=n)[0] for n in range(1, 5)]
+    several = [
+        run(planner, f"belief:{budget}", limits=Limits(actions=600), episode=n)[0]
+        for n in range(1, 5)
+    ]
     assert all(each.actions < 150 for each in several)
     assert sum(bool(each.goal_holds) for each in several) >= 2
 

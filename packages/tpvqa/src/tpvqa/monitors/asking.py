@@ -67,7 +67,9 @@ class Asking:
 
     def _left(self) -> Budget:
         costs = self._costs
-        return Budget(costs.questions_per_trial - self.questions, costs.looks_per_trial - self.looks)
+        return Budget(
+            costs.questions_per_trial - self.questions, costs.looks_per_trial - self.looks
+        )
 
     @property
     def may_go_on(self) -> bool:
