@@ -118,7 +118,8 @@ def _all_counts(probability: float, times: tuple[int, ...]) -> Floats:
 def _mixed(mixture: Mixture, times: tuple[int, ...]) -> Floats:
     """`_all_counts` of a mixture."""
     weights = np.array([weight for weight, _ in mixture])
-    return weights @ np.stack([_all_counts(round(each, 3), times) for _, each in mixture])
+    counts: Floats = np.array([_all_counts(round(each, 3), times) for _, each in mixture])
+    return weights @ counts
 
 
 @lru_cache(maxsize=64)

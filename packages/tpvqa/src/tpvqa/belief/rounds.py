@@ -1,5 +1,6 @@
 """Going round in circles: it grows dearer each time."""
 
+from collections import Counter
 from collections.abc import Mapping
 
 from tpvqa.pddl import Action
@@ -18,14 +19,19 @@ class Rounds:
     def __init__(self, price: float):
         self._price = price
         self._done: list[tuple[int, Action]] = []
+        self._begun: Counter[tuple[int, Action]] = Counter()
 
     def acted(self, number: int, action: Action) -> None:
         """Note that an action is executed where a joint state is most probable."""
+        if not self._done or self._done[-1][1] != action:
+            self._begun[number, action] += 1
         self._done.append((number, action))
 
     def renumbered(self, numbers: Mapping[int, int]) -> None:
         """Go on with other numbers of the joint states."""
-        self._done = [(numbers.get(number, -1), action) for number, action in self._done]
+        done, self._done, self._begun = self._done, [], Counter()
+        for number, action in done:
+            self.acted(numbers.get(number, -1), action)
 
     def dearer(self, action: Action, number: int, progress: float, undone: float) -> float:
         """What an action costs more each time that the trial comes back to it.
@@ -41,13 +47,5 @@ class Rounds:
             undone: How often an action undoes something.
         """
         explained = ROUNDS / progress + undone * len(self._done)
-        times = self._returns(action, number) - explained
+        times = self._begun[number, action] - explained
         return self._price * max(0.0, times) ** 2
-
-    def _returns(self, action: Action, number: int) -> int:
-        """How often an action was begun anew where the same joint state was most probable."""
-        done = self._done
-        return sum(
-            each == (number, action) and (not place or done[place - 1][1] != action)
-            for place, each in enumerate(done)
-        )

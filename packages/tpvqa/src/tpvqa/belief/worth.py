@@ -62,7 +62,7 @@ class Cases:
             places: Which of the columns here stand for it.
             columns: What is left out.
         """
-        where, drawn = np.stack([self.truth, ~self.truth]).astype(float), self.drawn
+        where, drawn = np.array([self.truth, ~self.truth], float), self.drawn
         kinds, index = np.unique(places, return_inverse=True)
         mass = self.mass[:, kinds]
         weights = np.maximum(where @ mass, 1e-300)
@@ -200,8 +200,8 @@ class Worth:
             return []
         columns = asked[0][1].columns
         rates = zip(*(self._rates_of(each) for each, _ in asked), strict=True)
-        told = tuple(np.stack(each)[..., columns] for each in rates)
-        return self._expected(told, np.stack([_aggregated(cases) for _, cases in asked]), columns)
+        told = tuple(np.array(each)[..., columns] for each in rates)
+        return self._expected(told, np.array([_aggregated(cases) for _, cases in asked]), columns)
 
     def _expected(
         self, told: Sequence[Floats], known: Floats | None, columns: Columns
@@ -266,7 +266,7 @@ class Worth:
         columns, drawn = cases.columns, cases.drawn
         shares = self.shares[columns]
         right = 1 / (1 + np.exp(-self._grid[columns] * said.ratio))
-        of_yes = np.stack([right, 1 - right] if said.yes else [1 - right, right])
+        of_yes = np.array([right, 1 - right] if said.yes else [1 - right, right])
         where = np.where(cases.truth, 0, 1)
         first, of_yes = own_rate(of_yes, columns)[where], of_yes[where]
         own_yes = own(drawn, first)
@@ -306,13 +306,13 @@ def _aggregated(cases: Cases) -> Floats:
     columns)."""
     truth, drawn, mass = cases.truth, cases.drawn, cases.mass
     size = mass.shape[1]
-    where = np.stack([truth, ~truth]).astype(float)
+    where = np.array([truth, ~truth], float)
     prior = DISPERSED / (DISPERSED + drawn.answers)
     seen = prior * drawn.yeses / DISPERSED
     once = np.concatenate([where, where * prior, where * seen])
     found = once @ np.concatenate([mass, mass * drawn.yes, mass * drawn.new], axis=1)
     told = found.reshape(3, 2, 3, size)
-    return np.stack([told[0, :, 0], told[0, :, 1], told[0, :, 2], told[1, :, 0], told[2, :, 0]])
+    return np.array([told[0, :, 0], told[0, :, 1], told[0, :, 2], told[1, :, 0], told[2, :, 0]])
 
 
 def _mixture(parts: Sequence[Sequence[float]]) -> Mixture:

@@ -84,7 +84,7 @@ class Performer:
         action_deadline: float | None = None,
         cancel: Flag | None = None,
     ):
-        self.parts, self._save_frame, self._snapshots = parts, save_frame, snapshots
+        self.parts, self._save_frame = parts, save_frame
         self._planning_timeout, self._action_deadline = planning_timeout, action_deadline
         self.cancel = cancel or Flag()
         # asked once: such checks are slow
@@ -93,6 +93,8 @@ class Performer:
         self._counted = Usage() if self._metered is None else self._metered.usage
         self._telling = parts.world if isinstance(parts.world, Telling) else None
         self._halting = parts.world if isinstance(parts.world, Halting) else None
+        kept = (parts.world, parts.vlm) if snapshots else ()
+        self._kept = [part for part in kept if isinstance(part, Restorable)]
         self._planner: Planner = parts.planner
         if isinstance(parts.world, Bounded):
             self._planner = BoundedPlanner(parts.planner, self._refused)
@@ -275,9 +277,8 @@ class Performer:
         return None if self._telling is None else self._telling.last_outcome
 
     def _snapshot(self, part: object) -> dict[str, Any] | None:
-        if self._snapshots and isinstance(part, Restorable):
-            return dict(part.snapshot())
-        return None
+        kept = next((each for each in self._kept if each is part), None)
+        return None if kept is None else dict(kept.snapshot())
 
 
 def _less(one: float | None, other: float | None) -> float | None:
