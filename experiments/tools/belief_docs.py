@@ -1,7 +1,7 @@
 """Put what the belief bench has measured into the documentation.
 
 `python experiments/tools/belief_docs.py FOLDER`, with the folder that `tpvqa bench belief` has
-written. Between `<!-- NAME -->` and `<!-- end -->`, the tables of `docs/belief.md` are made again;
+written. Between `<!-- NAME -->` and `<!-- end -->`, the tables of `docs/belief-measured.md` are made again;
 `docs/belief-results.md` and the figures are copied.
 """
 
@@ -220,7 +220,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args().folder
-    measured, page = Measured(folder), DOCS / "belief.md"
+    measured, page = Measured(folder), DOCS / "belief-measured.md"
     text = page.read_text(encoding="utf-8")
     for name, made in (
         ("counts", measured.counts() + "\n"),

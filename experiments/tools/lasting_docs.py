@@ -2,7 +2,7 @@
 
 `python experiments/tools/lasting_docs.py FOLDER`, with the folder that `tpvqa bench belief --parts
 lasting,risk` has written. Between `<!-- lasting -->` and `<!-- end -->`, the targets of
-`docs/belief.md` are made again; `docs/lasting-results.md` is a copy of all tables.
+`docs/belief-measured.md` are made again; `docs/lasting-results.md` is a copy of all tables.
 """
 
 import argparse
@@ -25,7 +25,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--docs", type=Path, default=DOCS)
     given = parser.parse_args()
-    tables, page = given.folder / LASTING, given.docs / "belief.md"
+    tables, page = given.folder / LASTING, given.docs / "belief-measured.md"
     if not tables.is_file():
         sys.exit(f"{given.folder} holds no {LASTING}. Run `tpvqa bench belief --parts lasting`")
     targets = TARGETS.search(tables.read_text(encoding="utf-8"))

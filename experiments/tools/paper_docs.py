@@ -256,7 +256,7 @@ def main() -> None:
         "front": _table(everything.front()),
         "field": _table(everything.field()),
     }
-    _fill(ROOT / "docs" / "belief.md", tables)
+    _fill(ROOT / "docs" / "belief-measured.md", tables)
     _fill(ROOT / "docs" / "paper.md", tables)
     _fill(ROOT / "README.md", tables)
     if given.rows is not None:

@@ -268,7 +268,7 @@ def test_the_documentation_gets_its_table_from_the_bench(tmp_path: Path) -> None
     script = Path(__file__).parents[2] / "experiments/tools/lasting_docs.py"
     results = found(share(MISREAD.cell(TASK, BELIEF, "free"), 40))
     told = lasting_markdown(results, EXTENT, list(lasting_targets(results, EXTENT)))
-    (tmp_path / "belief.md").write_text("# Belief\n<!-- lasting -->\n\n<!-- end -->\nMore.\n")
+    (tmp_path / "belief-measured.md").write_text("# Belief\n<!-- lasting -->\n\n<!-- end -->\nMore.\n")
     command = [sys.executable, str(script), str(tmp_path), "--docs", str(tmp_path)]
     missing = subprocess.run(command, capture_output=True, text=True, check=False)
     assert missing.returncode == 1
@@ -276,7 +276,7 @@ def test_the_documentation_gets_its_table_from_the_bench(tmp_path: Path) -> None
     (tmp_path / "lasting.md").write_text(told)
     for _ in range(2):  # again, and it is the same
         subprocess.run(command, check=True)
-        page = (tmp_path / "belief.md").read_text()
+        page = (tmp_path / "belief-measured.md").read_text()
         assert page.count("**0.40 (0.31–0.50)**") == 1
         assert page.startswith("# Belief\n<!-- lasting -->\n\n| condition |")
         assert page.endswith("<!-- end -->\nMore.\n")
