@@ -1,8 +1,8 @@
 """Put what the belief bench has measured into the documentation.
 
 `python experiments/tools/belief_docs.py FOLDER`, with the folder that `tpvqa bench belief` has
-written. Between `<!-- NAME -->` and `<!-- end -->`, the tables of `docs/belief-measured.md` are made again;
-`docs/belief-results.md` and the figures are copied.
+written. Between `<!-- NAME -->` and `<!-- end -->`, the tables of `docs/belief-measured.md` are
+made again; `docs/belief-results.md` and the figures are copied.
 """
 
 import argparse

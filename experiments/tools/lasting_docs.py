@@ -1,7 +1,7 @@
 """Put what the belief bench has measured of errors that last into the documentation.
 
 `python experiments/tools/lasting_docs.py FOLDER`, with the folder that `tpvqa bench belief --parts
-lasting,risk` has written. Between `<!-- lasting -->` and `<!-- end -->`, the targets of
+lasting` has written. Between `<!-- lasting -->` and `<!-- end -->`, the targets of
 `docs/belief-measured.md` are made again; `docs/lasting-results.md` is a copy of all tables.
 """
 

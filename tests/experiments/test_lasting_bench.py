@@ -17,6 +17,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError, UnknownNameError
 from tpvqa_experiments.belief import BeliefBench, BeliefResults, Part, run_belief_bench
 from tpvqa_experiments.belief.best_rival import best_rival
+from tpvqa_experiments.belief.bounded import bounded
 from tpvqa_experiments.belief.calibrations import Source, calibrations, source_of
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.lasting import (
@@ -25,7 +26,6 @@ from tpvqa_experiments.belief.lasting import (
     draws,
     experienced,
     recorded_noise,
-    risked,
 )
 from tpvqa_experiments.belief.lasting_tables import (
     lasting_markdown,
@@ -124,11 +124,6 @@ class TestCells:
         assert source_of(cell).vlm == "flawed:misread:0.1:0.95"
         robots = {cell.vlm for cell, _ in EXTENT.cells(Part.LASTING) if ":same:" in cell.vlm}
         assert len(robots) == len(draws(100)) == 4
-
-    def test_risks_are_bounded_under_every_noise(self) -> None:
-        cells = {cell for cell, n in EXTENT.cells(Part.RISK) if n == 1000}
-        assert {cell.monitor for cell in cells} == {"belief:risk=0.02", "belief:risk=0.05"}
-        assert len(cells) == (len(NOISES) + 1) * 2 * 2
 
 
 @pytest.mark.parametrize(("half", "least"), [("0:lasting", 0.3), ("0:fresh", 0.0)])
@@ -238,12 +233,20 @@ class TestTargets:
         assert few.value == 0.5
         assert over_robots([rows(cell, [True])] * 4).low < 0.7
 
-    def test_a_risk_is_the_share_of_all_trials(self) -> None:
-        cell = risked(MISREAD.cell(TASK, BELIEF, "free"), 0.02)
-        (held,) = checks(found(share(cell, 90, lied=4)), "wrong done")
-        (broken,) = checks(found(share(cell, 80, lied=10)), "wrong done")
-        assert (held.reached, broken.reached) == (True, False)
-        assert broken.note == "not in: 10% always misread clean_dishes 0.1"
+    def test_a_risk_is_learnt_on_one_half_of_the_trials_and_judged_on_the_other(self) -> None:
+        cell = MISREAD.cell(TASK, BELIEF, "free")
+        own = share(cell, 90, of=99, lied=9)
+        own = [row.model_copy(update={"reached": row.completed}) for row in own]
+        sure = {False: 0.9, True: 0.99}
+        told = [row.model_copy(update={"goal": sure[row.completed]}) for row in own]
+        held = checks(found(told), "wrong done ≤ 0.02")
+        assert [each.reached for each in held] == [True]
+        ended = bounded(told, 0.02)
+        assert len(ended) == len(own)
+        assert sum(row.believed_goal for row in ended) == sum(row.completed for row in ended) == 90
+        alike = [row.model_copy(update={"goal": 0.9}) for row in own]
+        assert not any(row.believed_goal for row in bounded(alike, 0.02))
+        assert bounded(told[:97], 0.02) == []
 
     def test_what_was_not_run_is_not_told(self) -> None:
         assert not list(lasting_targets(BeliefResults({}, {}), EXTENT))
@@ -268,7 +271,9 @@ def test_the_documentation_gets_its_table_from_the_bench(tmp_path: Path) -> None
     script = Path(__file__).parents[2] / "experiments/tools/lasting_docs.py"
     results = found(share(MISREAD.cell(TASK, BELIEF, "free"), 40))
     told = lasting_markdown(results, EXTENT, list(lasting_targets(results, EXTENT)))
-    (tmp_path / "belief-measured.md").write_text("# Belief\n<!-- lasting -->\n\n<!-- end -->\nMore.\n")
+    (tmp_path / "belief-measured.md").write_text(
+        "# Belief\n<!-- lasting -->\n\n<!-- end -->\nMore.\n"
+    )
     command = [sys.executable, str(script), str(tmp_path), "--docs", str(tmp_path)]
     missing = subprocess.run(command, capture_output=True, text=True, check=False)
     assert missing.returncode == 1

@@ -5,7 +5,7 @@ scene, questions that are always misread, answers of which the monitor is told s
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil
 
 from tpvqa.bench.cell import Cell
@@ -164,25 +164,3 @@ def lasting_cells(
         for task in tasks:
             for draw in draws(episodes):
                 yield experienced(task, redo, draw), AFTER + JUDGED
-
-
-def risk_cells(
-    models: Sequence[str], tasks: Sequence[str], episodes: int
-) -> Iterator[tuple[Cell, int]]:
-    """The cells of the belief monitor with a bound on its risk, under all noises.
-
-    Args:
-        models: Recorded VLMs; all where none is named.
-        tasks: Shipped tasks.
-        episodes: Of every cell.
-    """
-    for redo in REDOING:
-        for noise, own in lasting_noises(models, tasks):
-            for task in own:
-                for risk in RISKS:
-                    yield risked(noise.cell(task, BELIEF, redo), risk), episodes
-
-
-def risked(cell: Cell, risk: float) -> Cell:
-    """A cell of the belief monitor, with a bound on how often it ends in a wrong *done*."""
-    return replace(cell, monitor=f"{BELIEF}:risk={risk:g}")

@@ -7,6 +7,7 @@ reached, and names the others.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from tpvqa_experiments.belief.bounded import bounded
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.lasting import (
     AFTER,
@@ -20,7 +21,6 @@ from tpvqa_experiments.belief.lasting import (
     experienced,
     lasting_noises,
     recorded_noises,
-    risked,
 )
 from tpvqa_experiments.belief.parts import BELIEF, Extent
 from tpvqa_experiments.belief.resampling import Estimate
@@ -140,12 +140,12 @@ def _recorded(redo: str, found: Sequence[UnderNoise]) -> Iterator[Check]:
 
 def _risks(results: BeliefResults, extent: Extent, redo: str) -> Iterator[Check]:
     for risk in RISKS:
-        cells = [
-            (f"{noise.name} {task}", risked(noise.cell(task, BELIEF, redo), risk))
+        own = [
+            (f"{noise.name} {task}", rows)
             for noise, tasks in lasting_noises(extent.models, extent.tasks)
             for task in tasks
+            if (rows := bounded(results.of(noise.cell(task, BELIEF, redo)), risk))
         ]
-        own = [(name, rows) for name, cell in cells if (rows := results.of(cell))]
         if own:
             where = under(f"risk of {risk:g}", redo)
             yield _all_at_most(where, "wrong done", risk, own, wrong)

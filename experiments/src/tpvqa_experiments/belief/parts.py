@@ -60,7 +60,6 @@ class Part(StrEnum):
     WRONG_VLM = "wrong-vlm"
     ABLATIONS = "ablations"
     LASTING = "lasting"
-    RISK = "risk"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,7 +78,6 @@ class Extent:
         curve: Episodes of every further point of the curve.
         chains: Robots that learn how good their VLM is, for `CHAIN` episodes each.
         lasting: Episodes of every cell under errors that last, ours or a rival's.
-        risk: Episodes of every cell of a bounded risk.
     """
 
     tasks: Sequence[str] = (*TASKS, "build_tower")
@@ -92,11 +90,10 @@ class Extent:
     curve: int = 100
     chains: int = 30
     lasting: int = 300
-    risk: int = 1000
 
     def cells(self, part: Part) -> Iterator[tuple[Cell, int]]:
         """The cells of a part, each with its number of episodes."""
-        from tpvqa_experiments.belief.lasting import lasting_cells, risk_cells
+        from tpvqa_experiments.belief.lasting import lasting_cells
 
         match part:
             case Part.GRID:
@@ -136,8 +133,6 @@ class Extent:
                             yield Cell(task, monitor, vlm, SYMBOLIC), self.episodes
             case Part.LASTING:
                 yield from lasting_cells(self.models, self.tasks, self.lasting)
-            case Part.RISK:
-                yield from risk_cells(self.models, self.tasks, self.risk)
 
     @property
     def household(self) -> list[str]:

@@ -21,7 +21,7 @@ def belief(
         str,
         typer.Option(
             help="Parts, with commas: grid, rivals, paper, embedded, recorded, wrong-model, "
-            "wrong-vlm, ablations, lasting, risk."
+            "wrong-vlm, ablations, lasting."
         ),
     ] = "grid,rivals,paper,embedded,recorded,wrong-model,wrong-vlm,ablations,lasting",
     tasks: Annotated[
@@ -60,9 +60,6 @@ def belief(
     lasting_episodes: Annotated[
         int, typer.Option(help="Of every cell of the part lasting, ours or a rival's.", min=1)
     ] = 300,
-    risk_episodes: Annotated[
-        int, typer.Option(help="Of every cell of the part risk.", min=1)
-    ] = 1000,
     calibration_episodes: Annotated[
         int, typer.Option(help="Trials that each calibration is learnt from.", min=1)
     ] = 120,
@@ -117,7 +114,6 @@ def belief(
             curve=curve_episodes,
             chains=chains,
             lasting=lasting_episodes,
-            risk=risk_episodes,
         ),
         calibration_episodes=calibration_episodes,
         embedded_world=embedded_calibration,
