@@ -154,7 +154,10 @@ def test_a_budget_for_the_trial_is_kept(planner: Planner, budget: str, counted: 
     assert max(used) == limit
 
 
-@pytest.mark.parametrize("budget", ["questions_per_trial=30", "looks_per_trial=20"])
+@pytest.mark.parametrize(
+    "budget",
+    ["questions_per_trial=30", "looks_per_trial=20", "looks_per_step=0", "questions_per_trial=0"],
+)
 def test_once_a_budget_is_spent_it_goes_on_unseen_and_ends(planner: Planner, budget: str) -> None:
     several = [
         run(planner, f"belief:{budget}", limits=Limits(actions=600), episode=n)[0]
@@ -286,24 +289,22 @@ class Bystander:
         return [Answer(question, truthful(question, self.truth.holds)) for question in questions]
 
 
-def test_a_person_who_answers_is_asked_instead_of_a_poor_vlm(planner: Planner) -> None:
-    def ended(person: float) -> tuple[Ended, int]:
-        bystander, writer = Bystander(), MemoryWriter()
-        config = TrialConfig(
-            task="serve_breakfast",
-            world="symbolic",
-            vlm="oracle:0.6",
-            monitor=f"belief:person={person}",
-        )
-        told = right_in(0.6)
-        with Trial(config, planner=planner, task=TASK, person=bystander, calibration=told) as trial:
-            bystander.truth = known_truth(trial.world)
-            end = trial.run(writer)
-        asked = sum(isinstance(event, Asked) and event.person for event in writer.events)
-        return end, asked
+def beside_a_person(planner: Planner, monitor: str) -> tuple[Ended, int]:
+    """How a trial ended, and how often a person was asked."""
+    bystander, writer = Bystander(), MemoryWriter()
+    config = TrialConfig(
+        task="serve_breakfast", world="symbolic", vlm="oracle:0.6", monitor=monitor
+    )
+    told = right_in(0.6)
+    with Trial(config, planner=planner, task=TASK, person=bystander, calibration=told) as trial:
+        bystander.truth = known_truth(trial.world)
+        end = trial.run(writer)
+    return end, sum(isinstance(event, Asked) and event.person for event in writer.events)
 
-    cheap, often = ended(0.02)
-    dear, never = ended(1000)
+
+def test_a_person_who_answers_is_asked_instead_of_a_poor_vlm(planner: Planner) -> None:
+    cheap, often = beside_a_person(planner, "belief:person=0.02")
+    dear, never = beside_a_person(planner, "belief:person=1000")
     assert cheap.completed
     assert often > 3
     assert never == 0
@@ -442,3 +443,11 @@ def test_what_is_found_done_is_not_done_again(planner: Planner) -> None:
         ended = trial.run(writer)
     assert ended.completed
     assert not any(e.kind == "acting" and e.action.name == "open" for e in writer.events)
+
+
+@pytest.mark.parametrize("budget", ["questions_per_trial=0", "looks_per_trial=0"])
+def test_a_person_is_asked_where_the_vlm_may_not_be(planner: Planner, budget: str) -> None:
+    end, often = beside_a_person(planner, f"belief:person=0.5:{budget}")
+    assert end.completed
+    assert end.actions < 20
+    assert often > 3

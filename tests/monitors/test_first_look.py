@@ -69,6 +69,13 @@ def test_the_world_draws_the_same_for_every_monitor(planner: Planner, night: Tas
     assert len(set(starts)) == 1
 
 
+def test_what_is_asked_at_first_counts_for_the_trial(planner: Planner) -> None:
+    _, events = run(
+        planner, "build_tower", start="unknown", seed=2, monitor="belief:questions_per_trial=30"
+    )
+    assert sum(len(each.questions) for each in events if isinstance(each, Asked)) == 30
+
+
 def test_with_nothing_known_it_looks_before_there_is_a_plan(planner: Planner) -> None:
     trial, events = run(planner, "build_tower", start="unknown", seed=2)
     assert trial.simulation is not None

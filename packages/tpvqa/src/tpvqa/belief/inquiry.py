@@ -98,7 +98,7 @@ class Inquirer:
             person: Whether a person can be asked.
             dearer: How many times its price a question of the VLM has to be worth.
         """
-        if budget.questions <= 0:
+        if budget.questions <= 0 and not person:
             return None
         weighted = table.weights[:, None] * table.costs
         work = table.weights[:, None] * table.work
@@ -136,7 +136,7 @@ class Inquirer:
                 )
                 saving = float(told[0, 0]) - self._costs.person
                 found = _better(found, Inquiry(question, 1, saving, person=True))
-            open_views = views(question)
+            open_views = views(question) if budget.questions > 0 else ()
             if not open_views:
                 continue
             doubt = _Doubted(

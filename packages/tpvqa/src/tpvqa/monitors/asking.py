@@ -34,8 +34,6 @@ class Asking:
 
     Attributes:
         now: What happened since the last action.
-        looks: Looks in this trial.
-        questions: Questions in this trial.
         person: Whether a person can be asked.
     """
 
@@ -53,14 +51,25 @@ class Asking:
         self._belief, self._evidence, self._costs = belief, evidence, costs
         self._feeling, self._felt = feeling, felt
         self._views, self._blind = tuple(views), blind
-        self.looks = self.questions = 0
+        self._before = Inspection()
         self.person = costs.person is not None
         self.now = self._begun(None)
 
     def begin(self, action: Action | None = None) -> Inspection:
         """Note that an action was executed: what was seen before is past."""
+        self._before = Inspection(looks=self.looks, questions=self.questions)
         self.now = self._begun(action)
         return self.now
+
+    @property
+    def looks(self) -> int:
+        """Looks in this trial."""
+        return self._before.looks + self.now.looks
+
+    @property
+    def questions(self) -> int:
+        """Questions in this trial."""
+        return self._before.questions + self.now.questions
 
     def _begun(self, action: Action | None) -> Inspection:
         return Inspection(action, next(iter(self._views), None))
@@ -72,10 +81,12 @@ class Asking:
         )
 
     @property
-    def may_go_on(self) -> bool:
-        """Whether the trial may still cost a question and the look for it."""
-        left = self._left()
-        return min(left.questions, left.looks) > 0
+    def sees(self) -> bool:
+        """Whether an answer may still come in this trial, from the VLM or from a person."""
+        costs, left = self._costs, self._left()
+        looks = left.looks > 0 or self.now.picture is not None
+        vlm = min(left.questions, costs.questions_per_step, costs.looks_per_step) > 0 and looks
+        return vlm or self.person
 
     def budget(self) -> Budget:
         """What may still be asked and looked at before the next action."""
@@ -84,6 +95,12 @@ class Asking:
             min(costs.questions_per_step - now.questions, left.questions),
             min(costs.looks_per_step - now.looks, left.looks),
         )
+
+    @property
+    def may_ask(self) -> bool:
+        """Whether the VLM may be asked anything more before the next action."""
+        budget = self.budget()
+        return budget.questions > 0 and (budget.looks > 0 or self.now.picture is not None)
 
     def likely(self, question: FactQuestion) -> float:
         """The probability that yes is right."""
@@ -132,7 +149,6 @@ class Asking:
                 looks += 1
             answers: list[Answer] = yield Ask((question,))
             answer = answers[0]
-            self.questions += 1
             now.questions += 1
             now.heard[question.text, answer.reply] += 1
             self._evidence.take(question, answer, now.picture, now.view)
@@ -156,7 +172,6 @@ class Asking:
         self.sense(seen.facts)
         self._feeling.looked(seen.facts)
         now.picture = self.telling(seen)
-        self.looks += 1
         now.looks += 1
 
     def sense(self, facts: Sequence[SensedFact]) -> None:

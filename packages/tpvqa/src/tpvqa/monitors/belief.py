@@ -209,8 +209,7 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def first(self, book: QuestionBook) -> Check:
         """Look, where there are too many initial states to weigh; and plan from a likely one."""
-        prior = Prior(self.task, self._priors, self._undo)
-        now = self._asking.begin()
+        prior, now = Prior(self.task, self._priors, self._undo), self._asking.begin()
         self.evidence.weigh(prior)
         yield from first_look(
             prior,
@@ -221,7 +220,6 @@ class BeliefMonitor(Learning, PlainArguments):
             budget=self._asking.budget,
             picture=self._asking.telling,
         )
-        self._asking.looks, self._asking.questions = now.looks, now.questions
         self.evidence.weigh(self.belief)
         self.belief.begin(prior.states())
         verdict = yield from first_verdict(self.belief, prior, FactWords(book), now)
@@ -310,16 +308,17 @@ class BeliefMonitor(Learning, PlainArguments):
                 yield from self._asking.inquire(inquiry)
                 continue
             best = table.best
+            looks = best.action is None and self._asking.sees
             if best.action is None and self._errand is not None:
                 self._errand, self._past = None, self._errand  # there; now it is looked
-            elif best.action is not None or not (yield from self._sets_out(step)):
+            elif not looks or not (yield from self._sets_out(step)):
                 return best
 
     def _settle(self, step: Step) -> None:
         """Work out how far it can be found out what is true, and what that costs."""
-        nothing = Settling(0.0, new=0.0)
-        asks = self._asking.may_go_on
-        found = self.evidence.settling(self._about_needs(step.book)) if asks else nothing
+        questions, unseen = self._about_needs(step.book), Settling(0.0, new=0.0)
+        sees = self._asking.sees or not questions  # else sensors alone tell, and go on
+        found = self.evidence.settling(questions) if sees else unseen
         self._telling = found.share
         self._chooser.settles = self._settlings.taken(found, self._task_ways.ahead(self.belief))
         self._chooser.blind = self.evidence.worthless(found)
@@ -386,7 +385,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self._ways.annotated(step),
             acted,
             unseen=self.evidence.unseen,
-            questions_left=self._asking.budget().questions > 0,
+            questions_left=self._asking.may_ask,
             actions_left=step.actions_left,
             failing=self._ways.failing(step),
             risk=self._risk,
