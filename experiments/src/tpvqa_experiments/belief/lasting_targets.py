@@ -139,18 +139,22 @@ def _recorded(redo: str, found: Sequence[UnderNoise]) -> Iterator[Check]:
 
 
 def _risks(results: BeliefResults, extent: Extent, redo: str) -> Iterator[Check]:
+    ran = [
+        (f"{noise.name} {task}", rows)
+        for noise, tasks in lasting_noises(extent.models, extent.tasks)
+        for task in tasks
+        if (rows := results.of(noise.cell(task, BELIEF, redo)))
+    ]
     for risk in RISKS:
-        own = [
-            (f"{noise.name} {task}", rows)
-            for noise, tasks in lasting_noises(extent.models, extent.tasks)
-            for task in tasks
-            if (rows := bounded(results.of(noise.cell(task, BELIEF, redo)), risk))
-        ]
+        told = [(name, bounded(rows, risk)) for name, rows in ran]
+        own = [(name, rows) for name, rows in told if rows]
         if own:
             where = under(f"risk of {risk:g}", redo)
             yield _all_at_most(where, "wrong done", risk, own, wrong)
             left = completion([row for _, rows in own for row in rows])
-            yield Check(where, "completion that is left, of all trials", "–", left, None)
+            out = len(told) - len(own)
+            note = f"without {out} cells that are too small to learn it from" if out else ""
+            yield Check(where, "completion that is left, of all trials", "–", left, None, note)
 
 
 def _all_at_most(

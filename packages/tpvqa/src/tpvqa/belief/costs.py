@@ -15,7 +15,7 @@ class Costs(BaseModel):
         failure: A trial that ends without its goal.
         misreport: That a trial says of its end what is not so: that the goal is reached, or is not.
         questions_per_step: Most questions between two actions.
-        questions_per_trial: Most questions in a trial; once they are spent it goes on unseen, and ends.
+        questions_per_trial: Most questions in a trial; then it goes on unseen, and ends.
         looks_per_step: Most looks between two actions.
         looks_per_trial: Most looks in a trial.
     """
