@@ -19,8 +19,8 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Atom, Literal, State, Task, load_task
 from tpvqa.questions import QuestionBook
 from tpvqa.vlm import Reply
-from tpvqa_experiments.viplan.bench import ViPlanBench, run_viplan_bench
-from tpvqa_experiments.viplan.calibrations import calibration
+from tpvqa_experiments.viplan.bench import KNOWING, ViPlanBench, run_viplan_bench
+from tpvqa_experiments.viplan.calibrations import calibration, exact
 from tpvqa_experiments.viplan.noise import LASTING, as_seen
 from tpvqa_experiments.viplan.problems import Environment, problems_in
 from tpvqa_experiments.viplan.published import Published, published
@@ -204,6 +204,30 @@ def test_a_bench_has_a_row_for_every_model_and_goes_on_where_it_was(
     assert json.loads((tmp_path / "viplan.json").read_text()) == rows
     assert run() == rows
     assert done == [(24, 24)]
+
+
+def test_beside_the_belief_stands_one_that_knows_how_answers_and_skills_err(
+    folder: Path, tmp_path: Path, task: Task
+) -> None:
+    bench = ViPlanBench(
+        problems=problems_in(folder, Environment.BLOCKSWORLD, ("simple",)),
+        models=("qwen2.5-vl-72b",),
+        monitors=("belief", KNOWING),
+        noise="recorded",
+        settings=("fail01_no_cot",),
+    )
+    rows = [line.flat() for line in run_viplan_bench(bench, tmp_path, {})]
+    assert [row["monitor"] for row in rows] == ["belief", KNOWING]
+    assert {cell.monitor for _, cell in bench.cells()} == {
+        "belief",
+        "belief:without=learning:failure_rate=0.1:disturbance_rate=0",
+    }
+    known = exact("recorded:qwen2.5-vl-72b", task)
+    assert sorted(known.lasting) == [0.0] * 10 + [1.0]
+    assert known.lasting_share > 0.9
+    assert exact("recorded:qwen2.5-vl-72b:fresh", task).lasting_share == 0
+    with pytest.raises(BenchError, match="--noise recorded"):
+        exact("recorded-scenes:qwen2.5-vl-72b", task)
 
 
 def test_the_command_prints_the_table(folder: Path, tmp_path: Path) -> None:

@@ -24,7 +24,13 @@ def viplan(
         str,
         typer.Option(help="Recorded models, or oracle[:ACCURACY], with commas. Default: all."),
     ] = "",
-    monitors: Annotated[str, typer.Option(help="Monitors, with commas.")] = "grounder,belief",
+    monitors: Annotated[
+        str,
+        typer.Option(
+            help="Monitors, with commas; `knowing` is the limit beside belief, told exactly how "
+            "answers and skills err (not with scenes)."
+        ),
+    ] = "grounder,belief",
     settings: Annotated[
         str, typer.Option(help="no_cot, or fail01_no_cot in which one action in ten fails.")
     ] = "no_cot",

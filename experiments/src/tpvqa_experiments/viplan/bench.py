@@ -21,6 +21,10 @@ from tpvqa_experiments.viplan.published import Key, Published
 from tpvqa_experiments.viplan.tables import Line, line, markdown
 
 BELIEF, SYMBOLIC, ORACLE = "belief", "symbolic", "oracle"
+KNOWING = "knowing"
+"""The limit beside the belief monitor: the same, told exactly how VLM and skills err."""
+AS_TOLD = f"{BELIEF}:without=learning"
+"""How that is run: it takes what it is told as it is."""
 NOISES: Mapping[str, str] = {
     "scenes": "recorded-scenes:{}",
     "recorded": "recorded:{}",
@@ -36,7 +40,7 @@ class ViPlanBench:
     Attributes:
         problems: The problems, by name.
         models: Recorded models, or `oracle[:ACCURACY]`.
-        monitors: Specifications of monitors.
+        monitors: Specifications of monitors, or `knowing`, the limit beside `belief`.
         settings: Of `SETTINGS`.
         limits: Of `LIMITS`.
         noise: Of `NOISES`; blocksworld alone has scenes, the household is `recorded` instead.
@@ -71,7 +75,11 @@ class ViPlanBench:
         condition = ",".join((SETTINGS[group.setting], LIMITS[group.limit], "start=unknown"))
         recorded = group.model.partition(":")[0] != ORACLE
         vlm = NOISES[noise].format(group.model) if recorded else group.model
-        return Cell(task, group.monitor, vlm, SYMBOLIC, condition)
+        monitor = group.monitor
+        if monitor == KNOWING:
+            told = (each.split("=") for each in SETTINGS[group.setting].split(","))
+            monitor = ":".join((AS_TOLD, *(f"{name}_rate={value}" for name, value in told)))
+        return Cell(task, monitor, vlm, SYMBOLIC, condition)
 
     def declared(self) -> Bench:
         """What the engine is given."""
@@ -82,7 +90,9 @@ class ViPlanBench:
             for cell in missing:
                 if cell.monitor.partition(":")[0] == BELIEF:
                     task = stage(cell.task, own[cell.task]).task
-                    known = calibrations.calibration(cell.vlm, task)
+                    exact = cell.monitor.startswith(AS_TOLD) and KNOWING in self.monitors
+                    learnt = calibrations.exact if exact else calibrations.calibration
+                    known = learnt(cell.vlm, task)
                     if known is not None:
                         found[cell] = known
             return found

@@ -6,10 +6,14 @@ from functools import cache
 from tpvqa.belief import LabelledAnswer
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.fitting import fit
+from tpvqa.belief.kinds import FRESH, KINDS, Kind
 from tpvqa.bench.labelled_recordings import label_recordings
+from tpvqa.errors import BenchError
 from tpvqa.pddl import Task
 from tpvqa.questions.question import Way
 from tpvqa.vlm.answer import Reply
+from tpvqa.vlm.recorded.lasting import Lasting, lasting
+from tpvqa.vlm.recorded.spec import Errors, RecordedSpec
 from tpvqa.vlm.recorded.vlm import told_by
 from tpvqa_experiments.viplan.noise import PREDICATES
 from tpvqa_experiments.viplan.scenes import Scene, scenes, true_facts
@@ -32,6 +36,31 @@ def calibration(vlm: str, task: Task) -> Calibration | None:
     if name == RECORDED:
         return _of_answers(vlm, task)
     return None
+
+
+def exact(vlm: str, task: Task) -> Calibration:
+    """How the answers of a recorded VLM are drawn: its rates, and how its errors last, of the kinds
+    that a belief tells apart the nearest.
+
+    Raises:
+        BenchError: Its answers are drawn in whole scenes, so that no rates say how.
+    """
+    name, _, arguments = vlm.partition(":")
+    if name != RECORDED:
+        raise BenchError(
+            f"Nothing says exactly how {vlm} errs, as knowing has to be told. Say --noise recorded"
+        )
+    rates = _of_answers(vlm, task)
+    if RecordedSpec.parse(arguments).errors is Errors.FRESH:
+        return rates.model_copy(update={"lasting": FRESH})
+    told = told_by(arguments, task)
+    lasts = lasting(told.model, told.environment)
+    near = min(KINDS, key=lambda kind: (kind.coin, *_apart(kind, lasts)))
+    return rates.model_copy(update={"lasting": tuple(float(kind == near) for kind in KINDS)})
+
+
+def _apart(kind: Kind, lasts: Lasting) -> tuple[float, float]:
+    return abs(kind.share - lasts.scene), abs(kind.stays - lasts.trial)
 
 
 @cache
