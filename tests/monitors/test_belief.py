@@ -6,11 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
 
-from tests.doubles import configured, known_truth, truthful
+from tests.doubles import Answerer, ScriptedVLM, configured, known_truth, truthful
 from tests.resumed import story
 from tpvqa.assembly import Trial
 from tpvqa.belief import AnswerRates, Calibration, Group
@@ -20,7 +22,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import PluginError
 from tpvqa.events import Ended, Limits
-from tpvqa.events.events import Acting, Asked, Decided, Event, PlanMade
+from tpvqa.events.events import Acting, Answered, Asked, Decided, Event, PlanMade
 from tpvqa.monitors.belief import BeliefMonitor
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Literal, literals, load_task
@@ -451,3 +453,57 @@ def test_a_person_is_asked_where_the_vlm_may_not_be(planner: Planner, budget: st
     assert end.completed
     assert end.actions < 20
     assert often > 3
+
+
+def asked_again_after_a_yes(events: Sequence[Event], predicate: str) -> int:
+    """How often a question about a predicate was asked again before the next action."""
+    affirmed: set[str] = set()
+    again, asked = 0, None
+    for event in events:
+        if isinstance(event, Acting):
+            affirmed.clear()
+        elif isinstance(event, Asked):
+            asked = event
+            again += sum((each.atom or "") in affirmed for each in event.questions)
+        elif isinstance(event, Answered) and asked is not None:
+            affirmed |= {
+                question.atom or ""
+                for question, answer in zip(asked.questions, event.answers, strict=True)
+                if answer.reply is Reply.YES and (question.atom or "").startswith(f"({predicate} ")
+            }
+    return again
+
+
+def unsure_answers(seed: int) -> Answerer:
+    draws = Random(seed)
+    return lambda question: Reply.YES if draws.random() < 0.7 else Reply.NO
+
+
+def test_what_a_picture_may_still_show_is_not_asked_again_once_affirmed(
+    planner: Planner, tmp_path: Path
+) -> None:
+    """A second yes would say nothing more of where the robot is."""
+    given = find_task("clean_dishes").questions
+    assert given is not None
+    shown = tmp_path / "questions.yaml"
+    shown.write_text(given.read_text() + '\nstill_shown: ["(near ?x)"]\n')
+
+    def again(questions: Path) -> int:
+        told = 0
+        for episode in range(3):
+            config = configured(
+                task="clean_dishes",
+                world="images",
+                monitor="belief",
+                questions=str(questions),
+                limits=Limits(actions=10),
+                episode=episode,
+            )
+            unsure = ScriptedVLM(unsure_answers(episode))
+            writer = MemoryWriter()
+            with Trial(config, planner=planner, vlm=unsure) as trial:
+                trial.run(writer)
+            told += asked_again_after_a_yes(writer.events, "near")
+        return told
+
+    assert again(shown) == 0 < again(Path(str(given)))
