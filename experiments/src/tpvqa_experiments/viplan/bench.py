@@ -84,14 +84,14 @@ class ViPlanBench:
     def declared(self) -> Bench:
         """What the engine is given."""
         own = {name: problem.task for name, problem in self.problems.items()}
+        knowing = {cell for group, cell in self.cells() if group.monitor == KNOWING}
 
         def told(missing: Sequence[Cell]) -> Mapping[Cell, Calibration]:
             found = {}
             for cell in missing:
                 if cell.monitor.partition(":")[0] == BELIEF:
                     task = stage(cell.task, own[cell.task]).task
-                    exact = cell.monitor.startswith(AS_TOLD) and KNOWING in self.monitors
-                    learnt = calibrations.exact if exact else calibrations.calibration
+                    learnt = calibrations.exact if cell in knowing else calibrations.calibration
                     known = learnt(cell.vlm, task)
                     if known is not None:
                         found[cell] = known
