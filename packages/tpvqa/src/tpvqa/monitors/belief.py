@@ -340,6 +340,7 @@ class BeliefMonitor(Learning, PlainArguments):
                 return Inquiry(doubted[0], 1, 0.0)
         able = questions if min(budget.questions, budget.looks) > 0 else []
         if known := self._controls.next(able, likely, views):
+            self._now.controls.append(known)
             return Inquiry(known, 1, 0.0)
         found = self._inquirer.best(
             questions,
@@ -380,8 +381,7 @@ class BeliefMonitor(Learning, PlainArguments):
             step,
             self._words,
             self.belief,
-            self._now.replies,
-            self._now.noticed,
+            self._now,
             self._ways.annotated(step),
             acted,
             unseen=self.evidence.unseen,

@@ -54,6 +54,7 @@ class Inspection:
         replies: What was answered to each question.
         heard: How often the VLM gave each answer to each text.
         noticed: What the robot's own skill and sensors told of facts.
+        controls: What was asked about though it is known, to see what answers are worth.
     """
 
     action: Action | None = None
@@ -65,6 +66,7 @@ class Inspection:
     replies: dict[str, Replies] = field(default_factory=dict)
     heard: Counter[tuple[str, Reply]] = field(default_factory=Counter)
     noticed: dict[Atom, Noticed] = field(default_factory=dict)
+    controls: list[FactQuestion] = field(default_factory=list)
     _about: dict[frozenset[Atom], list[FactQuestion]] = field(default_factory=dict)
 
     def about(self, atoms: frozenset[Atom], book: QuestionBook) -> list[FactQuestion]:

@@ -8,7 +8,7 @@ from tpvqa.belief.belief import Belief
 from tpvqa.belief.replies_in_words import words
 from tpvqa.belief.risk import RiskBound
 from tpvqa.events.decision import Decision
-from tpvqa.monitors.inspection import Noticed, Replies
+from tpvqa.monitors.inspection import Inspection, Noticed, Replies
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated
 from tpvqa.pddl import Action, Atom, Literal, State
@@ -18,6 +18,8 @@ SAID = 2
 """Facts that a reason names, at most."""
 SURE = 0.9
 """What is surer than this and was not asked about needs no words."""
+OPEN = 0.05
+"""What is less probable than this, or its contrary, is in no doubt that anything has to settle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +30,7 @@ class Grounds:
         step: Where the trial stands.
         words: Says facts.
         belief: What is believed.
-        told: What was answered since the last action, by question.
-        noticed: What the robot's own skill and sensors told since then, by fact.
+        now: What was seen, answered and noticed since the last action.
         plan: The plan that is followed, with its needs.
         acted: Whether the step's action was just executed.
         unseen: Whether some question found no answer.
@@ -42,8 +43,7 @@ class Grounds:
     step: Step
     words: FactWords
     belief: Belief
-    told: Mapping[str, Replies]
-    noticed: Mapping[Atom, Noticed]
+    now: Inspection
     plan: AnnotatedPlan | None
     acted: bool
     unseen: bool
@@ -51,6 +51,16 @@ class Grounds:
     actions_left: int | None
     failing: str = ""
     risk: RiskBound | None = None
+
+    @property
+    def told(self) -> Mapping[str, Replies]:
+        """What was answered since the last action, by question."""
+        return self.now.replies
+
+    @property
+    def noticed(self) -> Mapping[Atom, Noticed]:
+        """What the robot's own skill and sensors told since then, by fact."""
+        return self.now.noticed
 
     @property
     def next(self) -> int:
@@ -89,7 +99,21 @@ def reason(
         place: Which step of the plan that is; None for none.
     """
     failing = (grounds.failing,) if grounds.failing and decision is not Decision.DONE else ()
-    return "; ".join((*failing, _reason(grounds, decision, action, state, place)))
+    return "; ".join(
+        (*failing, _reason(grounds, decision, action, state, place), *_checked(grounds))
+    )
+
+
+def _checked(grounds: Grounds) -> list[str]:
+    """What was asked about though it is known, to see what answers are worth."""
+    asked = dict.fromkeys(each.family for each in grounds.now.controls)
+    known = [grounds.told[family] for family in asked if family in grounds.told]
+    if not known:
+        return []
+    first, more = known[0], f" and {len(known) - 1} more" if len(known) > 1 else ""
+    heard = words(first.replies) or "no answer"
+    said = f"{grounds.words.of(first.atoms[0])} {_figure(first.before)}, {heard}"
+    return [f"asked what is known to see what answers are worth ({said}{more})"]
 
 
 def _reason(
@@ -206,7 +230,8 @@ def _end(grounds: Grounds, decision: Decision) -> str:
         return f"{why}the goal holds with {goal}"
     if not why:
         why = "no other way is known, and " if grounds.failing else "no plan is worth trying, and "
-    return f"{why}the goal holds with only {goal}"
+    doubt = _settling(grounds) if OPEN < probability < 1 - OPEN and not grounds.failing else ""
+    return f"{why}the goal holds with only {goal}{doubt}"
 
 
 def _too_few(grounds: Grounds) -> bool:
