@@ -9,6 +9,11 @@ DOUBTED = 0.01
 """A fact whose probability times its contrary's is less is in no doubt."""
 ABLE = 0.5
 """Where answers settle so much of a doubt, it is for later when it was not asked about."""
+FIRST = 3.0
+"""After how many actions what has come of answers counts as much as what is expected of them …"""
+PART = 0.125
+"""… or after this part of a task's steps, where that is more: it would be done unseen otherwise,
+which in a long task leads nowhere."""
 IN_VAIN = 2.0
 """How many times the steps of a task may be done in vain."""
 WHOLE = 0.25
@@ -72,12 +77,10 @@ class Settlings:
     brought the goal no nearer.
 
     Attributes:
-        expected: After how many actions what has come of it counts as much as what is expected.
         dearer: How many times its price a question has to be worth, as more is expected of answers
             than came of them: the root of how many times as much.
     """
 
-    expected: float = 3.0
     dearer: float = 1.0
     _settled: float = 0.0
     _left: float = 0.0
@@ -99,7 +102,7 @@ class Settlings:
         self.dearer = 1.0
         if found.share >= SETTLED:
             return found.share
-        so_far = self.expected + self._settled
+        so_far = max(FIRST, PART * self._whole) + self._settled
         kept = self._nearer(ahead) * so_far / (so_far + self._left)
         self.dearer = kept**-0.5
         return found.share * kept
