@@ -127,6 +127,9 @@ FAULTS = {
     "another wording in the words of another fact": (
         "questions.yaml", '"Is the {p} flat?"', '["Is it {p}?", "Is the {p} in the gripper?"]',
         "same-question", Severity.WARNING, "pressed"),
+    "a word that is said twice": (
+        "questions.yaml", "Is the {p} in the {t}?", "Is the {p} in the the {t}?", "doubled-word",
+        Severity.WARNING, "lies"),
     "a question that leaves out an object": (
         "questions.yaml", "Is the {p} in the {t}?", "Is the {p} in a tray?", "same-question",
         Severity.NOTE, "lies"),

@@ -11,7 +11,16 @@ from rich.console import Console
 
 from tests.cli.conftest import Run
 from tests.cli.test_belief_view import shown
-from tests.episodes.believing import FIND, PICK, decided, plan, started
+from tests.episodes.believing import (
+    DOUBTED,
+    FIND,
+    FLIPPED,
+    PICK,
+    UNSURE,
+    decided,
+    plan,
+    started,
+)
 from tpvqa.cli.brief import MORE, brief
 from tpvqa.cli.terminal import EpisodeView
 from tpvqa.episodes.agreement import Agreement
@@ -24,6 +33,7 @@ from tpvqa.events.events import (
     Answered,
     AnswerRecord,
     Asked,
+    Believed,
     Decided,
     Ended,
     FrameRecord,
@@ -181,6 +191,11 @@ COUNTS = "(1 action, 1 question, 1 repeat, 2 replans)"
         (ended(believed_goal=True, completed=None), "goal reached, as is believed"),
         (ended(believed_goal=True), "goal not reached, though it was believed to be"),
         (
+            ended(because="gave up", goal_holds=True),
+            "goal reached, though it was not believed to be: gave up, at step 2 of 2, "
+            "pick up the bread",
+        ),
+        (
             ended(because="limit of repeats"),
             "goal not reached: limit of repeats, at step 2 of 2, pick up the bread",
         ),
@@ -199,6 +214,18 @@ def test_the_last_line_says_where_a_trial_ended_and_why(end: Ended, says: str) -
     reason: Decided = decided("after", 1, Decision.GIVE_UP)
     lines = shown([started(), plan(FIND, PICK), reason, end])
     assert lines[-1] == f"{says} {COUNTS}"
+
+
+def test_what_is_only_the_likeliest_way_on_is_not_said_to_be_believed() -> None:
+    moved = Believed(added=(FLIPPED, UNSURE), removed=(DOUBTED,))
+    reason = decided("after", 1, Decision.GO_ON, near=0.9, held=0.2)
+    *_, line = shown([started(), plan(FIND, PICK), reason, moved])
+    assert line == (
+        "  now believed: bread in the image; no longer: bread in a robot's hand (left); "
+        "acts as if: bread on the plate"
+    )
+    *_, line = shown([started(), plan(FIND, PICK), moved])
+    assert "acts as if" not in line
 
 
 def test_why_there_is_no_plan_is_said_once() -> None:

@@ -73,6 +73,7 @@ def _findings(
     yield from possible.of_actions(task, _undone(rules))
     yield from possible.of_predicates(task)
     yield from wordings.in_vain(task, given, questions)
+    yield from wordings.doubled(given, questions)
     if questions is None:
         yield Finding(
             "no-questions",

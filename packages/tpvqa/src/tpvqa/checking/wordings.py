@@ -1,5 +1,6 @@
 """Whether the questions fit the domain: facts without words, words in vain, words that coincide."""
 
+import re
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -18,6 +19,7 @@ from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import QuestionBook
 from tpvqa.questions.wordings import Wordings
 
+_TWICE = re.compile(r"\b(\w+) \1\b", re.IGNORECASE)
 _LOOKED_AT = 20_000
 """Ground actions, and atoms, that are put into words to be compared."""
 
@@ -62,6 +64,22 @@ def without_words(task: Task, given: Wordings, drafted: Words, into: str) -> Ite
 
 def _key(name: str) -> str:
     return f'"{name}"' if name in ("on", "off", "yes", "no", "true", "false", "null") else name
+
+
+def doubled(given: Wordings, file: Path | None) -> Iterator[Finding]:
+    """Questions that say a word twice in a row, as hasty edits and names do: "in the the air"."""
+    for name, first in given.predicates.items():
+        for template in (first, *given.others.get(name, ())):
+            text = "".join(map(str, template.parts))
+            if found := _TWICE.search(text):
+                yield Finding(
+                    "doubled-word",
+                    Severity.WARNING,
+                    f"the question about {name} says {found[0]!r}: {text!r}",
+                    "Take one out.",
+                    named(file),
+                    line_of_entry(file, "predicates", name),
+                )
 
 
 def in_vain(task: Task, given: Wordings, file: Path | None) -> Iterator[Finding]:

@@ -139,9 +139,7 @@ class EpisodeView:
             case Answered():
                 self._show_answers()
             case Believed():
-                gone = ", ".join(map(self._say, event.removed)) or "nothing"
-                new = ", ".join(map(self._say, event.added)) or "nothing"
-                self._line(f"  [dim]now believed: {marked(new)}; no longer: {marked(gone)}[/]")
+                self._show_believed(event)
             case Decided():
                 self._head(before, event.step)
                 self._show_decision(event)
@@ -161,6 +159,22 @@ class EpisodeView:
                 self._show_end(event)
         if self._live is not None:
             self._live.update(self._plan_panel(), refresh=True)
+
+    def _show_believed(self, event: Believed) -> None:
+        """The state that is gone by: what is believed, and what is only the likeliest way on."""
+        decided = self._state.decided
+        likely = {} if decided is None else decided.belief
+        new = [each for each in event.added if likely.get(each, 1.0) >= 0.5]
+        gone = [each for each in event.removed if likely.get(each, 0.0) < 0.5]
+        supposed = [self._say(each) for each in event.added if each not in new]
+        supposed += [f"not {self._say(each)}" for each in event.removed if each not in gone]
+        said = [
+            f"{name}: {', '.join(map(self._say, facts)) or 'nothing'}"
+            for name, facts in (("now believed", new), ("no longer", gone))
+            if facts or not supposed
+        ]
+        said += [f"acts as if: {', '.join(supposed)}"] if supposed else []
+        self._line(f"  [dim]{marked('; '.join(said))}[/]")
 
     def _show_answers(self) -> None:
         if self._agreement is None:
@@ -266,6 +280,9 @@ class EpisodeView:
             headline = "[bold green]goal reached[/], as is believed"
         elif event.because == "goal":
             headline = "[bold red]goal not reached[/], though it was believed to be"
+        elif event.goal_holds:
+            why = marked(self._why(event))
+            headline = f"[bold yellow]goal reached[/], though it was not believed to be: {why}"
         else:
             headline = f"[bold red]goal not reached[/]: {marked(self._why(event))}"
         counts = ", ".join(

@@ -157,10 +157,10 @@ class Facts:
         if (form and form[1] is Form.PARTICIPLE) or (
             words[0] in ADJECTIVES and words[0] not in lexicon.SWITCHED
         ):
-            particle = words[1] in PARTICLES
-            who = ROBOT if particle else Noun(f"the {' '.join(words[1:])}")
-            yield Clause("is", who, " ".join(words) if particle else words[0])
-            return
+            if words[1] in PARTICLES:
+                yield Clause("is", ROBOT, " ".join(words))
+                return
+            words = [*words[1:], words[0]]  # free_hands: the hands are free
         split = next(
             (
                 at
@@ -272,6 +272,7 @@ class Facts:
         """on_table(x), in_hand(x, h), at_robot(place)."""
         preposition, *named = words
         first, *rest = nouns
+        named = named[1:] if named[0] in ("a", "an", "the") and named[1:] else named  # in_the_air
         what = " ".join(named)
         if rest and self._things.hold(rest[0].objects):
             yield Clause("is", first, " ".join([f"in {rest[0].said}", *self._others(rest[1:])]))

@@ -156,6 +156,11 @@ INTRANSITIVE = word_set(
     "embark debark alight climb enter swim jump evacuate rot stop melt"
 )
 """Verbs of which "has … -ed" is said of who did it, where only one thing is spoken of."""
+ALONE = word_set(
+    "run spin rotate revolve burn boil leak drip ring flash blink glow smoke float overheat hum "
+    "idle vibrate"
+)
+"""Verbs of which "is … -ing" is said of the thing, where only one is spoken of."""
 STATES = word_set(
     "open close shut lock unlock hold mount break cut light clamp cover fill fold switch turn "
     "toggle plug connect attach tie park place stack load insert charge clog seal unseal screw "

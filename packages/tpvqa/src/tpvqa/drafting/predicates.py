@@ -124,7 +124,8 @@ def _doing(
             joint = "in" if things.hold(first.objects) else "held by"
             yield Clause("is", second, f"{joint} {first.said}")
         return
-    if things.act(first.objects) and base not in ("hold", "carry", "grasp", "push", "use"):
+    acts = things.act(first.objects) and base not in ("hold", "carry", "grasp", "push", "use")
+    if acts or base in lexicon.ALONE:
         yield Clause("is", first, said)
         return
     if things.act(first.objects) and phrases.things.task.domain_name:

@@ -126,7 +126,7 @@ def _reason(
     said = grounds.step.book.say(action)
     number = "" if place is None else f" (step {place + 1})"
     if decision is Decision.GO_ON and place == grounds.next:
-        return "; ".join((*_why_on(grounds, said, missing), f"{said}{number}"))
+        return "; ".join((*_why_on(grounds, action, missing), f"{said}{number}"))
     if decision is Decision.REPEAT:
         mended = {effect.literal for effect in action.effects}
         missing = [each for each in missing if each in mended] or missing
@@ -135,6 +135,7 @@ def _reason(
     if decision is Decision.REPEAT:
         if not facts and grounds.plan is not None:
             facts = [f"{there} would be mended by it"]
+        facts = facts or _brought(grounds, action)
         return "; ".join((*facts, f"{said} again"))
     if decision is Decision.REPLAN:
         return "; ".join((*facts, f"replanning from {there}"))
@@ -150,8 +151,15 @@ def _needs(grounds: Grounds) -> list[Literal]:
     return sorted(grounds.plan.needs[grounds.next], key=lambda n: (grounds.probability(n), n.atom))
 
 
-def _why_on(grounds: Grounds, said: str, missing: Sequence[Literal]) -> list[str]:
+def _brought(grounds: Grounds, action: Action) -> list[str]:
+    """The least probable of what an action brings about."""
+    effects = sorted({effect.literal for effect in action.effects}, key=grounds.probability)
+    return [_fact(grounds, each, needing=False) for each in effects[:1]]
+
+
+def _why_on(grounds: Grounds, action: Action, missing: Sequence[Literal]) -> list[str]:
     """What speaks for the next step: what it rests on that was asked or sensed, or is in doubt."""
+    said, task = grounds.step.book.say(action), grounds.step.task
     needs = [need for need in _needs(grounds) if need not in missing]
     doubted = [n for n in needs if grounds.known(n.atom) or grounds.probability(n) < SURE]
     parts = [_fact(grounds, each) for each in doubted[:SAID]]
@@ -162,7 +170,8 @@ def _why_on(grounds: Grounds, said: str, missing: Sequence[Literal]) -> list[str
         parts.append(f"all that {said} needs holds with {_figure(together)}")
     for need in missing[:1]:
         parts.append(f"{grounds.say(need)} {_figure(grounds.probability(need))} is for later")
-    return parts or ["nothing speaks against it"]
+    able = grounds.belief.where(lambda state: task.applicable(state, action))
+    return parts or [f"it can be done with {_figure(able)}"]
 
 
 def _most_telling(grounds: Grounds) -> list[str]:
@@ -212,6 +221,18 @@ def _settling(grounds: Grounds) -> str:
     return f"; {who}a person's word on {grounds.say(doubted)} would settle it"
 
 
+def _never_seen(grounds: Grounds) -> str:
+    """What of the goal no question and no sensor has told anything of."""
+    hidden = [
+        grounds.say(each)
+        for each in _goal(grounds)
+        if not grounds.step.book.asked(Literal(each.atom))
+        and not grounds.known(each.atom)
+        and _figure(grounds.probability(each)) != "1.00"
+    ]
+    return f"; nothing shows {' and '.join(hidden[:SAID])}" if hidden else ""
+
+
 def _end(grounds: Grounds, decision: Decision) -> str:
     probability = grounds.belief.where(grounds.step.task.goal_holds)
     goal = _figure(probability)
@@ -227,7 +248,9 @@ def _end(grounds: Grounds, decision: Decision) -> str:
     if decision is Decision.DONE and grounds.risk is not None:
         return f"{why}{as_stated(probability, grounds.risk)}"
     if decision is Decision.DONE:
-        return f"{why}the goal holds with {goal}"
+        return f"{why}the goal holds with {goal}{_never_seen(grounds)}"
+    if not why and grounds.step.replans_left == 0:
+        why = "no change of plan is left, and "
     if not why:
         why = "no other way is known, and " if grounds.failing else "no plan is worth trying, and "
     doubt = _settling(grounds) if OPEN < probability < 1 - OPEN and not grounds.failing else ""

@@ -1,12 +1,15 @@
 """Facts in the words of a task's questions: "bread on the plate" for (on bread plate)."""
 
 import re
+from itertools import repeat
 
 from tpvqa.errors import PDDLError
 from tpvqa.pddl import Atom, Literal
 from tpvqa.questions.book import QuestionBook
 
 _ASKING = re.compile(r"^(?:Is|Are) (?:there )?(?:it true: )?(?:the |an? )?(?P<said>.+)\?$")
+_BEEN = re.compile(r"^(?:Has|Have) (?:the |an? )?(?P<who>.+?) been (?P<what>.+)\?$")
+_ASKED_OF = re.compile(r"^(?P<verb>Does|Do|Can|Has|Have) (?:the |an? )?(?P<said>.+)\?$")
 
 
 class FactWords:
@@ -38,8 +41,8 @@ class FactWords:
             return str(atom)
         if atom not in self._said:
             question = self.book.fact(Literal(atom))
-            asking = _ASKING.match(question.text)
-            said = asking["said"] if asking else str(atom)
+            texts = [question.text, *(o.text for o in self.book.in_other_words(question))]
+            said = next(filter(None, map(self._stated, texts, repeat(atom))), str(atom))
             # The words may leave out objects; then two facts would be called the same.
             unsaid = [
                 self.book.name(argument)
@@ -48,3 +51,30 @@ class FactWords:
             ]
             self._said[atom] = f"{said} ({', '.join(unsaid)})" if unsaid else said
         return self._said[atom]
+
+    def _stated(self, text: str, atom: Atom) -> str | None:
+        """What a question asks about; None where its subject cannot be told from the rest."""
+        if asking := _ASKING.match(text):
+            return asking["said"]
+        if been := _BEEN.match(text):
+            return f"{been['who']} {been['what']}"
+        asked = _ASKED_OF.match(text)
+        if asked is None or self.book is None:
+            return None
+        names = [self.book.name(each) for each in atom.arguments]
+        for who in sorted((*names, "robot's hand", "robot", "hand"), key=len, reverse=True):
+            if asked["said"].startswith(f"{who} "):
+                verb, *rest = asked["said"].removeprefix(f"{who} ").split(" ")
+                does = {"Does": _third(verb), "Do": verb}.get(asked["verb"])
+                said = [does] if does else [asked["verb"].lower(), verb]
+                return " ".join([who, *said, *rest])
+        return None
+
+
+def _third(verb: str) -> str:
+    """A verb's third person."""
+    if verb == "have":
+        return "has"
+    if verb.endswith("y") and verb[-2:-1] not in "aeiou":
+        return f"{verb[:-1]}ies"
+    return f"{verb}es" if verb.endswith(("s", "sh", "ch", "x", "z", "o")) else f"{verb}s"
