@@ -39,8 +39,10 @@ PUBLISHED = ("tpvqa", "tpvqa-household", "tpvqa-robots")
 NEEDS = {"tpvqa": 0, "tpvqa-household": 1, "tpvqa-robots": 1, "tpvqa-experiments": 2}
 """How many of the others each needs."""
 CORE_BYTES = 1_500_000
-IMPORT_SECONDS = 0.3
-"""Of the processor, for `from tpvqa import Trial` in a fresh process, the best of five."""
+IMPORTS = 2.2
+"""How many times the processor time of what it rests on `from tpvqa import Trial` takes, each in
+fresh processes, the best of five: seconds would measure the machine."""
+RESTS_ON = "import numpy, pydantic.main"
 PICTURES_AND_MESHES = re.compile(r"\.(png|jpe?g|webp|obj|stl|msh|onnx|zip)$")
 
 
@@ -203,8 +205,11 @@ def test_the_core_alone_and_then_the_household(wheels: dict[str, Path], tmp_path
 
 
 def _the_core_alone(installed: Installed, files: tuple[Path, Path]) -> None:
-    source = "import time; from tpvqa import Trial; print(time.process_time())"
-    assert min(float(installed.says(source)) for _ in range(5)) <= IMPORT_SECONDS
+    imports = ("from tpvqa import Trial", RESTS_ON)
+    sources = [f"import time; {each}; print(time.process_time())" for each in imports]
+    took = [[float(installed.says(source)) for source in sources] for _ in range(5)]
+    own, others = map(min, zip(*took, strict=True))
+    assert own <= IMPORTS * others
     code, out, err = installed.tpvqa("--help")
     assert (code, err) == (0, "")
     assert "calibrate" in out

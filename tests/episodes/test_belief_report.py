@@ -201,11 +201,13 @@ def test_without_a_questions_file_facts_are_said_by_their_names() -> None:
     assert words_of(unworded).say("(in_hand bread left)") == "bread in hand (left)"
 
 
-def test_a_question_that_is_no_phrase_leaves_its_fact_an_atom(tmp_path: Path) -> None:
-    book = tmp_path / "questions.yaml"
-    book.write_text('predicates: {opened: "Does the {c} stand open?"}')
-    worded = started().model_copy(update={"questions": book.read_text()})
-    assert words_of(worded).say("(opened fridge)") == "opened(fridge)"
+@pytest.mark.parametrize(
+    ("question", "said"),
+    [("Does the {c} stand open?", "fridge stands open"), ("Open, the {c}?", "opened(fridge)")],
+)
+def test_a_question_that_is_no_phrase_leaves_its_fact_an_atom(question: str, said: str) -> None:
+    worded = started().model_copy(update={"questions": f'predicates: {{opened: "{question}"}}'})
+    assert words_of(worded).say("(opened fridge)") == said
 
 
 @pytest.mark.parametrize(
