@@ -156,7 +156,7 @@ class Chooser:
         acts = any(
             each.action is not None and (work[each] @ weights >= 0).all() for each in choices
         )
-        if not (acts or self.changes_left == 0 or self._goal_likely(ranked)):  # better than to end
+        if not (acts or self.changes_left == 0 or self._goal_likely(ranked)):  # trying beats ending
             for limits in work.values():
                 limits[1] = 1.0
         if self._stuck(ranked) or self.ahead.left == 0:
