@@ -20,6 +20,7 @@ from tpvqa.belief.information import (
     settled,
 )
 from tpvqa.belief.last_answer import Picture
+from tpvqa.belief.one_thread import one_thread
 from tpvqa.belief.table import Table
 from tpvqa.questions.question import FactQuestion
 
@@ -76,6 +77,7 @@ class Inquirer:
         """Go on with a model that gives joint states other numbers."""
         self._model = model
 
+    @one_thread
     def best(
         self,
         questions: Sequence[FactQuestion],

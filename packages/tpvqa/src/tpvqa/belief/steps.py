@@ -24,10 +24,11 @@ Bools = NDArray[np.bool_]
 
 
 class _Leads(NamedTuple):
-    """Where an action leads from every joint state; where it can be done, and has nothing to do."""
+    """Where an action leads from every joint state; where it cannot be done, and where it has
+    nothing to do."""
 
     there: Places
-    possible: Bools
+    impossible: Bools
     achieved: Bools
 
 
@@ -116,21 +117,22 @@ class Steps:
         """
         leads = self._leads.get(action) or self._led(action)
         fallen = self._fallen(after)
-        failed = (1 - rates.disturbance) * after + rates.disturbance * fallen
-        worked = (1 - rates.spontaneous) * after + rates.spontaneous * fallen
-        tried = (1 - failure) * worked[leads.there] + failure * failed
-        found: Floats = np.where(leads.achieved, after, np.where(leads.possible, tried, failed))
+        failed = _mixed(after, fallen, rates.disturbance)
+        worked = _mixed(after, fallen, rates.spontaneous) if rates.spontaneous else after
+        found = _mixed(worked[leads.there], failed, failure)
+        np.copyto(found, failed, where=leads.impossible)
+        np.copyto(found, after, where=leads.achieved)
         return found
 
     def _led(self, action: Action) -> _Leads:
         outcomes, last = self._model.outcomes(action), len(self.numbers)
         each = [outcomes[number] for number in self.numbers]
         there = [last if o.intended is None else self.place.get(o.intended, last) for o in each]
-        possible = [*(o.intended is not None for o in each), True]
+        impossible = [*(o.intended is None for o in each), False]
         achieved = [*(o.achieved for o in each), True]
         found = self._leads[action] = _Leads(
             np.array([*there, last], np.intp),
-            np.array(possible)[:, None],
+            np.array(impossible)[:, None],
             np.array(achieved)[:, None],
         )
         return found
@@ -146,10 +148,18 @@ class Steps:
             ]
             rows = np.array([each[0] for each in falls], np.intp)
             columns = np.array([each[1] for each in falls], np.intp)
-            shares = np.array([each[2] for each in falls])
+            shares = np.array([each[2] for each in falls])[:, None]
             self._falls = _Falls(rows, columns, shares, np.flatnonzero(np.diff(rows, prepend=-1)))
         found, (rows, columns, shares, starts) = after.copy(), self._falls
         if len(rows):
-            summed = np.add.reduceat(shares[:, None] * after[columns], starts, axis=0)
-            found[rows[starts]] = summed
+            parts = after.take(columns, axis=0)
+            parts *= shares
+            found[rows[starts]] = np.add.reduceat(parts, starts, axis=0)
         return found
+
+
+def _mixed(first: Floats, second: Floats, share: float) -> Floats:
+    """A share of the second, the rest of the first."""
+    found: Floats = (1 - share) * first
+    found += share * second
+    return found

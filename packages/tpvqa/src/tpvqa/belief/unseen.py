@@ -18,6 +18,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.information import Floats
 from tpvqa.belief.needed import Needed
+from tpvqa.belief.one_thread import one_thread
 from tpvqa.belief.outlook import Outlook
 from tpvqa.belief.steps import Steps
 from tpvqa.pddl import Action, State
@@ -27,6 +28,11 @@ Way = tuple[int, AnnotatedPlan]
 Led = tuple[float, Sequence[tuple[float, int, float]]]
 """The probability of a joint state, and what an action leads to from it: shares, joint states, and
 what each costs besides."""
+_Costs = tuple[Floats, Floats]
+"""What something costs from every joint state, and with its first step once less."""
+Tails = dict[tuple[object, tuple[Action, ...]], _Costs]
+"""What the last steps of ways cost, by what follows them and by the steps: ways that end alike
+share them."""
 WAYS = 4
 """Ways that are compared, those of the most probable joint states, besides ending."""
 TIMES = (1, 2, 3, 4, 6)
@@ -73,10 +79,11 @@ class Unseen:
         self._model, self._ahead, self._costs = model, ahead, costs
         self._steps = Steps(model)
         self._needed: dict[AnnotatedPlan, Needed | None] = {}
+        self._walks: dict[AnnotatedPlan, dict[tuple[int, int], bytes | None]] = {}
         self._repeats: dict[tuple[int, int], int] = {}
         self._working: dict[tuple[int, int], list[float]] = {}
         self._rests: dict[tuple[int, int], Floats] = {}
-        self._known: dict[tuple[int, int, object], list[tuple[Floats, Floats]]] = {}
+        self._known: dict[tuple[int, int, object], list[_Costs]] = {}
         self._worked_out_for: tuple[int, int] = (-1, -1)
         self.following: tuple[Action, ...] = ()
         self._stake = 0.0
@@ -85,7 +92,7 @@ class Unseen:
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
         self._model, self._steps = model, Steps(model)
-        for by_number in (self._needed, self._known, self._rests):
+        for by_number in (self._needed, self._walks, self._known, self._rests):
             by_number.clear()
 
     def acted(self, action: Action, state: State) -> None:
@@ -107,6 +114,7 @@ class Unseen:
         """Whether a failed task costs much more than when it was decided what to follow."""
         return self._ahead.failure >= STAKES * self._stake
 
+    @one_thread
     def columns(
         self,
         actions: Sequence[tuple[Action, Sequence[Led]]],
@@ -180,6 +188,7 @@ class Unseen:
                 worked_out.clear()
             for old in self._needed.keys() - {*self._ahead.plans}:
                 del self._needed[old]
+                self._walks.pop(old, None)
         return masses, ways
 
     def _ways(self, predicted: Iterable[tuple[int, float]], actions: Sequence[Action]) -> list[Way]:
@@ -204,7 +213,8 @@ class Unseen:
         ended = self._ended()[:, None]
         numbered = [(number, times) for number in range(len(ways)) for times in TIMES]
         told = [_Sequence(None), *(_Sequence(*each) for each in numbered)]
-        once = [each for way in ways for each in self._followed(way, ended, None)]
+        tails: Tails = {}
+        once = [each for way in ways for each in self._followed(way, ended, None, tails)]
         costs = [float(whole @ begun[places, 0]) for begun, _ in once]
         best = sorted(range(len(once)), key=lambda each: round(costs[each], 9))[: ENDINGS - 1]
         parts = [(ended, ended), *once]
@@ -213,13 +223,13 @@ class Unseen:
             then = tuple(told[1 + each] for each in best)
             which = tuple((*ways[n], times) for n, times in (numbered[each] for each in best))
             for way in ways:
-                parts += self._followed(way, seconds, which)
+                parts += self._followed(way, seconds, which, tails)
             for number, times in numbered:
                 told += [_Sequence(number, times, each) for each in then]
         begun, less = (np.concatenate([each[side] for each in parts], axis=1) for side in (0, 1))
         return told, begun, less
 
-    def _followed(self, way: Way, after: Floats, then: object) -> list[tuple[Floats, Floats]]:
+    def _followed(self, way: Way, after: Floats, then: object, tails: Tails) -> list[_Costs]:
         """What a way costs from every joint state, each step done each of `TIMES`, by what is left
         to pay after it; and with its first step once less."""
         place, plan = way
@@ -227,20 +237,34 @@ class Unseen:
         known = self._known.get(key)
         if known is not None:
             return known
-        stop = min(len(plan.actions), place + HORIZON)
-        if stop < len(plan.actions):
-            after = np.repeat(self._rests_of(plan, stop)[:, None], after.shape[1], axis=1)
-        wide = after.shape[1]  # of what is done so often, the most often first: one call for all
-        values = np.tile(after, len(TIMES))
-        before = values.copy()
-        for action in reversed(plan.actions[place:stop]):
+        steps, wide = plan.actions[place : place + HORIZON], after.shape[1]
+        stop = place + len(steps)
+        if stop < len(plan.actions):  # whatever follows, its rest comes first
+            after = self._rests_of(plan, stop)[:, None]
+            then = id(plan), stop
+        values, before = self._before(steps, after, then, tails)
+        parts = np.hsplit(values, len(TIMES)), np.hsplit(before, len(TIMES))
+        found = list(zip(*parts, strict=True))[::-1]
+        if after.shape[1] < wide:
+            found = [(np.repeat(v, wide, axis=1), np.repeat(b, wide, axis=1)) for v, b in found]
+        self._known[key] = found
+        return found
+
+    def _before(
+        self, steps: tuple[Action, ...], after: Floats, then: object, tails: Tails
+    ) -> _Costs:
+        """What is left to pay before some steps; side by side, the most often done first."""
+        wide = after.shape[1]
+        first = next((n for n in range(len(steps)) if (then, steps[n:]) in tails), len(steps))
+        values, before = tails.get((then, steps[first:])) or (np.tile(after, len(TIMES)),) * 2
+        for step in range(first - 1, -1, -1):
+            values, before = values.copy(), values.copy()
             for often in range(1, TIMES[-1] + 1):
                 these = slice(0, wide * sum(times >= often for times in TIMES))
                 before[:, these] = values[:, these]
-                values[:, these] = self._costs.action + self._back(action, values[:, these])
-        parts = np.hsplit(values, len(TIMES)), np.hsplit(before, len(TIMES))
-        found = self._known[key] = list(zip(*parts, strict=True))[::-1]
-        return found
+                values[:, these] = self._costs.action + self._back(steps[step], values[:, these])
+            tails[then, steps[step:]] = values, before
+        return values, before
 
     def _back(self, action: Action, after: Floats) -> Floats:
         ahead = self._ahead
@@ -287,23 +311,23 @@ class Unseen:
         return tuple(found[1:] if found[:1] == [done] else found)
 
     def _rests_of(self, plan: AnnotatedPlan, place: int) -> Floats:
-        """What the rest costs from all joint states that are told apart, and last from others."""
+        """What the rest of a long plan costs, roughly, from all joint states that are told apart,
+        and last from others."""
         known = self._rests.get((id(plan), place))
-        if known is None:
-            rests = [self._rest(plan, place, number) for number in self._steps.numbers]
-            known = self._rests[id(plan), place] = np.array([*rests, self._ahead.failure])
-        return known
-
-    def _rest(self, plan: AnnotatedPlan, place: int, number: int) -> float:
-        """What the rest of a long plan costs from a joint state, roughly."""
-        steps = len(plan.actions) - place
-        needed = self._walk(plan, place, number)
-        times = self._repeated(plan, place)
-        paid = times * steps * self._costs.action
-        if needed is None:
-            return paid + self._ahead.failure
-        works = prod(compress(self._all_work(plan, times)[place:], needed))
-        return paid + (1 - works) * self._ahead.failure
+        if known is not None:
+            return known
+        times, walks = self._repeated(plan, place), self._walks.setdefault(plan, {})
+        working = self._all_work(plan, times)[place:]
+        paid = times * len(working) * self._costs.action
+        rests = list[float]()
+        for number in self._steps.numbers:
+            if (place, number) not in walks:
+                walks[place, number] = self._walk(plan, place, number)
+            needed = walks[place, number]
+            works = 0.0 if needed is None else prod(compress(working, needed))
+            rests.append(paid + (1 - works) * self._ahead.failure)
+        found = self._rests[id(plan), place] = np.array([*rests, self._ahead.failure])
+        return found
 
     def _all_work(self, plan: AnnotatedPlan, times: int) -> list[float]:
         """Of every step of a plan the probability that some tries do what is wanted."""
@@ -331,7 +355,7 @@ class Unseen:
             known = self._repeats[id(plan), place] = min(TIMES, key=paid)
         return known
 
-    def _walk(self, plan: AnnotatedPlan, place: int, number: int) -> Sequence[bool] | None:
+    def _walk(self, plan: AnnotatedPlan, place: int, number: int) -> bytes | None:
         """Which steps of a plan change something on the way from a joint state to the goal; None
         where it does not lead there."""
         if plan not in self._needed:
@@ -339,10 +363,10 @@ class Unseen:
         quick = self._needed[plan]
         if quick is not None and quick.fixed <= self._model.state(number):
             needed, holding = quick.walk(place, self._model.holding(number))
-            return needed if self._model.goal_within(holding) else None
+            return bytes(needed) if self._model.goal_within(holding) else None
         needed = []
         for action in plan.actions[place:]:
             there = self._model.outcomes(action)[number].intended
             needed.append(there is not None and there != number)
             number = number if there is None else there
-        return needed if self._ahead.is_goal(number) else None
+        return bytes(needed) if self._ahead.is_goal(number) else None
