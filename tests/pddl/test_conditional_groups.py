@@ -1,10 +1,12 @@
-"""Mutex groups where effects are conditional."""
+"""Mutex groups where effects are conditional, or delete what the action does not need."""
 
+import pytest
 from hypothesis import given, settings
 
 from tests.listing import every_state
 from tests.pddl.conditional_domains import tasks
 from tests.trolley import INIT, trolley
+from tpvqa.belief.undoing import BackToBefore
 from tpvqa.pddl import Atom, Task, task_from_text
 
 ROOMS = ("hall", "attic", "cellar")
@@ -43,6 +45,33 @@ def test_groups_hold_from_all_that_a_problem_leaves_open() -> None:
     task = trolley(f"{sure} (unknown (at crate hall)) (unknown (at crate attic))")
     assert places("crate") not in found(task)
     assert found(task)[places("chest")]
+
+
+def gripper(soils: str, *, init: str = "(soiled)") -> Task:
+    return task_from_text(
+        f"""(define (domain ward) (:predicates (soiled) (clean) (held) (brought))
+        (:action collect :parameters () :precondition (and) :effect (and (held) {soils}))
+        (:action wash :parameters () :precondition (soiled)
+          :effect (and (clean) (not (soiled)) (not (held))))
+        (:action bring :parameters () :precondition (clean) :effect (brought)))""",
+        f"(define (problem p) (:domain ward) (:init {init}) (:goal (and (brought) (held))))",
+    )
+
+
+def test_what_gives_way_without_being_needed_is_of_the_group() -> None:
+    """Who collects need not be clean, and is soiled afterwards all the same."""
+    task = gripper("(soiled) (not (clean))")
+    pair = facts("(clean)", "(soiled)")
+    assert found(task)[pair]
+    assert all(len(state & pair) == 1 for state in every_state(task))
+    clean, soiled = (Atom.parse(word) for word in ("(clean)", "(soiled)"))
+    back = BackToBefore(task).results(clean, frozenset({clean}), [soiled], task)
+    assert [state for _, state in back] == [frozenset({soiled})]
+
+
+@pytest.mark.parametrize("soils", ["(soiled)", "(not (clean))"])
+def test_what_stays_or_leaves_nothing_is_no_group_of_one(soils: str) -> None:
+    assert not found(gripper(soils)).get(facts("(clean)", "(soiled)"))
 
 
 def test_two_at_first_are_no_group() -> None:

@@ -1,6 +1,7 @@
-"""Mutex groups of tasks with conditional effects, proved by induction over ground actions.
+"""Mutex groups of tasks whose actions delete on terms, or what they do not need: by induction.
 
-The translator's invariants take a conditional effect to add and not to delete. Here groups are
+The translator's invariants take a conditional effect to add and not to delete, and let only what an
+action needs and deletes balance what it adds. Here groups are
 guessed (atoms of one predicate that share all arguments but one, and two predicates' together),
 and those are kept that hold at first and that no action breaks while all of them hold: the
 greatest fixpoint, as in Rintanen, "An Iterative Algorithm for Synthesizing Invariants" (AAAI 2000).

@@ -46,11 +46,17 @@ def described_groups(
 def _lawless(task: Any, grounding: Grounding) -> bool:
     """Whether there may be groups that the translator's invariants do not find.
 
-    It takes a conditional effect to add and not to delete, and the end of an action that lasts to
-    delete only what is needed then, though it was needed at its start.
+    It takes a conditional effect to add and not to delete, what is deleted without being needed not
+    to balance what is added, and the end of an action that lasts to delete only what is needed
+    then, though it was needed at its start.
     """
-    effects = (e for each in grounding.actions for e in (*each.add_effects, *each.del_effects))
-    return task.durative is not None or any(when for when, _ in effects)
+    if task.durative is not None:
+        return True
+    return any(
+        any(when for when, _ in action.add_effects)
+        or any(when or fact not in action.precondition for when, fact in action.del_effects)
+        for action in grounding.actions
+    )
 
 
 def lawful_groups(task: Any, reachable: Set[AtomKey]) -> list[tuple[list[AtomKey], bool]]:
