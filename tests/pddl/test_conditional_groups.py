@@ -69,6 +69,22 @@ def test_what_gives_way_without_being_needed_is_of_the_group() -> None:
     assert [state for _, state in back] == [frozenset({soiled})]
 
 
+def test_what_begins_may_end_several() -> None:
+    """Which way a robot faces: to turn ends whatever held, of which nothing is needed."""
+    ways = ("north", "east", "south", "west")
+    turns = "".join(
+        f"(:action turn-{way} :parameters () :precondition (awake) :effect (and ({way}) "
+        + " ".join(f"(not ({other}))" for other in ways if other != way)
+        + "))"
+        for way in ways
+    )
+    task = task_from_text(
+        f"(define (domain d) (:predicates (awake) {' '.join(f'({way})' for way in ways)}) {turns})",
+        "(define (problem p) (:domain d) (:init (awake) (south)) (:goal (west)))",
+    )
+    assert found(task)[facts(*(f"({way})" for way in ways))]
+
+
 @pytest.mark.parametrize("soils", ["(soiled)", "(not (clean))"])
 def test_what_stays_or_leaves_nothing_is_no_group_of_one(soils: str) -> None:
     assert not found(gripper(soils)).get(facts("(clean)", "(soiled)"))

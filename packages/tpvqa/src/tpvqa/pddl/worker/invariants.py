@@ -8,7 +8,7 @@ from fast_downward.translate import invariant_finder, pddl
 from fast_downward.translate.instantiate import get_objects_by_type
 
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
-from tpvqa.pddl.worker.inductive import First, inductive_groups
+from tpvqa.pddl.worker.inductive import First, inductive_groups, replacing_groups
 
 _COUNTED = "?X"  # how the translator writes the argument that a group counts
 
@@ -23,8 +23,8 @@ def described_groups(
 
     First come the laws of the domain: invariants that no action can break, whatever is reachable.
     They name all atoms of fitting types, also those that only a mishap brings about. Then those
-    that induction over conditional effects proves, and groups that hold because of what is
-    reachable from this state. Groups that no action adds to are left
+    that induction over conditional effects proves, and over effects that delete what need not
+    hold, and groups that hold because of what is reachable from this state. Groups that no action adds to are left
     out (an accident of this initial state), and so are those within another.
 
     Args:
@@ -38,6 +38,7 @@ def described_groups(
         derived = {axiom.name for axiom in task.axioms}  # no action adds what follows from others
         own = {key for key in grounding.atoms if key[0] not in derived}
         kept = _widest(inductive_groups(grounding.actions, own, first), kept)
+    kept = _widest(replacing_groups(grounding.actions, first), kept)
     proved = [atoms for atoms, exactly_one in kept if exactly_one]
     others = [group for group in grounding.mutex_groups if not any(group <= p for p in proved)]
     return _listed(_widest(_reached(grounding, others, state), kept))
@@ -46,17 +47,11 @@ def described_groups(
 def _lawless(task: Any, grounding: Grounding) -> bool:
     """Whether there may be groups that the translator's invariants do not find.
 
-    It takes a conditional effect to add and not to delete, what is deleted without being needed not
-    to balance what is added, and the end of an action that lasts to delete only what is needed
-    then, though it was needed at its start.
+    It takes a conditional effect to add and not to delete, and the end of an action that lasts to
+    delete only what is needed then, though it was needed at its start.
     """
-    if task.durative is not None:
-        return True
-    return any(
-        any(when for when, _ in action.add_effects)
-        or any(when or fact not in action.precondition for when, fact in action.del_effects)
-        for action in grounding.actions
-    )
+    effects = (e for each in grounding.actions for e in (*each.add_effects, *each.del_effects))
+    return task.durative is not None or any(when for when, _ in effects)
 
 
 def lawful_groups(task: Any, reachable: Set[AtomKey]) -> list[tuple[list[AtomKey], bool]]:
