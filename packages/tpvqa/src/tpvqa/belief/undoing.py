@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from functools import cached_property
 
+from tpvqa.belief.mutexes import h2_mutexes
 from tpvqa.belief.places import things
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.arithmetic import VALUE
@@ -12,12 +13,17 @@ LOST = 0.1
 """How often what was held falls where nothing that the task knows says that it is."""
 
 
+_NONE: State = frozenset()
+
+
 class BackToBefore:
     """An undone fact gives way to what held before it in its groups, or a thing is lost.
 
     A thing that is no longer in the hand is where it was taken from; the hand is free again. A
-    fact without an exactly-one group is false again. Numbers go with that as with the action that
-    does it, where there is one; a number is never without a value.
+    fact without an exactly-one group is false again. What cannot hold with the rest, as no actions
+    lead there (h²), does not come back, but what the problem began with: a screw is not back in
+    the gripper once another tool is mounted, but in its tray. Numbers go with that as with the
+    action that does it, where there is one; a number is never without a value.
 
     Args:
         task: Gives the mutex groups.
@@ -80,6 +86,13 @@ class BackToBefore:
             state: Where it holds.
             before: What held last, besides it, of a group.
         """
+        after = self._back(atom, state, before)
+        if after is None or self._possible(after, state):
+            return after
+        after = self._back(atom, state, self._at_first)
+        return after if after is not None and self._possible(after, state) else None
+
+    def _back(self, atom: Atom, state: State, before: Callable[[int], Atom | None]) -> State | None:
         after = state - {atom}
         for number in self.homes(atom):
             if not after.isdisjoint(self._groups[number]):
@@ -95,6 +108,26 @@ class BackToBefore:
         ):
             return None
         return after
+
+    def _at_first(self, number: int) -> Atom | None:
+        """What the problem begins with, of a group."""
+        held = self._groups[number] & self._task.init
+        return next(iter(held)) if len(held) == 1 else None
+
+    def _possible(self, after: State, state: State) -> bool:
+        """Whether what has come can hold together with the rest."""
+        return all(self._apart.get(each, _NONE).isdisjoint(after) for each in after - state)
+
+    @cached_property
+    def _apart(self) -> dict[Atom, set[Atom]]:
+        """What never holds together with an atom, as far as actions lead; nothing of a task of
+        which grounding left out a part."""
+        found: dict[Atom, set[Atom]] = {}
+        if not self._task.left_out:
+            for one, other in h2_mutexes(self._task).pairs:
+                found.setdefault(one, set()).add(other)
+                found.setdefault(other, set()).add(one)
+        return found
 
     def with_shares(
         self, atom: Atom, state: State, before: Callable[[int], Atom | None]

@@ -24,8 +24,8 @@ def described_groups(
     First come the laws of the domain: invariants that no action can break, whatever is reachable.
     They name all atoms of fitting types, also those that only a mishap brings about. Then those
     that induction over conditional effects proves, and over effects that delete what need not
-    hold, and groups that hold because of what is reachable from this state. Groups that no action adds to are left
-    out (an accident of this initial state), and so are those within another.
+    hold, and groups that hold because of what is reachable from this state. Groups that no action
+    adds to are left out (an accident of this initial state), and so are those within another.
 
     Args:
         task: The translator's normalised task; its initial state is that of the grounding.
