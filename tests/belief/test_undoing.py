@@ -1,0 +1,62 @@
+"""What a disturbance leads to where no world file says it."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tpvqa.belief.mutexes import h2_mutexes
+from tpvqa.belief.undoing import BackToBefore
+from tpvqa.pddl import Atom, State, Task, load_task
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def example(name: str) -> Task:
+    return load_task(EXAMPLES / name / "domain.pddl", EXAMPLES / name / "problem.pddl")
+
+
+@pytest.fixture(scope="module")
+def workshop() -> Task:
+    return example("workshop")
+
+
+def set_in(task: Task, mounted: str) -> State:
+    """A screw sits in the lid; another tool is mounted, or the gripper still is."""
+    gone = {"(lies screw_one parts_tray)", "(flange_free)", f"(racked {mounted})"}
+    come = {"(set_in screw_one lid)", f"(mounted {mounted})"}
+    return task.init - set(map(Atom.parse, gone)) | set(map(Atom.parse, come))
+
+
+@pytest.mark.parametrize(
+    ("mounted", "back"),
+    [("gripper", "(held screw_one)"), ("screwdriver", "(lies screw_one parts_tray)")],
+)
+def test_what_works_loose_is_where_it_can_be(workshop: Task, mounted: str, back: str) -> None:
+    """Where the gripper is put away, a screw in its jaws would keep every tool where it is."""
+    history = [Atom.parse("(lies screw_one parts_tray)"), Atom.parse("(held screw_one)")]
+    state, screw = set_in(workshop, mounted), Atom.parse("(set_in screw_one lid)")
+    [(_, after)] = BackToBefore(workshop).results(screw, state, history, workshop)
+    assert Atom.parse(back) in after
+    assert (Atom.parse("(jaws_free)") in after) == (mounted == "screwdriver")
+
+
+@pytest.mark.parametrize("name", ["workshop", "hospital", "store"])
+@given(data=st.data())
+@settings(max_examples=30, deadline=None)
+def test_nothing_leads_to_what_no_action_leads_to(name: str, data: st.DataObject) -> None:
+    """Actions and disturbances in turn: no two facts ever hold that h² keeps apart."""
+    task = example(name)
+    back, apart = BackToBefore(task), h2_mutexes(task).pairs
+    state, history = task.init, list[Atom]()
+    for _ in range(12):
+        able = sorted((a for a in task.ground_actions() if task.applicable(state, a)), key=str)
+        after = task.apply(state, data.draw(st.sampled_from(able))) if able else state
+        history += sorted(state - after)
+        state = after
+        fluents = sorted(atom for atom in state if atom.predicate in task.fluents)
+        for _, after in back.results(data.draw(st.sampled_from(fluents)), state, history, task):
+            history += sorted(state - after)
+            state = after
+        assert not any(pair <= state for pair in apart)
