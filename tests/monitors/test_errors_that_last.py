@@ -1,9 +1,11 @@
 """The belief monitor where errors last, mislead or say nothing: whole trials."""
 
 import re
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -18,6 +20,7 @@ from tpvqa.planning.remembering import Remembering
 
 Ran = Callable[[str, str, int], tuple[Ended, list[Event]]]
 TRIALS = range(2)
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +70,30 @@ def test_it_reaches_the_goal(vlm: str, simulation: str, least: int, ran: Ran) ->
         (end.because, end.actions, end.questions) for end in ends
     ]
     assert sum(end.questions for end in ends) / len(ends) < 500
+
+
+@pytest.mark.parametrize(("name", "seed", "episode"), [("hospital", 60, 1), ("hospital", 61, 4)])
+def test_a_domain_that_is_no_kitchen_and_has_no_world_file(
+    name: str, seed: int, episode: int, tmp_path: Path
+) -> None:
+    """A plan of 22 steps with facts that nothing shows, nothing known of the VLM."""
+    files = {"domain": "domain.pddl", "problem": "problem.pddl", "questions": "questions.yaml"}
+    for file in files.values():
+        shutil.copy(EXAMPLES / name / file, tmp_path)
+    config = configured(
+        task={part: str(tmp_path / file) for part, file in files.items()},
+        world="symbolic",
+        vlm="oracle:0.9:0:0.74",
+        monitor="belief",
+        limits=Limits(actions=400, replans=None, repeats=None),
+        seed=seed,
+        episode=episode,
+    )
+    with Trial(config) as trial:
+        ended = trial.run(MemoryWriter())
+    assert (ended.because, ended.completed) == ("goal", True)
+    assert ended.actions < 150
+    assert ended.questions < 800
 
 
 def test_answers_that_say_nothing_are_asked_little_and_the_goal_is_reached_unseen(ran: Ran) -> None:
