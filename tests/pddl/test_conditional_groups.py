@@ -85,6 +85,23 @@ def test_what_begins_may_end_several() -> None:
     assert found(task)[facts(*(f"({way})" for way in ways))]
 
 
+def test_what_a_quantifier_ends_is_of_the_group() -> None:
+    """Brought from wherever it is: no action says where that was."""
+    rooms = " ".join(f"r{number}" for number in range(20))
+    task = task_from_text(
+        """(define (domain d) (:requirements :typing :quantified-preconditions) (:types box room)
+        (:predicates (at ?b - box ?r - room) (in ?r - room))
+        (:action go :parameters (?a ?b - room) :precondition (in ?a)
+          :effect (and (in ?b) (not (in ?a))))
+        (:action bring :parameters (?b - box ?r - room) :precondition (in ?r)
+          :effect (and (forall (?o - room) (not (at ?b ?o))) (at ?b ?r))))""",
+        f"""(define (problem p) (:domain d) (:objects a b - box {rooms} - room)
+        (:init (in r0) (at a r0) (at b r1)) (:goal (and (at a r2) (at b r3))))""",
+    )
+    for box in "ab":
+        assert found(task)[facts(*(f"(at {box} {room})" for room in rooms.split()))]
+
+
 @pytest.mark.parametrize("soils", ["(soiled)", "(not (clean))"])
 def test_what_stays_or_leaves_nothing_is_no_group_of_one(soils: str) -> None:
     assert not found(gripper(soils)).get(facts("(clean)", "(soiled)"))

@@ -110,9 +110,10 @@ class BackToBefore:
         return after
 
     def _at_first(self, number: int) -> Atom | None:
-        """What the problem begins with, of a group."""
-        held = self._groups[number] & self._task.init
-        return next(iter(held)) if len(held) == 1 else None
+        """What the problem begins with, of a group; None where it leaves that open."""
+        group = self._groups[number]
+        held = group & self._task.init
+        return next(iter(held)) if len(held) == 1 and not group & self._task.left_open else None
 
     def _possible(self, after: State, state: State) -> bool:
         """Whether what has come can hold together with the rest."""

@@ -1,11 +1,9 @@
-"""Mutex groups that the translator does not find, proved by induction over ground actions.
+"""Mutex groups of tasks with conditional effects, proved by induction over ground actions.
 
-Its invariants take a conditional effect to add and not to delete, and let only what an action needs
-and deletes balance what it adds. Here groups are guessed (atoms of one predicate that share all
-arguments but one, and two predicates' together; or what an action adds with what it deletes whether
-that holds or not), and those are kept that hold at first and that no action breaks while all of
-them hold: the greatest fixpoint, as in Rintanen, "An Iterative Algorithm for Synthesizing
-Invariants" (AAAI 2000).
+The translator's invariants take a conditional effect to add and not to delete. Here groups are
+guessed (atoms of one predicate that share all arguments but one, and two predicates' together),
+and those are kept that hold at first and that no action breaks while all of them hold: the
+greatest fixpoint, as in Rintanen, "An Iterative Algorithm for Synthesizing Invariants" (AAAI 2000).
 """
 
 from collections.abc import Iterable, Iterator, Sequence, Set
@@ -78,25 +76,6 @@ def inductive_groups(
         return []
 
 
-def replacing_groups(
-    actions: Iterable[Any], first: First, *, work: int = WORK
-) -> list[tuple[frozenset[AtomKey], bool]]:
-    """The groups of which always exactly one atom holds, as what begins ends the others, whether
-    they hold or not.
-
-    Args:
-        actions: The translator's ground actions.
-        first: What may hold initially.
-        work: Facts drawn from others beyond which none is found.
-    """
-    steps = [_Step.of(each) for each in actions]
-    kept = {group: True for group in _replaced(steps) if first.weight(group) == (1, 1)}
-    try:
-        return [each for each in _Induction(steps, kept, work).proved().items() if each[1]]
-    except _TooMuchError:
-        return []
-
-
 def _guessed(atoms: Set[AtomKey]) -> Iterator[frozenset[AtomKey]]:
     """Sets of atoms of which at most one may hold."""
     parts: dict[tuple[str, int | None], dict[tuple[str, ...], set[AtomKey]]] = {}
@@ -113,17 +92,6 @@ def _guessed(atoms: Set[AtomKey]) -> Iterator[frozenset[AtomKey]]:
         if one[0] != other[0]:
             for rest in parts[one].keys() & parts[other].keys():
                 found[frozenset(parts[one][rest] | parts[other][rest])] = None
-    return iter(sorted((group for group in found if len(group) > 1), key=sorted))
-
-
-def _replaced(steps: Iterable["_Step"]) -> Iterator[frozenset[AtomKey]]:
-    """What each action adds, with what it deletes though it may not hold."""
-    found = set[frozenset[AtomKey]]()
-    for step in steps:
-        needed = {key for key, _ in step.needs}
-        gone = {key for _, key, adds in step.effects if not adds} - needed
-        if gone:
-            found |= {frozenset(gone | {key}) for _, key, adds in step.effects if adds}
     return iter(sorted((group for group in found if len(group) > 1), key=sorted))
 
 

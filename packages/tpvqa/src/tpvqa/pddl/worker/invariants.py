@@ -8,7 +8,8 @@ from fast_downward.translate import invariant_finder, pddl
 from fast_downward.translate.instantiate import get_objects_by_type
 
 from tpvqa.pddl.worker.grounding import AtomKey, Grounding, key_of
-from tpvqa.pddl.worker.inductive import First, inductive_groups, replacing_groups
+from tpvqa.pddl.worker.inductive import First, inductive_groups
+from tpvqa.pddl.worker.replacing import replacing_groups
 
 _COUNTED = "?X"  # how the translator writes the argument that a group counts
 
@@ -38,7 +39,8 @@ def described_groups(
         derived = {axiom.name for axiom in task.axioms}  # no action adds what follows from others
         own = {key for key in grounding.atoms if key[0] not in derived}
         kept = _widest(inductive_groups(grounding.actions, own, first), kept)
-    kept = _widest(replacing_groups(grounding.actions, first), kept)
+    if task.durative is None:  # to break off what lasts takes back what it had ended
+        kept = _widest(replacing_groups(grounding.actions, first), kept)
     proved = [atoms for atoms, exactly_one in kept if exactly_one]
     others = [group for group in grounding.mutex_groups if not any(group <= p for p in proved)]
     return _listed(_widest(_reached(grounding, others, state), kept))
