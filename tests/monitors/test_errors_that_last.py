@@ -72,22 +72,19 @@ def test_it_reaches_the_goal(vlm: str, simulation: str, least: int, ran: Ran) ->
     assert sum(end.questions for end in ends) / len(ends) < 500
 
 
-@pytest.mark.parametrize(("name", "seed", "episode"), [("hospital", 60, 1), ("hospital", 61, 4)])
-def test_a_domain_that_is_no_kitchen_and_has_no_world_file(
-    name: str, seed: int, episode: int, tmp_path: Path
-) -> None:
+def test_a_domain_that_is_no_kitchen_and_has_no_world_file(tmp_path: Path) -> None:
     """A plan of 22 steps with facts that nothing shows, nothing known of the VLM."""
     files = {"domain": "domain.pddl", "problem": "problem.pddl", "questions": "questions.yaml"}
     for file in files.values():
-        shutil.copy(EXAMPLES / name / file, tmp_path)
+        shutil.copy(EXAMPLES / "hospital" / file, tmp_path)
     config = configured(
         task={part: str(tmp_path / file) for part, file in files.items()},
         world="symbolic",
         vlm="oracle:0.9:0:0.74",
         monitor="belief",
         limits=Limits(actions=400, replans=None, repeats=None),
-        seed=seed,
-        episode=episode,
+        seed=60,
+        episode=1,
     )
     with Trial(config) as trial:
         ended = trial.run(MemoryWriter())

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Sequence
 from functools import cached_property
 
-from tpvqa.belief.mutexes import h2_mutexes
 from tpvqa.belief.places import things
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.arithmetic import VALUE
@@ -123,6 +122,8 @@ class BackToBefore:
     def _apart(self) -> dict[Atom, set[Atom]]:
         """What never holds together with an atom, as far as actions lead; nothing of a task of
         which grounding left out a part."""
+        from tpvqa.belief.mutexes import h2_mutexes  # numpy; most worlds need neither
+
         found: dict[Atom, set[Atom]] = {}
         if not self._task.left_out:
             for one, other in h2_mutexes(self._task).pairs:
