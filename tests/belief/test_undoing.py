@@ -1,5 +1,6 @@
 """What a disturbance leads to where no world file says it."""
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -13,13 +14,9 @@ from tpvqa.pddl import Atom, State, Task, load_task
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
+@cache
 def example(name: str) -> Task:
     return load_task(EXAMPLES / name / "domain.pddl", EXAMPLES / name / "problem.pddl")
-
-
-@pytest.fixture(scope="module")
-def workshop() -> Task:
-    return example("workshop")
 
 
 def set_in(task: Task, mounted: str) -> State:
@@ -33,8 +30,9 @@ def set_in(task: Task, mounted: str) -> State:
     ("mounted", "back"),
     [("gripper", "(held screw_one)"), ("screwdriver", "(lies screw_one parts_tray)")],
 )
-def test_what_works_loose_is_where_it_can_be(workshop: Task, mounted: str, back: str) -> None:
+def test_what_works_loose_is_where_it_can_be(mounted: str, back: str) -> None:
     """Where the gripper is put away, a screw in its jaws would keep every tool where it is."""
+    workshop = example("workshop")
     history = [Atom.parse("(lies screw_one parts_tray)"), Atom.parse("(held screw_one)")]
     state, screw = set_in(workshop, mounted), Atom.parse("(set_in screw_one lid)")
     [(_, after)] = BackToBefore(workshop).results(screw, state, history, workshop)

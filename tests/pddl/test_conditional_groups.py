@@ -47,14 +47,14 @@ def test_groups_hold_from_all_that_a_problem_leaves_open() -> None:
     assert found(task)[places("chest")]
 
 
-def gripper(soils: str, *, init: str = "(soiled)") -> Task:
+def gripper(soils: str) -> Task:
     return task_from_text(
         f"""(define (domain ward) (:predicates (soiled) (clean) (held) (brought))
         (:action collect :parameters () :precondition (and) :effect (and (held) {soils}))
         (:action wash :parameters () :precondition (soiled)
           :effect (and (clean) (not (soiled)) (not (held))))
         (:action bring :parameters () :precondition (clean) :effect (brought)))""",
-        f"(define (problem p) (:domain ward) (:init {init}) (:goal (and (brought) (held))))",
+        "(define (problem p) (:domain ward) (:init (soiled)) (:goal (and (brought) (held))))",
     )
 
 

@@ -1,7 +1,7 @@
 """What a disturbance leads to where no world file says it."""
 
-from collections.abc import Callable, Sequence
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, lru_cache
 
 from tpvqa.belief.places import things
 from tpvqa.pddl import Atom, State, Task
@@ -10,9 +10,6 @@ from tpvqa.pddl.likewise import numbers_likewise
 
 LOST = 0.1
 """How often what was held falls where nothing that the task knows says that it is."""
-
-
-_NONE: State = frozenset()
 
 
 class BackToBefore:
@@ -116,20 +113,8 @@ class BackToBefore:
 
     def _possible(self, after: State, state: State) -> bool:
         """Whether what has come can hold together with the rest."""
-        return all(self._apart.get(each, _NONE).isdisjoint(after) for each in after - state)
-
-    @cached_property
-    def _apart(self) -> dict[Atom, set[Atom]]:
-        """What never holds together with an atom, as far as actions lead; nothing of a task of
-        which grounding left out a part."""
-        from tpvqa.belief.mutexes import h2_mutexes  # numpy; most worlds need neither
-
-        found: dict[Atom, set[Atom]] = {}
-        if not self._task.left_out:
-            for one, other in h2_mutexes(self._task).pairs:
-                found.setdefault(one, set()).add(other)
-                found.setdefault(other, set()).add(one)
-        return found
+        come = after - state
+        return all(after.isdisjoint(_apart(self._task).get(each, ())) for each in come)
 
     def with_shares(
         self, atom: Atom, state: State, before: Callable[[int], Atom | None]
@@ -171,3 +156,17 @@ class BackToBefore:
             groups = (group.atoms for group in self._task.groups_of(atom))
             known = self._rivals[atom] = frozenset[Atom]().union(*groups) - {atom}
         return known
+
+
+@lru_cache(maxsize=4)  # the world's and the belief's, and those of a bench's trials, are one
+def _apart(task: Task) -> Mapping[Atom, set[Atom]]:
+    """What never holds together with an atom, as far as actions lead; nothing of a task of which
+    grounding left out a part."""
+    from tpvqa.belief.mutexes import h2_mutexes  # numpy, which most worlds do not need
+
+    found: dict[Atom, set[Atom]] = {}
+    if not task.left_out:
+        for one, other in h2_mutexes(task).pairs:
+            found.setdefault(one, set()).add(other)
+            found.setdefault(other, set()).add(one)
+    return found
