@@ -17,9 +17,9 @@ class BackToBefore:
 
     A thing that is no longer in the hand is where it was taken from; the hand is free again. A
     fact without an exactly-one group is false again. What cannot hold with the rest, as no actions
-    lead there (h²), does not come back, but what the problem began with: a screw is not back in
-    the gripper once another tool is mounted, but in its tray. Numbers go with that as with the
-    action that does it, where there is one; a number is never without a value.
+    lead there (h²), does not come back, and nothing is undone: a screw is not back in the gripper
+    once another tool is mounted, but stays. Numbers go with that as with the action that does it,
+    where there is one; a number is never without a value.
 
     Args:
         task: Gives the mutex groups.
@@ -75,20 +75,14 @@ class BackToBefore:
     def undone(
         self, atom: Atom, state: State, before: Callable[[int], Atom | None]
     ) -> State | None:
-        """The state that undoing an atom leads to; None where nothing held before.
+        """The state that undoing an atom leads to; None where nothing held before, or it cannot
+        hold with the rest.
 
         Args:
             atom: What is undone.
             state: Where it holds.
             before: What held last, besides it, of a group.
         """
-        after = self._back(atom, state, before)
-        if after is None or self._possible(after, state):
-            return after
-        after = self._back(atom, state, self._at_first)
-        return after if after is not None and self._possible(after, state) else None
-
-    def _back(self, atom: Atom, state: State, before: Callable[[int], Atom | None]) -> State | None:
         after = state - {atom}
         for number in self.homes(atom):
             if not after.isdisjoint(self._groups[number]):
@@ -103,13 +97,7 @@ class BackToBefore:
             for number in self.homes(gone)
         ):
             return None
-        return after
-
-    def _at_first(self, number: int) -> Atom | None:
-        """What the problem begins with, of a group; None where it leaves that open."""
-        group = self._groups[number]
-        held = group & self._task.init
-        return next(iter(held)) if len(held) == 1 and not group & self._task.left_open else None
+        return after if self._possible(after, state) else None
 
     def _possible(self, after: State, state: State) -> bool:
         """Whether what has come can hold together with the rest."""
