@@ -40,7 +40,7 @@ def act(
     rates: Sequence[Fraction],
 ) -> dict[World, Fraction]:
     """Predict by enumeration, with exact fractions."""
-    failure, disturbance, spontaneous = rates
+    failure, disturbance, spontaneous, redone = rates
     after: dict[World, Fraction] = {}
 
     def add(world: World, weight: Fraction) -> None:
@@ -58,7 +58,7 @@ def act(
         for rebinding in rules.rebind:
             truly = rebinding.apply(truly, state, task)
         if task.apply(state, action) == state:
-            add(world, weight)
+            disturb(world, weight, redone)
         elif not task.applicable(state, truly):
             disturb(world, weight, disturbance)
         else:

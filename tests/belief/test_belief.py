@@ -14,8 +14,8 @@ from tpvqa.pddl import Action, Atom, Task, load_task
 from tpvqa.tasks import find_task
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
-RATES = Rates(0.25, 0.25, 0.0625)
-EXACT = (Fraction(1, 4), Fraction(1, 4), Fraction(1, 16))
+RATES = Rates(0.25, 0.25, 0.0625, 0.125)
+EXACT = (Fraction(1, 4), Fraction(1, 4), Fraction(1, 16), Fraction(1, 8))
 
 
 def plan_of(task: Task) -> list[Action]:

@@ -64,6 +64,18 @@ def test_what_works_loose_by_itself_is_learned_too() -> None:
     assert chances.rates.disturbance == 0.25
 
 
+def test_what_doing_again_undoes_is_learned_too() -> None:
+    chances = Chances()
+    for number in range(60):
+        lost = number % 5 == 0
+        chances.learn(
+            {"achieved": 1.0, "slipped": 0.9 if lost else 0.0, "kept": 0.1 if lost else 1.0}
+        )
+    assert 0.1 < chances.rates.redone < 0.2
+    assert chances.rates.disturbance == 0.25
+    assert Experience.of(chances, None, 1).chances().rates.redone == chances.rates.redone
+
+
 @pytest.mark.parametrize("rate", [0.0, 1.0])
 def test_a_rate_that_was_believed_for_certain_can_be_kept(rate: float) -> None:
     known = Experience.of(Chances(Rates(rate, rate, 0.0)), Trust(), 1)

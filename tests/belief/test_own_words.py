@@ -30,7 +30,7 @@ WARD = Path(__file__).parents[1] / "fixtures" / "drawers"
 TASK = load_task(WARD / "domain.pddl", WARD / "problem.pddl")
 MODEL = FaultModel(TASK)
 DIRTY, OPEN = Atom("contaminated", ("upper",)), Atom("open", ("upper",))
-RATES = Rates(0.25, 0.0, 0.0)
+RATES = Rates(0.25, 0.0, 0.0, 0.0)
 
 
 def after_opening(calibration: Calibration | None = None) -> tuple[Belief, Evidence]:

@@ -31,6 +31,7 @@ def model() -> FaultModel:
     failure=st.floats(0.05, 0.6),
     disturbance=st.floats(0.0, 0.5),
     spontaneous=st.sampled_from([0.0, 0.05]),
+    redone=st.sampled_from([0.0, 0.1]),
 )
 def test_what_is_paid_backward_is_what_is_lost_forward(
     model: FaultModel,
@@ -38,8 +39,9 @@ def test_what_is_paid_backward_is_what_is_lost_forward(
     failure: float,
     disturbance: float,
     spontaneous: float,
+    redone: float,
 ) -> None:
-    rates, plan = Rates(failure, disturbance, spontaneous), plan_of(model.task)
+    rates, plan = Rates(failure, disturbance, spontaneous, redone), plan_of(model.task)
     actions = [action for action, often in zip(plan, times, strict=False) for _ in range(often)]
     belief = Belief(model, smallest=0.0, most=100_000)
     (begun,) = belief.weights

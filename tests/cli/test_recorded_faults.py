@@ -1,8 +1,9 @@
-"""What recorded episodes tell of faults: losses after a success, too."""
+"""What recorded episodes tell of faults: losses after a success, and by doing a thing again."""
 
 from pathlib import Path
 
 from tests.cli.conftest import Run
+from tpvqa.belief.experience import Experience
 from tpvqa.bench.recorded_faults import experience_from
 
 QUIET = ("--world", "symbolic", "--vlm", "oracle", "--monitor", "tpvqa", "--failure", 0)
@@ -18,3 +19,21 @@ def test_what_worked_loose_in_recorded_episodes_is_counted(tpvqa: Run, tmp_path:
         for name in ("firm", "loose")
     }
     assert told["firm"].spontaneous < 0.01 < 0.1 < told["loose"].spontaneous
+
+
+def test_what_doing_again_undoes_is_counted(tpvqa: Run, tmp_path: Path) -> None:
+    """Who misreads repeats what is done: it comes undone where that is risky."""
+    told = {}
+    for redo in ("free", "risky"):
+        faults = "--failure", 0.5, "--disturbance", 0.9, "--redo", redo
+        words = "--world", "symbolic", "--vlm", "oracle:0.6", "--monitor", "tpvqa", *faults
+        folders = []
+        for seed in (1, 2, 3):
+            tpvqa("run", "eat_apple", *words, "--seed", seed, "--out", f"{redo}{seed}")
+            folders.append(f"{redo}{seed}")
+        code, _, err = tpvqa("calibrate", *folders, "--experience", f"{redo}.json", "--force")
+        assert code == 0, err
+        known = Experience.load(tmp_path / f"{redo}.json")
+        assert known is not None
+        told[redo] = known.chances().rates.redone
+    assert told["free"] < 0.005 < 0.1 < told["risky"]

@@ -8,7 +8,7 @@ goes back to what may have come undone unseen.
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.evidence import NOTICED
@@ -21,7 +21,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.pddl import Action, Atom, Literal, State, literals
 from tpvqa.planning import Plan, Planner
 from tpvqa.worlds.sensing import Occasion
-from tpvqa.worlds.simulation import Simulation
+from tpvqa.worlds.simulation import Redo, Simulation
 from tpvqa_experiments.abroad.parts import SEEING
 from tpvqa_experiments.abroad.seeing import ACTING
 
@@ -111,7 +111,9 @@ class _Known:
             lambda atom: here.book.asked(Literal(atom)) or atom.predicate in lasting,
             lambda atom: atom.predicate in felt,
         )
-        self._rates = Rates(simulation.failure, simulation.disturbance, simulation.spontaneous)
+        rates = Rates(simulation.failure, simulation.disturbance, simulation.spontaneous)
+        risky = simulation.redo is Redo.RISKY
+        self._rates = replace(rates, redone=rates.undone if risky else 0.0)
         self._unseen = [
             each.atom for each in literals(self.task.goal) if not self._sight.sees(each.atom)
         ]

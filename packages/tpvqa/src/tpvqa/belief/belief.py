@@ -14,7 +14,7 @@ from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.led import Led, Places
 from tpvqa.belief.noise import NEVER, JointNoise
-from tpvqa.belief.outcome_weights import Earlier, OutcomeWeights, aligned, carried
+from tpvqa.belief.outcome_weights import Earlier, OutcomeWeights, Weights, aligned, carried
 from tpvqa.belief.packed import Facts
 from tpvqa.belief.told_apart import ToldApart
 from tpvqa.pddl import Action, Atom, State
@@ -201,38 +201,37 @@ class Belief:
         came, remembered = OutcomeWeights(), self._remembered()
         led: list[tuple[int, int, float]] = []
 
-        def add(number: int, weight: float, *kinds: dict[int, float]) -> None:
+        def add(number: int, weight: float, *kinds: Weights) -> None:
             after[number] = after.get(number, 0.0) + weight
             led.append((begun, number, weight))
             for kind in kinds:
                 kind[number] = kind.get(number, 0.0) + weight
 
-        f, d, s = rates.failure, rates.disturbance, rates.spontaneous
+        def fall(
+            number: int, weight: float, rate: float, kinds: list[Weights], counted: list[Weights]
+        ) -> None:
+            """Add a joint state, in which something may come undone."""
+            kept, fell = weight * (1 - rate), weight * rate
+            undone = self.model.undone(number) if fell > self._smallest else ()
+            # Where some are dropped unseen, nothing is counted.
+            counts = bool(undone) and fell * min(undone)[0] > self._smallest
+            stays, falls = ([each] if counts else [] for each in counted)
+            add(number, kept if undone else weight, *kinds, *stays)
+            for share, other in undone:
+                add(other, fell * share, *kinds, *falls)
+
+        f, d = rates.failure, rates.disturbance
         leads_to = self.model.outcomes(action)
         for number, weight in self.weights.items():
             begun, outcomes = number, leads_to[number]
             if outcomes.achieved:
-                add(number, weight, came.achieved)
-                continue
-            failing, failure = weight, [] if outcomes.intended is None else [came.failure]
-            if outcomes.intended is not None:
-                failing, worked = weight * f, weight * (1 - f)
-                fallen = outcomes.undone_after if worked * s > self._smallest else ()
-                # Where some are dropped unseen, nothing is counted.
-                counts = bool(fallen) and worked * s * min(fallen)[0] > self._smallest
-                stayed, fell = ([came.stayed], [came.fell]) if counts else ([], [])
-                add(
-                    outcomes.intended, worked * (1 - s) if fallen else worked, came.success, *stayed
-                )
-                for share, other in fallen:
-                    add(other, worked * s * share, came.success, *fell)
-            undone = outcomes.undone if failing * d > self._smallest else ()
-            if not undone:
-                add(number, failing, *failure)
-                continue
-            add(number, failing * (1 - d), *failure, came.undisturbed)
-            for share, other in undone:
-                add(other, failing * d * share, *failure, came.disturbed)
+                fall(number, weight, rates.redone, [came.achieved], [came.kept, came.slipped])
+            elif outcomes.intended is None:
+                fall(number, weight, d, [], [came.undisturbed, came.disturbed])
+            else:
+                worked = weight * (1 - f), rates.spontaneous, [came.success]
+                fall(outcomes.intended, *worked, [came.stayed, came.fell])
+                fall(number, weight * f, d, [came.failure], [came.undisturbed, came.disturbed])
         self.outcome_weights = came
         numbers = tuple(self.weights)
         noise = dict(zip(numbers, self._noise.rows(numbers), strict=True))
@@ -362,7 +361,7 @@ class Belief:
         Returns:
             Expected numbers, each between 0 and 1: "success", "failure", and of what something
             could be undone in: "disturbed" and "undisturbed" without a success, "fell" and "stayed"
-            with one. Empty before the first action.
+            with one, "slipped" and "kept" with nothing to do. Empty before the first action.
         """
         if self.outcome_weights is None:
             return {}

@@ -72,6 +72,7 @@ class Chances:
         self.failure = Beta(rates.failure * strength, (1 - rates.failure) * strength)
         self.disturbance = Beta(rates.disturbance * strength, (1 - rates.disturbance) * strength)
         self.spontaneous = Beta(rates.spontaneous * strength, (1 - rates.spontaneous) * strength)
+        self.redone = Beta(rates.redone * strength, (1 - rates.redone) * strength)
         self.skills = Skills()
         self._learned: dict[str, tuple[float, float]] = {}
         self._sure = rates.failure in (0.0, 1.0)
@@ -79,7 +80,7 @@ class Chances:
     @property
     def rates(self) -> Rates:
         """The expected rates."""
-        return Rates(self.failure.mean, self.disturbance.mean, self._loose)
+        return self._rates(self.failure.mean)
 
     def skill(self, action: Action) -> SkillState:
         """What is known of how often an action fails."""
@@ -92,11 +93,14 @@ class Chances:
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
-        return Rates(self.skill(action).failure, self.disturbance.mean, self._loose)
+        return self._rates(self.skill(action).failure)
 
-    @property
-    def _loose(self) -> float:
-        return max(self.spontaneous.mean, RARELY) if self.spontaneous.yes > 0 else 0.0
+    def _rates(self, failure: float) -> Rates:
+        spontaneous, redone = (
+            max(each.mean, RARELY) if each.yes > 0 else 0.0
+            for each in (self.spontaneous, self.redone)
+        )
+        return Rates(failure, self.disturbance.mean, spontaneous, redone)
 
     def tried(self) -> Iterable[Action]:
         """The actions that were tried."""
@@ -131,3 +135,4 @@ class Chances:
             self._learned[action.name] = before[0] + gained[0], before[1] + gained[1]
         self.disturbance.learn(shares.get("disturbed", 0.0), shares.get("undisturbed", 0.0))
         self.spontaneous.learn(shares.get("fell", 0.0), shares.get("stayed", 0.0))
+        self.redone.learn(shares.get("slipped", 0.0), shares.get("kept", 0.0))

@@ -153,10 +153,10 @@ class Chooser:
         ]
         weights = np.array([weight for _, weight in ranked])
         work = {each: self._doing.of(each, ranked, kinds) for each in choices}
-        acts = any(
-            each.action is not None and (work[each] @ weights >= 0).all() for each in choices
-        )
-        if not (acts or self.changes_left == 0 or self._goal_likely(ranked)):  # trying beats ending
+        able = (each for each in choices if each.action is not None)
+        acts = any((work[each] @ weights >= 0).all() for each in able)
+        likely = sum(weight for number, weight in ranked if self.ahead.is_goal(number)) >= 0.5
+        if not (acts or likely or self.changes_left == 0):  # trying beats ending
             for limits in work.values():
                 limits[1] = 1.0
         if self._stuck(ranked) or self.ahead.left == 0:
@@ -276,7 +276,7 @@ class Chooser:
         if many < len(ranked):
             far, failure = ranked[many:], self.ahead.skill(action).failure
             idle = partial(self._idling, rates=rates, near=False)
-            left = self._far.costs(action, far, kinds[many:], failure, rates.disturbance, idle)
+            left = self._far.costs(action, far, kinds[many:], failure, rates, idle)
             column[many:] = self._step + left
         return column
 
@@ -325,18 +325,21 @@ class Chooser:
     def _followed(
         self, action: Action, number: int, rates: Rates, *, near: bool
     ) -> list[tuple[float, int, float]]:
-        outcomes = self._model.outcomes(action)[number]
+        outcomes, undone = self._model.outcomes(action)[number], self._model.undone
         if outcomes.achieved:
-            return [(1.0, number, self._idling(number, rates, near=near))]
+            more = self._idling(number, rates, near=near)
+            if near:
+                return fallen(1.0, number, undone(number), rates.redone, more)
+            return [(1.0, number, more + rates.redone * self._step)]
         possible, failure = outcomes.intended is not None, self.ahead.skill(action).failure
         failed = failure if possible else 1.0
         more = 0.0 if possible else self._idling(number, rates, near=near)
         found: list[tuple[float, int, float]] = []
         if outcomes.intended is not None:
-            after = outcomes.undone_after if near else ()
+            after = undone(outcomes.intended) if near else ()
             found += fallen(1 - failure, outcomes.intended, after, rates.spontaneous)
         if near:
-            found += fallen(failed, number, outcomes.undone, rates.disturbance, more)
+            found += fallen(failed, number, undone(number), rates.disturbance, more)
         else:
             found.append((failed, number, more + rates.disturbance * self._step))
         return found
@@ -387,9 +390,6 @@ class Chooser:
     def _worth_a_try(self, choice: Choice) -> bool:
         """Whether what one more try may win is worth an action."""
         return choice.action is None or not self.ahead.given_up(choice.action)
-
-    def _goal_likely(self, ranked: Sequence[tuple[int, float]]) -> bool:
-        return sum(weight for number, weight in ranked if self.ahead.is_goal(number)) >= 0.5
 
     def _stuck(self, ranked: Sequence[tuple[int, float]]) -> bool:
         """Whether all ways that are known lead through something that does not work any more."""

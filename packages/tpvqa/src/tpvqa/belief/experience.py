@@ -36,6 +36,8 @@ class Experience(ToldModel):
         disturbance: Cases for and against a failure disturbing something.
         spontaneous: Cases for and against something being undone after a success; None in files of
             before it was learned.
+        redone: Cases for and against doing again what is done undoing something; None in files of
+            before it was learned.
         trust: Probabilities of the factors by which the VLM's answers are worth more or less than
             its calibration says (`trust.GRID`); None where nothing was learned of them.
         biases: By predicate what its answers were like (`biases.Row`); none in files of before it
@@ -51,6 +53,7 @@ class Experience(ToldModel):
     failure: Cases
     disturbance: Cases
     spontaneous: Cases | None = None
+    redone: Cases | None = None
     trust: (
         Annotated[
             tuple[Annotated[float, Field(ge=0)], ...],
@@ -98,6 +101,7 @@ class Experience(ToldModel):
             failure=_cases(chances.failure),
             disturbance=_cases(chances.disturbance),
             spontaneous=_cases(chances.spontaneous) if chances.spontaneous.yes > 0 else None,
+            redone=_cases(chances.redone) if chances.redone.yes > 0 else None,
             trust=None if trust is None else trust.weights,
             biases={} if biases is None else dict(biases.told),
             trials=trials,
@@ -107,7 +111,7 @@ class Experience(ToldModel):
         """The rates of faults to begin the next trial with.
 
         Args:
-            rates: Give that of spontaneous changes, where a file does not tell it.
+            rates: Give those of changes that a file does not tell.
         """
         from tpvqa.belief.chances import Beta, Chances  # late, as numpy takes a while
 
@@ -116,6 +120,8 @@ class Experience(ToldModel):
         chances.disturbance = Beta(*self.disturbance)
         if self.spontaneous is not None:
             chances.spontaneous = Beta(*self.spontaneous)
+        if self.redone is not None:
+            chances.redone = Beta(*self.redone)
         return chances
 
     def trusting(self) -> Trust | None:

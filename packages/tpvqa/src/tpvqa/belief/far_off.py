@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tpvqa.belief.by_kind import ByKind, Kinds
-from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.faults import FaultModel, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.belief.outlook import Outlook
 from tpvqa.pddl import Action
@@ -62,7 +62,7 @@ class FarOff:
         ranked: Ranked,
         kinds: Kinds,
         failure: float,
-        disturbance: float,
+        rates: Rates,
         idling: Callable[[int], float],
     ) -> Floats:
         """What is left to pay after an action.
@@ -72,7 +72,7 @@ class FarOff:
             ranked: The joint states.
             kinds: Their kinds.
             failure: How often it fails.
-            disturbance: How often a failure undoes something: that costs one more action.
+            rates: How often something is undone: that costs one more action.
             idling: What it costs in a joint state to have done nothing.
         """
         model, to_go = self._model, self._ahead.to_go
@@ -87,7 +87,7 @@ class FarOff:
             return (idling(model.first(ranked[waits[place]][0])),)
 
         idle[waits] = self._idle.of(kinds[waits], waiting)[:, 0]
-        fails = stays + (idle + disturbance * self._step)
+        fails = stays + (idle + rates.disturbance * self._step)
         tried = np.where(possible > 0, (1 - failure) * leads + failure * fails, fails)
-        found: Floats = np.where(undone > 0, tried, stays + idle)
+        found: Floats = np.where(undone > 0, tried, stays + idle + rates.redone * self._step)
         return found

@@ -1,7 +1,7 @@
 """What an action can lead to: the action model with failures and disturbances."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from hashlib import blake2b
 from itertools import groupby
@@ -51,11 +51,13 @@ class Rates:
         failure: That a possible action fails.
         disturbance: That a failure also undoes something achieved.
         spontaneous: That something achieved is undone after a success.
+        redone: That doing again what is done undoes something achieved.
     """
 
     failure: float = 0.25
     disturbance: float = 0.25
     spontaneous: float = 0.01
+    redone: float = 0.005
 
     @property
     def undone(self) -> float:
@@ -82,9 +84,6 @@ class JointState:
 class Outcomes:
     """What an action can lead to from one joint state, by number.
 
-    What is undone is worked out where it is asked for: of states that are hardly possible nobody
-    asks.
-
     Attributes:
         number: That state.
         intended: What its effects say; None where a precondition does not hold.
@@ -94,19 +93,6 @@ class Outcomes:
     number: int
     intended: int | None
     achieved: bool
-    model: "FaultModel" = field(repr=False, compare=False)
-
-    @property
-    def undone(self) -> tuple[tuple[float, int], ...]:
-        """What a disturbance of the failed action leads to, each with its share."""
-        return () if self.achieved else self.model.undone(self.number)
-
-    @property
-    def undone_after(self) -> tuple[tuple[float, int], ...]:
-        """The same after a success."""
-        if self.achieved or self.intended is None:
-            return ()
-        return self.model.undone(self.intended)
 
 
 class _Met(dict[int, _Found]):
@@ -326,18 +312,18 @@ class FaultModel:
             if masks is not None:
                 holding = self.holding(number)
                 if masks.achieved(holding):
-                    return Outcomes(number, number, True, self)
+                    return Outcomes(number, number, True)
                 if not masks.possible(holding, state):
-                    return Outcomes(number, None, False, self)
+                    return Outcomes(number, None, False)
                 there = self._changed(number, masks.deleted & state, masks.added - state)
-                return Outcomes(number, there, False, self)
+                return Outcomes(number, there, False)
         if self.task.apply(state, action) == state:
-            return Outcomes(number, number, True, self)
+            return Outcomes(number, number, True)
         truly = self._truly(action, state)
         if not self.task.applicable(state, truly):
-            return Outcomes(number, None, False, self)
+            return Outcomes(number, None, False)
         intended = self.become(number, self.task.apply(state, truly))
-        return Outcomes(number, intended, False, self)
+        return Outcomes(number, intended, False)
 
     def _masks(self, action: Action) -> Compiled | None:
         if action not in self._compiled:

@@ -6,6 +6,7 @@ when answers turn out to be, what they taught goes, too.
 
 from collections.abc import Iterable
 from copy import deepcopy
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +76,7 @@ class Learned:
             sum(weight * each.failure for weight, each in told),
             sum(weight * each.disturbance for weight, each in told),
             sum(weight * each.spontaneous for weight, each in told),
+            sum(weight * each.redone for weight, each in told),
         )
 
     def skill(self, action: Action) -> SkillState:
@@ -92,8 +94,7 @@ class Learned:
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
-        rates = self.rates
-        return Rates(self.skill(action).failure, rates.disturbance, rates.spontaneous)
+        return replace(self.rates, failure=self.skill(action).failure)
 
     def tried(self) -> Iterable[Action]:
         """The actions that were tried, without the arguments that their skills do not take."""

@@ -7,6 +7,8 @@ import numpy as np
 
 from tpvqa.belief.information import Floats
 
+Weights = dict[int, float]
+"""Of joint states, by number."""
 Earlier = tuple[tuple[int, ...], Floats]
 """Numbers of joint states; and how earlier actions came out where each is the true one, the latest
 first: shares of success, of failure, and of nothing left to do; shape (actions, 3, states)."""
@@ -16,13 +18,15 @@ first: shares of success, of failure, and of nothing left to do; shape (actions,
 class OutcomeWeights:
     """How an action's outcome is shared between its ways, by joint state. Unnormalised."""
 
-    success: dict[int, float] = field(default_factory=dict)
-    failure: dict[int, float] = field(default_factory=dict)
-    disturbed: dict[int, float] = field(default_factory=dict)
-    achieved: dict[int, float] = field(default_factory=dict)
-    undisturbed: dict[int, float] = field(default_factory=dict)
-    fell: dict[int, float] = field(default_factory=dict)
-    stayed: dict[int, float] = field(default_factory=dict)
+    success: Weights = field(default_factory=dict)
+    failure: Weights = field(default_factory=dict)
+    disturbed: Weights = field(default_factory=dict)
+    achieved: Weights = field(default_factory=dict)
+    undisturbed: Weights = field(default_factory=dict)
+    fell: Weights = field(default_factory=dict)
+    stayed: Weights = field(default_factory=dict)
+    slipped: Weights = field(default_factory=dict)
+    kept: Weights = field(default_factory=dict)
 
     def shares(self, now: Mapping[int, float], predicted: Mapping[int, float]) -> dict[str, float]:
         """See `Belief.outcome_shares`.
@@ -45,6 +49,8 @@ class OutcomeWeights:
                 ("undisturbed", self.undisturbed),
                 ("fell", self.fell),
                 ("stayed", self.stayed),
+                ("slipped", self.slipped),
+                ("kept", self.kept),
             )
         }
 

@@ -104,20 +104,24 @@ class LabelledReport:
 
 @dataclass(frozen=True, slots=True)
 class OwnWords:
-    """What a robot said itself in some trials, beside the truth.
+    """What a robot said itself in some trials, beside the truth, and what it did to no end.
 
     Attributes:
         readings: Of its sensors.
         reports: Of its skills.
+        redone: Whether something came undone that could, of every action that had nothing left to
+            do.
     """
 
     readings: list[LabelledReading] = field(default_factory=list)
     reports: list[LabelledReport] = field(default_factory=list)
+    redone: list[bool] = field(default_factory=list)
 
     def add(self, more: "OwnWords") -> None:
         """Take in those of another trial."""
         self.readings.extend(more.readings)
         self.reports.extend(more.reports)
+        self.redone.extend(more.redone)
 
 
 def fit_sensors(readings: Iterable[LabelledReading]) -> tuple[SensorWorth, ...]:

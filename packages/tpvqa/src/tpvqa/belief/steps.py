@@ -121,7 +121,8 @@ class Steps:
         worked = _mixed(after, fallen, rates.spontaneous) if rates.spontaneous else after
         found = _mixed(worked[leads.there], failed, failure)
         np.copyto(found, failed, where=leads.impossible)
-        np.copyto(found, after, where=leads.achieved)
+        kept = _mixed(after, fallen, rates.redone) if rates.redone else after
+        np.copyto(found, kept, where=leads.achieved)
         return found
 
     def _led(self, action: Action) -> _Leads:

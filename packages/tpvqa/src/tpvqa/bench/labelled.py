@@ -46,7 +46,7 @@ class Labeller:
         self._views: dict[int, str | None] = {}
         self._state = TrialState()
         self._truths: list[bool] = []
-        self._acting = ""
+        self._acting, self._idle, self._undoable = "", False, False
         self.rows: list[LabelledAnswer] = []
         self.own = OwnWords()
         self._read: set[str] = set()
@@ -61,7 +61,9 @@ class Labeller:
                 if not event.during:
                     self._sense(event.facts)
             case Acting():
-                self._acting = event.action.name
+                action = self._actions[event.action.pddl()]
+                self._acting, self._idle = action.name, self._simulation.achieved(action)
+                self._undoable = self._idle and bool(self._simulation.undoable())
             case Acted():
                 self._read.clear()
                 self._sense(event.facts)
@@ -103,12 +105,14 @@ class Labeller:
                 self.own.readings.append(reading)
 
     def _report(self, event: Acted) -> None:
-        """A report counts where the action had something to do, and was not refused."""
+        """A report counts where the action had something to do, and was not refused; what an
+        action undoes where it had nothing to do, and something could come undone."""
         truth = event.truth
         if truth is None or truth.failure is Failure.REFUSED:
             return
-        idle = truth.succeeded and not (truth.added or truth.removed)
-        if not idle and event.report in (Report.DONE, Report.FAILED):
+        if self._undoable:
+            self.own.redone.append(truth.undone is not None)
+        if not self._idle and event.report in (Report.DONE, Report.FAILED):
             reported = event.report is Report.FAILED
             report = LabelledReport(self._acting, reported, failed=not truth.succeeded)
             self.own.reports.append(report)

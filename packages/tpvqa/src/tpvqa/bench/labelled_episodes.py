@@ -146,7 +146,7 @@ def _label(events: list[Event], started: Started, name: str) -> Labeller:
                 frozenset(map(Atom.parse, part))
                 for part in (event.truth.removed, event.truth.added)
             )
-            simulation.state = (simulation.state - gone) | new
+            simulation.become((simulation.state - gone) | new)
         elif isinstance(event, Acted) and event.report in (Report.DONE, Report.FAILED):
             raise _untold(name)
         labeller(event)

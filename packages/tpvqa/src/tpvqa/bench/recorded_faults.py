@@ -1,6 +1,6 @@
 """How often actions failed in recorded episodes, as what a robot knows before its next trial."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from tpvqa.belief.chances import Chances
@@ -11,7 +11,7 @@ from tpvqa.events.events import Acted
 from tpvqa.worlds.outcome import Failure
 
 
-def experience_from(folders: Iterable[Path | str]) -> Experience:
+def experience_from(folders: Iterable[Path | str], redone: Sequence[bool] = ()) -> Experience:
     """Count the faults of recorded episodes, on top of what is believed of any robot.
 
     A failure counts as one that could have disturbed something wherever an action had achieved
@@ -19,6 +19,7 @@ def experience_from(folders: Iterable[Path | str]) -> Experience:
 
     Args:
         folders: The episodes' folders.
+        redone: Whether something came undone, of their actions that had nothing left to do.
 
     Raises:
         CalibrationError: No episode says what truly came of its actions.
@@ -50,4 +51,6 @@ def experience_from(folders: Iterable[Path | str]) -> Experience:
             "No episode says what truly came of its actions, as in a simulated world it would. "
             "Leave --experience out: `tpvqa run --experience FILE` learns while it runs"
         )
+    chances.redone.yes += sum(redone)
+    chances.redone.no += len(redone) - sum(redone)
     return Experience.of(chances, None, trials)

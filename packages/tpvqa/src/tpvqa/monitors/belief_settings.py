@@ -14,7 +14,7 @@ from tpvqa.errors import PluginError, suggestion
 from tpvqa.monitors.stated_risk import risk_from
 from tpvqa.told import first_fault
 
-_RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate")
+_RATES = ("failure_rate", "disturbance_rate", "spontaneous_rate", "redone_rate")
 _REPORTS = ("notices", "false_alarms")
 _RARELY = 0.01
 """Successes that a skill is taken to report as failures, where only `notices` is given."""
@@ -49,10 +49,10 @@ class BeliefSettings:
     def parse(cls, arguments: str) -> Self:
         """Read `question=0.05:failure=200`.
 
-        Also understood: `failure_rate`, `disturbance_rate` and `spontaneous_rate`, believed
-        beforehand; `notices` and `false_alarms`, the shares of its failures and of its successes
-        that a skill reports as failures; `without=PART`; `risk=0.02`; `words=0.5`, how often what
-        lasts of the answers is the same in another wording of a question.
+        Also understood: `failure_rate`, `disturbance_rate`, `spontaneous_rate` and `redone_rate`,
+        believed beforehand; `notices` and `false_alarms`, the shares of its failures and of its
+        successes that a skill reports as failures; `without=PART`; `risk=0.02`; `words=0.5`, how
+        often what lasts of the answers is the same in another wording of a question.
 
         Raises:
             PluginError: Something is unknown, or no fitting number.
