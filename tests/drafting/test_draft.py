@@ -93,6 +93,10 @@ SAID = {
     "(sits-at ?r - robot ?s - room)": "Is the robot in the kitchen?",
     "(belongs-to ?c - cup ?p - person)": "Does the mug belong to Anna?",
     "(fits-in ?b - block ?d - drawer)": "Does the red block fit in the top drawer?",
+    "(breaker-on ?r - room)": "Is the breaker in the kitchen on?",
+    "(eef-has ?b - block)": "Does the eef have the red block?",
+    "(no-cover ?c - cup)": "Is it true that the mug does not have a cover?",
+    "(hitched ?b - block ?r - robot)": "Is the red block hitched to the robot?",
 }  # fmt: skip
 
 
@@ -164,6 +168,28 @@ def test_what_is_stored_is_in_a_box_and_on_a_shelf(tmp_path: Path) -> None:
     written = draft(load_task(domain, problem))
     assert "Is the {v} stored on the {s}?" in written
     assert "Is the {v} packed in the {b}?" in written
+
+
+ENDING = """(define (domain set) (:types lamp circuit - object)
+  (:predicates (bolted ?l - lamp) (bus-on ?c - circuit) (bus-off ?c - circuit) (metered ?l - lamp))
+  (:action undo :parameters (?l - lamp) :precondition (bolted ?l)
+    :effect (and (not (bolted ?l)) (metered ?l)))
+  (:action insert :parameters (?l - lamp ?c - circuit) :precondition (bus-on ?c)
+    :effect (and (bolted ?l) (bus-off ?c) (not (bus-on ?c)))))"""
+
+
+def test_what_can_end_is_asked_as_it_is_now_and_what_no_picture_shows_is_marked() -> None:
+    problem = """(define (problem p) (:domain set) (:objects key_lamp - lamp circuit-a - circuit)
+      (:init (bolted key_lamp) (bus-on circuit-a)) (:goal (metered key_lamp)))"""
+    written = draft(task_from_text(ENDING, problem))
+    asked = yaml.safe_load(written)["predicates"]
+    assert asked["bolted"][0] == "Is the {l} bolted?"
+    assert not any("been" in each for each in asked["bolted"])
+    assert asked["bus-on"][0] == "Is the bus of {c.the} on?"
+    assert asked["bus-off"][0] == "Is the bus of {c.the} off?"
+    assert "metered:   # LOOK: does a picture show it?" in written
+    assert "insert the {l} into {c.the}" in written
+    assert 'name: "circuit A", the: "{name}"' in written or 'circuit-a: "circuit A"' in written
 
 
 def test_verbs_agree_with_several_things(said: dict[str, set[str]]) -> None:

@@ -13,9 +13,18 @@ from tpvqa.pddl.schema import ActionSchema
 _MOVING = word_set(
     "go move drive walk fly sail travel navigate climb turn roll ride run swim "
     "step head ascend descend jump transport carry deliver bring push cross "
-    "pass refuel rotate slide"
+    "pass refuel rotate slide tow haul drag pull convey shuttle guide lead escort"
 )
 _INTO = word_set("load insert pour put drop throw stow pack")
+_JOINS = {
+    **dict.fromkeys(("insert", "plug", "stuff", "slot", "screw"), "into"),
+    **dict.fromkeys(
+        ("unplug", "extract", "remove", "eject", "withdraw", "unclip", "detach"), "from"
+    ),
+    **dict.fromkeys(("detach", "disconnect", "unhook", "unhitch", "unscrew", "untie"), "from"),
+    **dict.fromkeys(("clip", "attach", "hitch", "fasten", "tie", "bolt", "hook", "clamp"), "to"),
+}
+"""What joins a verb to the second thing that it is about."""
 _TAKING = word_set("pick take fetch collect get grab")
 _DIRECT = word_set("board enter leave exit cross reach visit")
 """Verbs whose direct object is where somebody goes, or comes from."""
@@ -211,7 +220,7 @@ class Actions:
             return f"of {noun.said}"
         if self._things.are_places(noun.objects) and not self._things.hold(noun.objects):
             return self._phrases.placed(noun)
-        return f"with {noun.said}"
+        return f"{_JOINS.get(verb, 'with')} {noun.said}"
 
     def _ways(
         self,

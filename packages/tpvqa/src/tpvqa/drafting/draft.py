@@ -93,12 +93,16 @@ def _text(words: str) -> str:
 
 def _predicate(name: str, said: Said) -> Iterator[str]:
     first, *others = said.wordings
-    look = "   # LOOK: the name tells little; ask it in your own words" if said.unsure else ""
+    look = ""
+    if said.unsure:
+        look = "   # LOOK: the name tells little; ask it in your own words"
+    elif said.unseen:
+        look = "   # LOOK: does a picture show it? If not, it belongs under never_asked"
     alike = [each for each in others if _names(each) == _names(first)]
     if said.unsure or not alike:
         yield f"  {_key(name)}: {_text(first)}{look}"
         return
-    yield f"  {_key(name)}:"
+    yield f"  {_key(name)}:{look}"
     for each in (first, *alike):
         yield f"    - {_text(each)}"
 

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases
-from tpvqa.drafting.facts_tables import HELD, ROADS, SAME, UNNAMED
+from tpvqa.drafting.facts_tables import ROADS, SAME
 from tpvqa.drafting.forms import Form, does, participle, stands, verb_form
-from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, word_set
+from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS
+from tpvqa.drafting.of_nothing import WEATHER, of_nothing
 from tpvqa.drafting.predicates import of_noun, of_verb
 from tpvqa.drafting.things import Things, some
 from tpvqa.questions.template import indefinite_article
@@ -24,11 +25,13 @@ class Said:
             one to ask first.
         unsure: Whether the name does not tell what it means.
         opposite: The predicate that it denies, where the domain has it.
+        unseen: Whether it is something that a picture seldom shows.
     """
 
     wordings: tuple[str, ...]
     unsure: bool = False
     opposite: str | None = None
+    unseen: bool = False
 
 
 class Facts:
@@ -48,23 +51,47 @@ class Facts:
         words = self._things.words(predicate)
         nouns = self._nouns(predicate)
         denied = words[0] in _NEGATIONS and len(words) > 1
+        lacks = words[0] == "no" and len(nouns) == 1 and self._is_thing(words[1:])
         clauses = list(self._clauses(words[1:] if denied else words, nouns, predicate))
+        if lacks:
+            clauses = [Clause("does", nouns[0], f"have {some(words[1:])}")]
         unsure = not clauses
         if unsure:
             clauses = [_unknown(words[1:] if denied else words, nouns)]
+        if self._may_end(predicate):  # what has been bolted may be loose again
+            now = [c for c in clauses if not (c.auxiliary == "has" and c.rest.startswith("been "))]
+            clauses = now or clauses
         say = self._phrases.denial if denied else self._phrases.question
         wordings = list(dict.fromkeys(map(say, clauses)))
         affirmed = self._phrases.affirmation(clauses[0])
-        if len(wordings) == 1 and not denied and not unsure and affirmed:
-            wordings.append(affirmed)
+        if len(wordings) == 1 and not denied and not unsure:
+            of, rest = clauses[0].subject, clauses[0].rest
+            again = Clause("does", of, f"look {rest}")
+            if " " in rest:
+                again = Clause("can", of, f"be found {rest}")
+            wordings += [affirmed or say(again)] if affirmed or clauses[0].auxiliary == "is" else []
         missing = [n.said for n in nouns if f"{{{n.parameter}" not in wordings[0]]
         unsure = unsure or (bool(missing) and not self._leaves_out(nouns, wordings[0]))
         unsure = unsure or (
-            clauses[0].subject.said in ("it", "anything") and words[0] not in _WEATHER
+            clauses[0].subject.said in ("it", "anything") and words[0] not in WEATHER
         )
         guessed = bool(nouns) and " of " in clauses[0].subject.said and len(words) > 1
         unsure = unsure or (guessed and words[0] not in ADJECTIVES and _is_done(words[0]))
-        return Said(tuple(wordings[:3]), unsure, self._opposite(predicate) if denied else None)
+        opposite = self._opposite(predicate) if denied else None
+        unseen = bool({words[0], words[-1]} & lexicon.UNSEEN)
+        return Said(tuple(wordings[:3]), unsure, opposite, unseen)
+
+    def _may_end(self, predicate: str) -> bool:
+        """Whether an action makes facts of a predicate false."""
+        effects = (e.literal for schema in self._task.schemas for e in schema.effects)
+        return any(each.predicate == predicate and not each.positive for each in effects)
+
+    def _is_thing(self, words: list[str]) -> bool:
+        """Whether words are a noun, of what something may have: cart, of no-cart."""
+        last = words[-1] if words else ""
+        said_of = ADJECTIVES | PARTICLES | PREPOSITIONS
+        ends = last.endswith(("able", "ful", "less", "ible"))
+        return bool(last) and not (last in said_of or ends or _is_done(last) or _is_ing(last))
 
     def _leaves_out(self, nouns: list[Noun], wording: str) -> bool:
         """Whether a wording leaves out only what there is one of."""
@@ -97,13 +124,16 @@ class Facts:
             kept = words[0] in PREPOSITIONS or verb_form(words[0]) is not None  # in front of
             words = words if kept else words[:-1]
         if not nouns:
-            yield from self._of_nothing(words)
+            yield from of_nothing(words)
         elif (
             len(words) > 1
             and words[0] in lexicon.AGENTS | lexicon.HANDS
             and (words[1] in ("has", "have") or _is_ing(words[1]))
         ):
             yield from self._of_agent(words, nouns)
+        elif len(words) > 1 and words[-1] in ("has", "have"):
+            who, what = Noun(f"the {' '.join(words[:-1])}"), self._others(nouns, plain=True)
+            yield Clause("does", who, f"have {' '.join(what)}")
         elif words[0] in ("have", "has", "got", "having", "possess", "possesses", "owns", "own"):
             yield from self._having(words[1:], nouns)
         elif words[0] == "can" and len(words) > 1:
@@ -116,7 +146,7 @@ class Facts:
             yield from self._where(words, nouns, predicate)
         elif words[0] in PREPOSITIONS and len(words) > 1:
             yield from self._at_something(words, nouns)
-        elif len(words) == 2 and words[-1] in ("on", "off") and words[0] in lexicon.SWITCHED:
+        elif len(words) == 2 and len(nouns) == 1 and self._switches(words):
             placed = self._things.are_places(nouns[0].objects)
             where = self._phrases.placed(nouns[0]) if placed else f"of {nouns[0].said}"
             yield Clause(
@@ -129,6 +159,15 @@ class Facts:
         else:
             yield from self._verb(words, nouns)
 
+    def _switches(self, words: list[str]) -> bool:
+        """Whether words say that something is on or off: light-on; bus-on, where bus-off is."""
+        other = {"on": "off", "off": "on"}.get(words[-1])
+        if other is None:
+            return False
+        ones = [name for name, kinds in self._task.predicates.items() if len(kinds) == 1]
+        contrary = any(self._things.words(name) == [words[0], other] for name in ones)
+        return words[0] in lexicon.SWITCHED or contrary
+
     def _of_agent(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
         """robot_has(x), gripper-holding(x)."""
         who = Noun(f"the robot's {words[0]}" if words[0] in lexicon.HANDS else f"the {words[0]}")
@@ -137,52 +176,6 @@ class Facts:
             yield Clause("does", who, f"have {rest}")
         else:
             yield Clause("is", who, f"{words[1]} {rest}")
-
-    def _of_nothing(self, words: list[str]) -> Iterator[Clause]:
-        if words[0] in ("have", "has"):
-            yield Clause("does", ROBOT, f"have {some(words[1:])}")
-            return
-        if words[0] in HELD and not {*words[1:]} & UNNAMED and len(words) > 1:
-            yield Clause("is", ROBOT, f"{words[0]} {some(words[1:])}")
-            return
-        form = verb_form(words[0])
-        if len(words) == 1 or (form and form[1] is Form.ING):
-            moving = form is not None and form[1] is Form.ING and words[0] not in _WEATHER
-            done = form is not None and form[1] is Form.PARTICIPLE
-            who = Noun("anything") if done else Noun("it")
-            who = Noun("the task") if words[0] in ("done", "finished", "completed") else who
-            who = ROBOT if words[0] in _OF_ROBOTS or moving else who
-            yield Clause("is", who, " ".join(words))
-            return
-        if (form and form[1] is Form.PARTICIPLE) or (
-            words[0] in ADJECTIVES and words[0] not in lexicon.SWITCHED
-        ):
-            if words[1] in PARTICLES:
-                yield Clause("is", ROBOT, " ".join(words))
-                return
-            words = [*words[1:], words[0]]  # free_hands: the hands are free
-        split = next(
-            (
-                at
-                for at, word in enumerate(words)
-                if at
-                and (
-                    word in PREPOSITIONS | ADJECTIVES | PARTICLES
-                    or (verb_form(word) or ("", None))[1] in (Form.PARTICIPLE, Form.ING)
-                )
-            ),
-            None,
-        )
-        if split is None:
-            return
-        subject = " ".join(words[:split])
-        own = words[split - 1] in lexicon.PARTS_OF_ROBOTS and words[0] != "robot"
-        several = words[split - 1] in ("hands", "jaws", "fingers", "grippers", "arms", "lights")
-        noun = Noun(f"the robot's {subject}" if own else f"the {subject}", plural=several)
-        rest = " ".join(words[split:])
-        yield Clause("is", noun, rest)
-        if rest in ("empty", "free") and own:
-            yield Clause("is", noun, "free" if rest == "empty" else "empty")
 
     def _having(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
         first, *rest = nouns
@@ -378,13 +371,6 @@ def _is_done(word: str) -> bool:
 def _is_ing(word: str) -> bool:
     form = verb_form(word)
     return form is not None and form[1] is Form.ING
-
-
-_WEATHER = ("raining", "snowing", "freezing", "burning")
-_OF_ROBOTS = word_set(
-    "free idle ready busy moving docked holding charging charged parked "
-    "standing armed tired hungry awake broken alive home crashed"
-)
 
 
 def _unknown(words: list[str], nouns: list[Noun]) -> Clause:

@@ -77,6 +77,14 @@ ADJECTIVES = word_set(
     "orange front bottom middle raw unlocked unloaded unsafe undone nearby north south east "
     "west"
 )
+UNSEEN = word_set(
+    "ok okay cleared screened unscreened approved verified validated authorised authorized "
+    "scheduled reserved registered known checked inspected metered measured calibrated tested "
+    "sampled sterile sterilised sterilized disinfected contaminated infected diseased healthy ill "
+    "tired hungry hot warm cold cool charged powered energised energized primed valid safe unsafe "
+    "paid booked assigned retired rebuilt faulty encoded coded recorded reported informed heavy"
+)
+"""What a picture seldom shows."""
 SIDES = word_set(
     "left right upper lower front rear top bottom middle first second third north south east "
     "west red blue green yellow black white grey gray brown orange purple pink cyan magenta big "
@@ -147,7 +155,9 @@ REGULAR = word_set(
     "nudge perch photograph plate position pollinate prune purchase queue radio receive "
     "recharge recycle relocate rescue reserve route sand scoop screw search secure separate "
     "shift shred sign smell spill steer sweeten tidy trace train trap triage undock unfold "
-    "unhook unmount untie validate wet withdraw"
+    "unhook unmount untie validate wet withdraw hitch unhitch gather stuff tumble extract clip "
+    "unclip poll eject crimp solder swab pipette decant aspirate incubate stopper dilute sift "
+    "sieve haul drag tether untether rivet deploy dose bolt unbolt grapple convey escort shuttle"
 )
 """Base forms of regular verbs."""
 
@@ -189,7 +199,8 @@ TAKES = {
     "transport": "to", "move": "to", "carry": "by", "hold": "by", "grasp": "by", "lift": "by",
     "use": "by", "grip": "by", "locate": "at", "position": "at", "pile": "on", "lay": "on",
     "set": "in", "spread": "on", "pour": "into", "wash": "in", "rack": "in", "scan": "by",
-    "tell": "to", "report": "to",
+    "tell": "to", "report": "to", "hitch": "to", "tether": "to", "hook": "to", "bolt": "to",
+    "clip": "to", "couple": "to", "cable": "to",
 }  # fmt: skip
 """What joins a participle to a second thing: inserted in, connected to."""
 
@@ -216,7 +227,8 @@ MASS = word_set(
 """What is not counted: any water, not a water."""
 SWITCHED = word_set(
     "light lights lamp stove oven tv television power heating fan machine engine burner tap "
-    "alarm radio motor pump heater"
+    "alarm radio motor pump heater breaker bus conveyor laser spindle vacuum mixer blower "
+    "compressor torch projector beacon siren"
 )
 """What is on or off by itself."""
 PLURAL_EXCEPTIONS = word_set(

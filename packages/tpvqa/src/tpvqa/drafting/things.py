@@ -124,8 +124,8 @@ class Things:
             return Label(f"{like[0]} {numbered[2].replace('_', '-')}", article=False)
         if numbered and not kind:
             return Label(f"{numbered[1].upper()}{numbered[2]}", article=False)
-        if noun and obj.startswith(noun) and re.fullmatch(r"[a-z]", obj[len(noun) :]):
-            return Label(f"{kind} {obj[len(noun) :].upper()}", article=False)
+        if noun and obj.startswith(noun) and re.fullmatch(r"[_-]?[a-z]", obj[len(noun) :]):
+            return Label(f"{kind} {obj[-1].upper()}", article=False)
         if any(any(map(str.isdigit, word)) for word in words) or is_number(words[-1]):
             return Label(_enumerated(words, kind, obj), article=False)
         if noun in PERSONS and raw.isalpha() and raw.lower() not in AGENTS | PERSONS:
