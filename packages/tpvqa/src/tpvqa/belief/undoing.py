@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache
 
+from tpvqa.belief.dead_ends import DeadEnds
 from tpvqa.belief.places import things
 from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.arithmetic import VALUE
@@ -18,8 +19,9 @@ class BackToBefore:
     A thing that is no longer in the hand is where it was taken from; the hand is free again. A
     fact without an exactly-one group is false again. What cannot hold with the rest, as no actions
     lead there (h²), does not come back, and nothing is undone: a screw is not back in the gripper
-    once another tool is mounted, but stays. Numbers go with that as with the action that does it,
-    where there is one; a number is never without a value.
+    once another tool is mounted, but stays. So does what no action could mend (`DeadEnds`): the
+    sugar in the tea. Numbers go with that as with the action that does it, where there is one; a
+    number is never without a value.
 
     Args:
         task: Gives the mutex groups.
@@ -76,7 +78,7 @@ class BackToBefore:
         self, atom: Atom, state: State, before: Callable[[int], Atom | None]
     ) -> State | None:
         """The state that undoing an atom leads to; None where nothing held before, or it cannot
-        hold with the rest.
+        hold with the rest, or never be mended.
 
         Args:
             atom: What is undone.
@@ -97,7 +99,8 @@ class BackToBefore:
             for number in self.homes(gone)
         ):
             return None
-        return after if self._possible(after, state) else None
+        mended = self._possible(after, state) and not _dead_ends(self._task).holds(after)
+        return after if mended else None
 
     def _possible(self, after: State, state: State) -> bool:
         """Whether what has come can hold together with the rest."""
@@ -144,6 +147,11 @@ class BackToBefore:
             groups = (group.atoms for group in self._task.groups_of(atom))
             known = self._rivals[atom] = frozenset[Atom]().union(*groups) - {atom}
         return known
+
+
+@lru_cache(maxsize=4)
+def _dead_ends(task: Task) -> DeadEnds:
+    return DeadEnds(task)
 
 
 @lru_cache(maxsize=4)  # the world's and the belief's, and those of a bench's trials, are one

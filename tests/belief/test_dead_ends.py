@@ -1,0 +1,76 @@
+"""States that no plan leads on from: found where they show, and no disturbance leads there."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.listing import every_state
+from tests.pddl.conditional_domains import tasks
+from tpvqa.belief.dead_ends import DeadEnds
+from tpvqa.belief.undoing import BackToBefore
+from tpvqa.pddl import Atom, Task, task_from_text
+
+
+def airport() -> Task:
+    """A tug with a cart behind it goes where the cart goes, and nowhere without it."""
+    return task_from_text(
+        """(define (domain airport) (:types tug cart place - object)
+        (:predicates (tug-at ?t - tug ?p - place) (cart-at ?c - cart ?p - place)
+          (hitched ?c - cart ?t - tug) (unhitched ?c - cart) (no-cart ?t - tug))
+        (:action drive :parameters (?t - tug ?from ?to - place)
+          :precondition (and (tug-at ?t ?from) (no-cart ?t))
+          :effect (and (not (tug-at ?t ?from)) (tug-at ?t ?to)))
+        (:action tow :parameters (?t - tug ?c - cart ?from ?to - place)
+          :precondition (and (tug-at ?t ?from) (cart-at ?c ?from) (hitched ?c ?t))
+          :effect (and (not (tug-at ?t ?from)) (tug-at ?t ?to)
+                       (not (cart-at ?c ?from)) (cart-at ?c ?to)))
+        (:action hitch :parameters (?c - cart ?t - tug ?p - place)
+          :precondition (and (tug-at ?t ?p) (cart-at ?c ?p) (unhitched ?c) (no-cart ?t))
+          :effect (and (hitched ?c ?t) (not (unhitched ?c)) (not (no-cart ?t))))
+        (:action unhitch :parameters (?c - cart ?t - tug ?p - place)
+          :precondition (and (tug-at ?t ?p) (cart-at ?c ?p) (hitched ?c ?t))
+          :effect (and (unhitched ?c) (no-cart ?t) (not (hitched ?c ?t)))))""",
+        """(define (problem p) (:domain airport)
+        (:objects t - tug c - cart apron hall gate - place)
+        (:init (tug-at t apron) (cart-at c hall) (unhitched c) (no-cart t))
+        (:goal (and (cart-at c gate) (unhitched c))))""",
+    )
+
+
+def facts(words: str) -> frozenset[Atom]:
+    return frozenset(Atom.parse(f"({each})") for each in words.split(", "))
+
+
+HITCHED = facts("tug-at t hall, cart-at c hall, hitched c t")
+
+
+def test_a_tug_is_not_torn_from_its_cart() -> None:
+    """It would stand where it came from, hitched to what is elsewhere, and could not move."""
+    task = airport()
+    history = [Atom.parse("(tug-at t apron)")]
+    back = BackToBefore(task)
+    assert back.results(Atom.parse("(tug-at t hall)"), HITCHED, history, task) == []
+    loose = facts("tug-at t hall, cart-at c hall, unhitched c, no-cart t")
+    [(_, after)] = back.results(Atom.parse("(tug-at t hall)"), loose, history, task)
+    assert after == task.init
+    assert DeadEnds(task).holds(facts("tug-at t apron, cart-at c hall, hitched c t"))
+    assert not DeadEnds(task).holds(HITCHED)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data(), tasks() | tasks(derived=True))
+def test_no_plan_leads_on_from_a_dead_end(data: st.DataObject, task: Task) -> None:
+    possible = sorted(each for each in task.reachable_atoms if each.predicate in task.fluents)
+    state = frozenset(data.draw(st.sets(st.sampled_from(possible)))) if possible else task.init
+    if DeadEnds(task).holds(state):
+        assert not any(task.goal_holds(each) for each in every_state(task, state))
+
+
+def test_most_dead_ends_of_small_tasks_are_found() -> None:
+    """Of all states of the airport, with the cart hitched or not, wherever it is."""
+    task, known = airport(), DeadEnds(airport())
+    for tug in ("apron", "hall", "gate"):
+        for cart in ("apron", "hall", "gate"):
+            for rest in ("hitched c t", "unhitched c, no-cart t"):
+                state = facts(f"tug-at t {tug}, cart-at c {cart}, {rest}")
+                leads = any(task.goal_holds(each) for each in every_state(task, state))
+                assert known.holds(state) != leads
