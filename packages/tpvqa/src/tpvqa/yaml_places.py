@@ -109,9 +109,10 @@ class Place:
         if not isinstance(self.node, yaml.ScalarNode):
             raise self.wrong(f"expected text, found {_kind(self.node)}")
         said = " ".join(str(self.node.value).split())
-        if self.node.tag != _STRING or not said:
-            found = shown(said) if said else "nothing"
-            raise self.wrong(f"expected text, found {found}; write it in quotes")
+        if self.node.tag != _STRING and said:
+            raise self.wrong(f"expected text, found {shown(said)}; write it in quotes")
+        if not said:
+            raise self.wrong("expected text, found nothing; write some, or leave the key out")
         return said
 
     def truth(self) -> bool:

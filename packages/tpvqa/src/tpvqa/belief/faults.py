@@ -57,7 +57,7 @@ class Rates:
     failure: float = 0.25
     disturbance: float = 0.25
     spontaneous: float = 0.01
-    redone: float = 0.005
+    redone: float = 0.001
 
     @property
     def undone(self) -> float:
