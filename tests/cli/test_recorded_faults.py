@@ -37,3 +37,38 @@ def test_what_doing_again_undoes_is_counted(tpvqa: Run, tmp_path: Path) -> None:
         assert known is not None
         told[redo] = known.chances().rates.redone
     assert told["free"] < 0.005 < 0.1 < told["risky"]
+
+
+LAMPS = """(define (domain lamps) (:types lamp)
+  (:predicates (lit ?l - lamp) (dark ?l - lamp))
+  (:action light :parameters (?l - lamp) :precondition ()
+    :effect (and (lit ?l) (not (dark ?l)))))"""
+PROBLEM = """(define (problem three) (:domain lamps) (:objects a b c - lamp)
+  (:init (dark a) (dark b) (dark c)) (:goal (and (lit a) (lit b) (lit c))))"""
+
+
+def test_what_people_move_is_not_counted(tpvqa: Run, tmp_path: Path) -> None:
+    words = "--world", "symbolic", "--vlm", "oracle:0.6", "--monitor", "tpvqa", "--moved", 0.5
+    for seed in (1, 2):
+        tpvqa("run", "eat_apple", *words, "--seed", seed, "--out", f"m{seed}")
+    assert tpvqa("calibrate", "m1", "m2", "--experience", "moved.json", "--force")[0] == 0
+    known = Experience.load(tmp_path / "moved.json")
+    assert known is not None
+    assert known.chances().rates.redone <= 0.001
+
+
+def test_what_doing_again_undoes_is_counted_without_a_world_file_too(
+    tpvqa: Run, tmp_path: Path
+) -> None:
+    (tmp_path / "lamps.pddl").write_text(LAMPS)
+    (tmp_path / "three.pddl").write_text(PROBLEM)
+    own = "--domain", "lamps.pddl", "--problem", "three.pddl", "--failure", 0.5
+    words = *own, "--disturbance", 1, "--redo", "risky", "--vlm", "oracle:0.6", "--monitor", "tpvqa"
+    folders = []
+    for seed in range(6):
+        tpvqa("run", *words, "--seed", seed, "--out", f"l{seed}", "--max-actions", 40)
+        folders.append(f"l{seed}")
+    assert tpvqa("calibrate", *folders, "--experience", "lamps.json", "--force")[0] == 0
+    known = Experience.load(tmp_path / "lamps.json")
+    assert known is not None
+    assert known.chances().rates.redone > 0.1

@@ -16,7 +16,8 @@ class DeadEnds:
 
     That is the delete relaxation (Bonet and Geffner 2001), a literal and its contrary each by
     itself: the goal may be out of reach where it says nothing. What is no conjunction is taken to
-    hold. Nothing is told of large tasks of which a part was left out, nor of numbers and time.
+    hold. Nothing is told of large tasks of which a part was left out, of numbers and time, nor of
+    states with facts that no action brings about: what they allow was not grounded.
 
     Args:
         task: Gives actions and goal.
@@ -30,16 +31,50 @@ class DeadEnds:
         self._fluents = task.fluents - task.derived
         self._goal = self._needs([task.goal]) if plain else None
 
-    def holds(self, state: State) -> bool:
-        """Whether a state is one."""
-        if self._goal is None:
-            return False
+    def holds(self, state: State, before: State = frozenset()) -> bool:
+        """Whether a state is one.
+
+        Args:
+            state: The state.
+            before: From where something led there; of that it is not asked whether it is one. Where
+                all that went can come back at once, and all that came can go, nothing is worse.
+        """
+        if self._goal is None or not state <= self._possible:
+            return False  # of what nothing brings about the actions are not known
         found = self._known.get(state)
         if found is None:
             if len(self._known) >= KEPT:
                 self._known.clear()
-            found = self._known[state] = not self._reaches(state, self._goal)
+            true = self._numbered(atom for atom in state if atom.predicate in self._fluents)
+            mended = bool(before) and self._mended(state, before, true)
+            found = self._known[state] = not (mended or self._reaches(true, self._goal))
         return found
+
+    @cached_property
+    def _possible(self) -> State:
+        return self._task.reachable_atoms | self._task.init
+
+    @cached_property
+    def _ways(self) -> dict[tuple[Atom, bool], list[_Needs]]:
+        """What it takes to make facts true, and to make them false."""
+        found: dict[tuple[Atom, bool], list[_Needs]] = {}
+        changes = self._changes  # they number their atoms
+        atoms = {bit: atom for atom, bit in self._bits.items()}
+        for needs, *made in changes:
+            for positive, bits in zip((True, False), made, strict=True):
+                while bits:
+                    lowest = bits & -bits
+                    found.setdefault((atoms[lowest], positive), []).append(needs)
+                    bits ^= lowest
+        return found
+
+    def _mended(self, state: State, before: State, true: int) -> bool:
+        missing = [(atom, True) for atom in before - state]
+        missing += [(atom, False) for atom in state - before]
+        return all(
+            any(not (need & ~true or bar & true) for need, bar in self._ways.get(each, ()))
+            for each in missing
+        )
 
     @cached_property
     def _changes(self) -> list[tuple[_Needs, int, int]]:
@@ -72,9 +107,8 @@ class DeadEnds:
         )
         return need, bar
 
-    def _reaches(self, state: State, goal: _Needs) -> bool:
+    def _reaches(self, true: int, goal: _Needs) -> bool:
         waiting = self._changes
-        true = self._numbered(atom for atom in state if atom.predicate in self._fluents)
         false, before = ~true, (-1, -1)
         while goal[0] & ~true or goal[1] & ~false:
             if before == (true, false):

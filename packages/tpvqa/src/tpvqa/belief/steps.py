@@ -75,7 +75,8 @@ class Steps:
             return
         self.version += 1
         self._covered = frozenset(actions)
-        self.numbers = self._reached(masses, min(1.0, TRIES * rates.undone))
+        often = max(rates.undone, rates.redone)
+        self.numbers = self._reached(masses, min(1.0, TRIES * often))
         self.place = {number: place for place, number in enumerate(self.numbers)}
         self._leads.clear()
         self._falls = None

@@ -5,7 +5,7 @@ from functools import cached_property, lru_cache
 
 from tpvqa.belief.dead_ends import DeadEnds
 from tpvqa.belief.places import things
-from tpvqa.pddl import Atom, State, Task
+from tpvqa.pddl import Atom, Condition, State, Task
 from tpvqa.pddl.arithmetic import VALUE
 from tpvqa.pddl.likewise import numbers_likewise
 
@@ -15,6 +15,8 @@ LOST = 0.1
 
 class BackToBefore:
     """An undone fact gives way to what held before it in its groups, or a thing is lost.
+
+    Who believes reckons with the latter; a world without a file loses nothing.
 
     A thing that is no longer in the hand is where it was taken from; the hand is free again. A
     fact without an exactly-one group is false again. What cannot hold with the rest, as no actions
@@ -99,13 +101,22 @@ class BackToBefore:
             for number in self.homes(gone)
         ):
             return None
-        mended = self._possible(after, state) and not _dead_ends(self._task).holds(after)
-        return after if mended else None
+        if not self._possible(after, state) or self._dead_ends.holds(after, state):
+            return None
+        return after
 
     def _possible(self, after: State, state: State) -> bool:
         """Whether what has come can hold together with the rest."""
         come = after - state
-        return all(after.isdisjoint(_apart(self._task).get(each, ())) for each in come)
+        return all(after.isdisjoint(self._apart.get(each, ())) for each in come)
+
+    @cached_property
+    def _apart(self) -> Mapping[Atom, set[Atom]]:
+        return _kept_apart(self._task, self._task.besides)
+
+    @cached_property
+    def _dead_ends(self) -> DeadEnds:
+        return _kept_dead_ends(self._task, self._task.besides, self._task.goal)
 
     def with_shares(
         self, atom: Atom, state: State, before: Callable[[int], Atom | None]
@@ -149,13 +160,15 @@ class BackToBefore:
         return known
 
 
+# The world's and the belief's, and those of a bench's trials, are one. Tasks that differ in what
+# may hold besides, or in the goal, are equal and have other actions, or ends.
 @lru_cache(maxsize=4)
-def _dead_ends(task: Task) -> DeadEnds:
+def _kept_dead_ends(task: Task, besides: State, goal: Condition) -> DeadEnds:
     return DeadEnds(task)
 
 
-@lru_cache(maxsize=4)  # the world's and the belief's, and those of a bench's trials, are one
-def _apart(task: Task) -> Mapping[Atom, set[Atom]]:
+@lru_cache(maxsize=4)
+def _kept_apart(task: Task, besides: State) -> Mapping[Atom, set[Atom]]:
     """What never holds together with an atom, as far as actions lead; nothing of a task of which
     grounding left out a part."""
     from tpvqa.belief.mutexes import h2_mutexes  # numpy, which most worlds do not need

@@ -24,7 +24,7 @@ from tpvqa.pddl import Action, Atom, State
 from tpvqa.pddl.atoms import holds_in
 from tpvqa.worlds import Report
 from tpvqa.worlds.outcome import Failure
-from tpvqa.worlds.simulation import Simulation
+from tpvqa.worlds.simulation import BY_SOMEBODY, Simulation
 
 
 class Labeller:
@@ -63,7 +63,9 @@ class Labeller:
             case Acting():
                 action = self._actions[event.action.pddl()]
                 self._acting, self._idle = action.name, self._simulation.achieved(action)
-                self._undoable = self._idle and bool(self._simulation.undoable())
+                drifts = bool(self._simulation.rules.numbers)
+                undoable = self._idle and not drifts and self._simulation.undoable()
+                self._undoable = bool(undoable)
             case Acted():
                 self._read.clear()
                 self._sense(event.facts)
@@ -110,7 +112,8 @@ class Labeller:
         truth = event.truth
         if truth is None or truth.failure is Failure.REFUSED:
             return
-        if self._undoable:
+        tried = self._undoable and truth.failure is not Failure.DEAD
+        if tried and not truth.undoing.startswith(BY_SOMEBODY):
             self.own.redone.append(truth.undone is not None)
         if not self._idle and event.report in (Report.DONE, Report.FAILED):
             reported = event.report is Report.FAILED

@@ -220,7 +220,8 @@ class Actions:
             return f"of {noun.said}"
         if self._things.are_places(noun.objects) and not self._things.hold(noun.objects):
             return self._phrases.placed(noun)
-        return f"{_JOINS.get(verb, 'with')} {noun.said}"
+        tool = (self._things.nouns(noun.objects) | {noun.parameter}) & lexicon.TOOLS
+        return f"{'with' if tool else _JOINS.get(verb, 'with')} {noun.said}"
 
     def _ways(
         self,

@@ -7,7 +7,7 @@ from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases
 from tpvqa.drafting.facts_tables import ROADS, SAME
 from tpvqa.drafting.forms import Form, does, participle, stands, verb_form
-from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS
+from tpvqa.drafting.lexicon import ADJECTIVES, PREPOSITIONS
 from tpvqa.drafting.of_nothing import WEATHER, of_nothing
 from tpvqa.drafting.predicates import of_noun, of_verb
 from tpvqa.drafting.things import Things, some
@@ -78,7 +78,7 @@ class Facts:
         guessed = bool(nouns) and " of " in clauses[0].subject.said and len(words) > 1
         unsure = unsure or (guessed and words[0] not in ADJECTIVES and _is_done(words[0]))
         opposite = self._opposite(predicate) if denied else None
-        unseen = bool({words[0], words[-1]} & lexicon.UNSEEN)
+        unseen = words[-1] in lexicon.UNSEEN
         return Said(tuple(wordings[:3]), unsure, opposite, unseen)
 
     def _may_end(self, predicate: str) -> bool:
@@ -87,11 +87,9 @@ class Facts:
         return any(each.predicate == predicate and not each.positive for each in effects)
 
     def _is_thing(self, words: list[str]) -> bool:
-        """Whether words are a noun, of what something may have: cart, of no-cart."""
-        last = words[-1] if words else ""
-        said_of = ADJECTIVES | PARTICLES | PREPOSITIONS
-        ends = last.endswith(("able", "ful", "less", "ible"))
-        return bool(last) and not (last in said_of or ends or _is_done(last) or _is_ing(last))
+        """Whether words are what the task calls things, as something may have them: cart, of
+        no-cart."""
+        return bool(words) and words[-1] in self._things.vocabulary | lexicon.PARTS
 
     def _leaves_out(self, nouns: list[Noun], wording: str) -> bool:
         """Whether a wording leaves out only what there is one of."""
@@ -131,7 +129,7 @@ class Facts:
             and (words[1] in ("has", "have") or _is_ing(words[1]))
         ):
             yield from self._of_agent(words, nouns)
-        elif len(words) > 1 and words[-1] in ("has", "have"):
+        elif len(words) == 2 and words[-1] in ("has", "have") and words[0] not in PREPOSITIONS:
             who, what = Noun(f"the {' '.join(words[:-1])}"), self._others(nouns, plain=True)
             yield Clause("does", who, f"have {' '.join(what)}")
         elif words[0] in ("have", "has", "got", "having", "possess", "possesses", "owns", "own"):

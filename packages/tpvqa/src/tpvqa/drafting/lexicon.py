@@ -77,6 +77,13 @@ ADJECTIVES = word_set(
     "orange front bottom middle raw unlocked unloaded unsafe undone nearby north south east "
     "west"
 )
+PARTS = word_set("lid cap cover label handle wheel door plug seal stopper")
+"""What a thing may have or lack."""
+TOOLS = word_set(
+    "tool wrench spanner hammer plier pliers shears scissors knife screwdriver driver drill saw "
+    "tape tongs tweezers clamp key brush sponge cloth rope strap torch crowbar lever"
+)
+"""What something is done with."""
 UNSEEN = word_set(
     "ok okay cleared screened unscreened approved verified validated authorised authorized "
     "scheduled reserved registered known checked inspected metered measured calibrated tested "
@@ -156,7 +163,7 @@ REGULAR = word_set(
     "recharge recycle relocate rescue reserve route sand scoop screw search secure separate "
     "shift shred sign smell spill steer sweeten tidy trace train trap triage undock unfold "
     "unhook unmount untie validate wet withdraw hitch unhitch gather stuff tumble extract clip "
-    "unclip poll eject crimp solder swab pipette decant aspirate incubate stopper dilute sift "
+    "unclip poll eject crimp solder pipette decant aspirate incubate stopper dilute sift "
     "sieve haul drag tether untether rivet deploy dose bolt unbolt grapple convey escort shuttle"
 )
 """Base forms of regular verbs."""

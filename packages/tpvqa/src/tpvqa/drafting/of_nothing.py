@@ -23,7 +23,7 @@ def of_nothing(words: list[str]) -> Iterator[Clause]:
     Args:
         words: Its words.
     """
-    if words[0] in ("have", "has"):
+    if words[0] in ("have", "has") and len(words) > 1:
         yield Clause("does", ROBOT, f"have {some(words[1:])}")
         return
     if words[0] in HELD and not {*words[1:]} & UNNAMED and len(words) > 1:

@@ -32,6 +32,10 @@ FAILURE = 0.25
 DISTURBANCE = 0.25
 
 
+BY_SOMEBODY = "somebody moves the "
+"""How what people do is told."""
+
+
 class Redo(StrEnum):
     """What comes of an action whose effects hold already; the paper does not say."""
 
@@ -206,7 +210,7 @@ class Simulation:
         gone, after = found
         self.become(after)
         return replace(
-            outcome, undone=gone, undoing=f"somebody moves the {gone.arguments[0]}", after=after
+            outcome, undone=gone, undoing=f"{BY_SOMEBODY}{gone.arguments[0]}", after=after
         )
 
     def _drifting(self, outcome: Outcome, action: Action, attempt: int) -> Outcome:
