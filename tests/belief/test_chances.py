@@ -53,27 +53,24 @@ def test_the_rate_is_found_from_probable_cases() -> None:
     assert chances.rates.disturbance == 0.25
 
 
-def test_what_works_loose_by_itself_is_learned_too() -> None:
-    chances = Chances(Rates(0.25, 0.25, 0.01))
+@pytest.mark.parametrize(
+    ("rate", "how", "undone", "not_undone"),
+    [
+        ("spontaneous", "success", "fell", "stayed"),
+        ("redone", "achieved", "slipped", "kept"),
+    ],
+)
+def test_what_comes_undone_without_a_failure_is_learned_too(
+    rate: str, how: str, undone: str, not_undone: str
+) -> None:
+    chances, before = Chances(), Chances().rates
     for number in range(60):
         lost = number % 5 == 0
-        chances.learn(
-            {"success": 1.0, "fell": 0.9 if lost else 0.0, "stayed": 0.1 if lost else 1.0}
-        )
-    assert 0.1 < chances.rates.spontaneous < 0.2
-    assert chances.rates.disturbance == 0.25
-
-
-def test_what_doing_again_undoes_is_learned_too() -> None:
-    chances = Chances()
-    for number in range(60):
-        lost = number % 5 == 0
-        chances.learn(
-            {"achieved": 1.0, "slipped": 0.9 if lost else 0.0, "kept": 0.1 if lost else 1.0}
-        )
-    assert 0.1 < chances.rates.redone < 0.2
-    assert chances.rates.disturbance == 0.25
-    assert Experience.of(chances, None, 1).chances().rates.redone == chances.rates.redone
+        chances.learn({how: 1.0, undone: 0.9 if lost else 0.0, not_undone: 0.1 if lost else 1.0})
+    found = getattr(chances.rates, rate)
+    assert 0.1 < found < 0.2
+    assert chances.rates.disturbance == before.disturbance
+    assert getattr(Experience.of(chances, None, 1).chances().rates, rate) == found
 
 
 @pytest.mark.parametrize("rate", [0.0, 1.0])

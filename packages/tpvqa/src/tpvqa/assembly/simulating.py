@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from tpvqa.belief.memory import Undoing
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.starts import drawn_start
 from tpvqa.belief.undoing import BackToBefore
@@ -60,11 +61,16 @@ def simulate(
         rules,
         **faults.model_dump(exclude={"dead", "true_start", "elsewhere"}),
         dead=Dead.parse(faults.dead, task),
-        undoing=() if rules.nothing_undone else rules.undo or (BackToBefore(task),),
+        undoing=undoings(task, rules),
         start=start,
         seed=config.seed,
         episode=config.episode,
     )
+
+
+def undoings(task: Task, rules: WorldRules) -> Sequence[Undoing]:
+    """What can come undone: what the world file says, or else what held before comes back."""
+    return () if rules.nothing_undone else rules.undo or (BackToBefore(task),)
 
 
 def _start(

@@ -6,10 +6,10 @@ from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from tpvqa.assembly.simulating import undoings
 from tpvqa.belief import Calibration, LabelledAnswer
 from tpvqa.belief.fitting import fit
 from tpvqa.belief.own_words import OwnWords
-from tpvqa.belief.undoing import BackToBefore
 from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
@@ -136,8 +136,7 @@ def _label(events: list[Event], started: Started, name: str) -> Labeller:
     """Play the truth of an episode back beside its answers."""
     task, rules = _stage(started.domain, started.problem, started.rules)
     start = frozenset(map(Atom.parse, started.true_start or started.initial))
-    back = () if rules.nothing_undone else rules.undo or (BackToBefore(task),)
-    simulation = Simulation(task, rules, undoing=back, start=start)
+    simulation = Simulation(task, rules, undoing=undoings(task, rules), start=start)
     labeller = Labeller(simulation, WrittenActions(task), name)
     for event in events:
         if not isinstance(event, Acted | Waited):

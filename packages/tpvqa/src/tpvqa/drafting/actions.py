@@ -18,9 +18,7 @@ _MOVING = word_set(
 _INTO = word_set("load insert pour put drop throw stow pack")
 _JOINS = {
     **dict.fromkeys(("insert", "plug", "stuff", "slot", "screw"), "into"),
-    **dict.fromkeys(
-        ("unplug", "extract", "remove", "eject", "withdraw", "unclip", "detach"), "from"
-    ),
+    **dict.fromkeys(("unplug", "extract", "remove", "eject", "withdraw", "unclip"), "from"),
     **dict.fromkeys(("detach", "disconnect", "unhook", "unhitch", "unscrew", "untie"), "from"),
     **dict.fromkeys(("clip", "attach", "hitch", "fasten", "tie", "bolt", "hook", "clamp"), "to"),
 }
