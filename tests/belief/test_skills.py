@@ -139,3 +139,15 @@ def test_tries_are_not_forgotten_once_an_action_could_not_be_done() -> None:
         chances.learn(came, other, shares)
         shares = [came, *shares]
     assert chances.skills.times(action) == pytest.approx((3, 3))
+
+
+def test_what_never_works_disturbs_nothing() -> None:
+    chances, action = Chances(), Action_("turn")
+    rates = [chances.rates_of(action).disturbance]
+    for _ in range(12):
+        chances.learn({**FAILED, "undisturbed": 1.0}, action)
+        rates.append(chances.rates_of(action).disturbance)
+    assert rates == sorted(rates, reverse=True)
+    assert rates[0] > 0.9 * chances.rates.disturbance
+    assert rates[-1] < 0.15 * chances.rates.disturbance
+    assert chances.rates_of(Action_("push")).disturbance > 0.15  # others do, as before

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from tests.cli.conftest import Run
 from tpvqa.belief.experience import Experience
+from tpvqa.bench.labelled_episodes import label_episodes
 from tpvqa.bench.recorded_faults import experience_from
 
 QUIET = ("--world", "symbolic", "--vlm", "oracle", "--monitor", "tpvqa", "--failure", 0)
@@ -15,7 +16,11 @@ def test_what_worked_loose_in_recorded_episodes_is_counted(tpvqa: Run, tmp_path:
             out = f"{name}{seed}"
             tpvqa("run", "eat_apple", *QUIET, "--spontaneous", rate, "--seed", seed, "--out", out)
     told = {
-        name: experience_from([tmp_path / f"{name}{seed}" for seed in (1, 2)]).chances().rates
+        name: experience_from(
+            label_episodes([tmp_path / f"{name}{seed}" for seed in (1, 2)]).own.acts
+        )
+        .chances()
+        .rates
         for name in ("firm", "loose")
     }
     assert told["firm"].spontaneous < 0.01 < 0.1 < told["loose"].spontaneous

@@ -85,7 +85,6 @@ class AbroadBench:
                 self.calibration_episodes,
                 done=calibrating,
                 own=extent.tasks_of_files,
-                hearing=True,
             )
             return {cell: known[learnt.source_of(cell)] for cell in believing}
 

@@ -10,6 +10,7 @@ from tpvqa.belief.fitting import fit
 from tpvqa.belief.labelled_answer import LabelledAnswer
 from tpvqa.belief.own_words import OwnWords
 from tpvqa.bench.cell import Cell
+from tpvqa.bench.condition import RATES, settings_of
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.labelled_recordings import label_recordings
 from tpvqa.bench.own_task import OwnTask
@@ -33,16 +34,25 @@ OTHER_SEEDS = 10_000
 
 @dataclass(frozen=True, slots=True, order=True)
 class Source:
-    """Where a calibration comes from."""
+    """Where a calibration comes from.
+
+    Attributes:
+        task: A task.
+        vlm: Who answers.
+        world: Specification of the world.
+        faults: The rates of faults there, as a condition; empty for those that all cells share.
+    """
 
     task: str
     vlm: str
     world: str
+    faults: str = ""
 
     @property
     def file(self) -> str:
         """The name of the calibration's file."""
-        return f"{self.vlm}_{self.task}_{self.world}.json".replace(":", "-").replace("/", "-")
+        name = "_".join(filter(None, (self.vlm, self.task, self.world, self.faults)))
+        return f"{name}.json".replace(":", "-").replace("/", "-")
 
 
 def source_of(cell: Cell, embedded_world: str = "images") -> Source:
@@ -62,7 +72,9 @@ def source_of(cell: Cell, embedded_world: str = "images") -> Source:
         vlm = vlm.partition(f":{SAME}")[0]
     if vlm == "embedded":
         world = embedded_world
-    return Source(cell.task, vlm, world)
+    rates = settings_of(cell.condition).items()
+    faults = ",".join(f"{name}={value}" for name, value in rates if name in RATES)
+    return Source(cell.task, vlm, world, faults)
 
 
 def calibrations(
@@ -73,7 +85,6 @@ def calibrations(
     *,
     done: Callable[[int, int], None] = lambda done, total: None,
     own: Mapping[str, OwnTask] = MappingProxyType({}),
-    hearing: bool = False,
 ) -> dict[Source, Calibration]:
     """Load what lies in a folder already, and learn the rest.
 
@@ -84,7 +95,6 @@ def calibrations(
         episodes: Trials that each is learnt from.
         done: Told how many there are, and of how many.
         own: Tasks of the user's own, by name.
-        hearing: Whether to learn what sensors and reports of skills are worth, too.
 
     Raises:
         TpvqaError: A trial cannot be run, a file is damaged or cannot be written.
@@ -98,14 +108,14 @@ def calibrations(
             found[source] = Calibration.load(path)
             continue
         looking = looks(source.vlm)
-        cell = Cell(source.task, LOOKING if looking else SURVEY, source.vlm, source.world)
+        monitor = LOOKING if looking else SURVEY
+        cell = Cell(source.task, monitor, source.vlm, source.world, source.faults)
         heard = OwnWords()
         rows = gather(cell, away, range(episodes), own=own.get(source.task), heard=heard)
         found[source] = fit(rows, source.vlm, chosen_looks=looking)
         if source.vlm.startswith(RECORDED):
             found[source] = _of_recordings(source, rows, found[source])
-        if hearing:
-            found[source] = found[source].hearing(heard)
+        found[source] = found[source].hearing(heard)
         found[source].save(path)
     done(len(found), len(sources))
     return found

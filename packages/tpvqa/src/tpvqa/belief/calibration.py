@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, ValidationError, field_validator
 
 from tpvqa.belief.bounds import BOUND, EDGE, Counted
+from tpvqa.belief.counted import CountedFaults, count_faults
 from tpvqa.belief.kinds import FRESH, KINDS, UNKNOWN
 from tpvqa.belief.own_words import OwnWords, SensorWorth, SkillWorth, fit_sensors, fit_skills
 from tpvqa.belief.writing import write_json
@@ -142,6 +143,7 @@ class Calibration(_Model):
         notices: What a user should know of it: P(yes) that points the wrong way.
         sensors: What the robot's own sensors are worth, by predicate.
         skills: What its skills' own reports are worth; of all and by action.
+        faults: How often its actions failed and things came undone; None where nobody knew.
         lasting: How probable each of `lasting.KINDS` is, of how errors last.
     """
 
@@ -160,6 +162,7 @@ class Calibration(_Model):
     notices: tuple[str, ...] = ()
     sensors: tuple[SensorWorth, ...] = ()
     skills: tuple[SkillWorth, ...] = ()
+    faults: CountedFaults | None = None
     lasting: Annotated[
         tuple[Probability, ...], Field(min_length=len(KINDS), max_length=len(KINDS))
     ] = FRESH
@@ -199,7 +202,7 @@ class Calibration(_Model):
     @property
     def fingerprint(self) -> str:
         """Tells it from other calibrations."""
-        names = ("by_hand", "inferred", "sensors", "skills")
+        names = ("by_hand", "inferred", "sensors", "skills", "faults")
         unsaid = {name for name in names if not getattr(self, name)}
         if self.lasting == FRESH:
             unsaid.add("lasting")
@@ -227,7 +230,8 @@ class Calibration(_Model):
     def hearing(self, own: OwnWords) -> "Calibration":
         """The same with what was learnt of the robot's own sensors and skills."""
         sensors, skills = fit_sensors(own.readings), fit_skills(own.reports)
-        return self.model_copy(update={"sensors": sensors, "skills": skills})
+        faults = count_faults(own.acts)
+        return self.model_copy(update={"sensors": sensors, "skills": skills, "faults": faults})
 
     def group(self, question: Question) -> Group:
         """The narrowest group that tells something about a question."""

@@ -3,8 +3,9 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from tpvqa.belief.counted import CountedFaults
 from tpvqa.belief.faults import Rates
-from tpvqa.belief.skills import Skills, SkillState
+from tpvqa.belief.skills import ALIKE, Skills, SkillState
 from tpvqa.pddl import Action
 
 
@@ -65,15 +66,29 @@ class Chances:
     Args:
         rates: What is believed beforehand.
         strength: How many cases that is worth.
+        counted: What was counted in other trials.
     """
 
-    def __init__(self, rates: Rates | None = None, strength: float = 12.0):
-        rates = rates or Rates()
+    def __init__(
+        self,
+        rates: Rates | None = None,
+        strength: float = 12.0,
+        counted: CountedFaults | None = None,
+    ):
+        rates, counted = rates or Rates(), counted or CountedFaults()
         self.failure = Beta(rates.failure * strength, (1 - rates.failure) * strength)
         self.disturbance = Beta(rates.disturbance * strength, (1 - rates.disturbance) * strength)
         self.spontaneous = Beta(rates.spontaneous * strength, (1 - rates.spontaneous) * strength)
         self.redone = Beta(rates.redone * strength, (1 - rates.redone) * strength)
         self.skills = Skills()
+        tried = [count for count in counted.skills.values() if count.tries]
+        rates_of_skills = [count.failed / count.tries for count in tried]
+        often = strength * sum(rates_of_skills)
+        _expect(self.failure, (often, strength * len(tried) - often))
+        _expect(self.disturbance, counted.disturbance)
+        _expect(self.spontaneous, counted.spontaneous)
+        _expect(self.redone, counted.redone)
+        self.counts = counted.skills
         self._learned: dict[str, tuple[float, float]] = {}
         self._sure = rates.failure in (0.0, 1.0)
 
@@ -89,11 +104,19 @@ class Chances:
         # Its own tries count by themselves, not by what the common rate has learned of them, too.
         yes, no = self._learned.get(action.name, (0.0, 0.0))
         yes, no = max(self.failure.yes - yes, LEAST), max(self.failure.no - no, LEAST)
-        return self.skills.of(action, yes / (yes + no), yes + no)
+        return self.skills.of(action, *self._beforehand(action.name, yes / (yes + no), yes + no))
+
+    def _beforehand(self, skill: str, mean: float, strength: float) -> tuple[float, float]:
+        """The rate of a skill before its tries in this trial, by what others come to, and how many
+        cases that is known from."""
+        count = self.counts.get(skill)
+        if count is None:
+            return mean, strength
+        return (count.failed + ALIKE * mean) / (count.tries + ALIKE), strength
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
-        return self._rates(self.skill(action).failure)
+        return self.skill(action).rates(self.rates)
 
     def _rates(self, failure: float) -> Rates:
         spontaneous, redone = (
@@ -133,6 +156,17 @@ class Chances:
             before = self._learned.get(action.name, (0.0, 0.0))
             gained = self.failure.yes - yes, self.failure.no - no
             self._learned[action.name] = before[0] + gained[0], before[1] + gained[1]
-        self.disturbance.learn(shares.get("disturbed", 0.0), shares.get("undisturbed", 0.0))
+        disturbed, undisturbed = shares.get("disturbed", 0.0), shares.get("undisturbed", 0.0)
+        self.disturbance.learn(disturbed, alive * undisturbed)
         self.spontaneous.learn(shares.get("fell", 0.0), shares.get("stayed", 0.0))
         self.redone.learn(shares.get("slipped", 0.0), shares.get("kept", 0.0))
+
+
+def _expect(beta: Beta, cases: tuple[float, float]) -> None:
+    """Expect what was counted, no surer than before: a robot is not for ever what it was, and who
+    was sure of it would look less closely. No rate that is believed for certain is changed.
+    """
+    cases_before, counted = beta.yes + beta.no, sum(cases)
+    if counted and beta.yes > 0 and beta.no > 0:
+        fewer = cases_before / (cases_before + counted)
+        beta.yes, beta.no = fewer * (beta.yes + cases[0]), fewer * (beta.no + cases[1])

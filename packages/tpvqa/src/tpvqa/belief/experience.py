@@ -19,6 +19,7 @@ from tpvqa.told import ToldModel, first_fault
 if TYPE_CHECKING:
     from tpvqa.belief.biases import Biases
     from tpvqa.belief.chances import Beta, Chances
+    from tpvqa.belief.counted import CountedFaults
     from tpvqa.belief.faults import Rates
 
 Some = Annotated[float, Field(gt=0, le=MOST, strict=True)]
@@ -107,15 +108,18 @@ class Experience(ToldModel):
             trials=trials,
         )
 
-    def chances(self, rates: "Rates | None" = None) -> "Chances":
+    def chances(
+        self, rates: "Rates | None" = None, counted: "CountedFaults | None" = None
+    ) -> "Chances":
         """The rates of faults to begin the next trial with.
 
         Args:
             rates: Give those of changes that a file does not tell.
+            counted: Tells the rates of single skills.
         """
         from tpvqa.belief.chances import Beta, Chances  # late, as numpy takes a while
 
-        chances = Chances(rates)
+        chances = Chances(rates, counted=counted)
         chances.failure = Beta(*self.failure)
         chances.disturbance = Beta(*self.disturbance)
         if self.spontaneous is not None:

@@ -6,7 +6,6 @@ when answers turn out to be, what they taught goes, too.
 
 from collections.abc import Iterable
 from copy import deepcopy
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,7 +93,7 @@ class Learned:
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
-        return replace(self.rates, failure=self.skill(action).failure)
+        return self.skill(action).rates(self.rates)
 
     def tried(self) -> Iterable[Action]:
         """The actions that were tried, without the arguments that their skills do not take."""

@@ -8,6 +8,7 @@ from typing import Annotated
 from pydantic import ConfigDict, Field
 
 from tpvqa.belief.bounds import BOUND, EDGE, Counted
+from tpvqa.belief.counted import LabelledAct
 from tpvqa.told import ToldModel
 
 FAILED = (0.1, 0.9)
@@ -104,24 +105,23 @@ class LabelledReport:
 
 @dataclass(frozen=True, slots=True)
 class OwnWords:
-    """What a robot said itself in some trials, beside the truth, and what it did to no end.
+    """What a robot said itself in some trials, beside the truth, and what came of what it did.
 
     Attributes:
         readings: Of its sensors.
         reports: Of its skills.
-        redone: Whether something came undone that could, of every action that had nothing left to
-            do.
+        acts: What came of its actions.
     """
 
     readings: list[LabelledReading] = field(default_factory=list)
     reports: list[LabelledReport] = field(default_factory=list)
-    redone: list[bool] = field(default_factory=list)
+    acts: list[LabelledAct] = field(default_factory=list)
 
     def add(self, more: "OwnWords") -> None:
         """Take in those of another trial."""
         self.readings.extend(more.readings)
         self.reports.extend(more.reports)
-        self.redone.extend(more.redone)
+        self.acts.extend(more.acts)
 
 
 def fit_sensors(readings: Iterable[LabelledReading]) -> tuple[SensorWorth, ...]:

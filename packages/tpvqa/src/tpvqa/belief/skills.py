@@ -6,15 +6,16 @@ try adds a likelihood over rates, not a count.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import inf
-from operator import is_not
 
 import numpy as np
 
 from tpvqa.belief.belief import LOOKED_BACK
+from tpvqa.belief.faults import Rates
 from tpvqa.belief.information import Floats
+from tpvqa.belief.tries import EDGE, RATES, Run, Tried
 from tpvqa.pddl import Action
 
 ALIKE = 12.0
@@ -42,9 +43,6 @@ how hard skills can be is known worse than what it costs to be wrong about it (a
 DOUBTED = 0.9
 """As how dead it counts at most until then."""
 
-_RATES: Floats = np.array([*np.linspace(0.01, 0.99, 50), 1.0])
-_EDGE = 1e-9
-
 
 @dataclass(frozen=True, slots=True)
 class SkillState:
@@ -68,100 +66,11 @@ class SkillState:
     at_worst: float = 0.0
     vain: float = 0.0
 
-
-class _Run:
-    """Tries of one action, one after the other.
-
-    Whether one of them has worked is judged once, by all that was seen until now: that the last
-    one was seen to fail says so of those before it, too.
-
-    Attributes:
-        tries: How many.
-        needed: How many of them could have worked: none after the one that has.
-        worked: Probability that one of them has.
-        likelihood: Of what was seen, for every rate, shape (rates,).
-    """
-
-    def __init__(self, action: Action):
-        self.action = action
-        self.tries, self._all_fail = 0, 1.0
-        self.needed = self.worked = 0.0
-        self._until = self._until_last = 0.0
-        self.likelihood: Floats = np.ones_like(_RATES)
-
-    def again(self, predicted: float) -> None:
-        """Note one more try, of which a failure was predicted with some probability."""
-        self.tries, self._all_fail = self.tries + 1, self._all_fail * predicted
-        self._until_last = self._until  # the one that has worked, if one of those before has
-
-    def judge(self, shares: Mapping[str, float]) -> None:
-        """Take in how the last try came out, as far as it was seen until now."""
-        failed, succeeded = shares.get("failure", 0.0), shares.get("success", 0.0)
-        # What an earlier try of the run has done is its success.
-        earlier = shares.get("achieved", 0.0) if self.tries > 1 else 0.0
-        self.worked = succeeded + earlier
-        until = succeeded * self.tries + earlier * self._until_last
-        self._until = until / self.worked if self.worked > _EDGE else float(self.tries)
-        self.needed, possible = failed * self.tries + until, failed + self.worked
-        # By how much what was seen speaks for a success, the belief in it beforehand taken out.
-        speaks = (self.worked / (1 - self._all_fail)) / max(failed / self._all_fail, _EDGE)
-        none = self.none
-        likely = none + (1 - none) * speaks
-        likely /= self._all_fail + (1 - self._all_fail) * speaks
-        self.likelihood = max(0.0, 1 - possible) + possible * likely
-
-    @property
-    def none(self) -> Floats:
-        """How probable it is at every rate that none of them works."""
-        found: Floats = _RATES**self.tries
-        return found
-
-
-@dataclass(slots=True)
-class Tried:
-    """How often an action was tried.
-
-    Attributes:
-        runs: Its tries, as they followed one another.
-    """
-
-    runs: list[_Run]
-    _told: list[Floats] = field(default_factory=list)
-    _likelihood: Floats = field(default_factory=lambda: np.ones_like(_RATES))
-
-    @property
-    def times(self) -> float:
-        """Tries that could have worked."""
-        return sum(run.needed for run in self.runs)
-
-    @property
-    def failed(self) -> float:
-        """How many of them are thought to have failed."""
-        return self.times - sum(run.worked for run in self.runs)
-
-    @property
-    def works(self) -> bool:
-        """Whether one of them is thought to have worked."""
-        return self.failed < self.times - 0.5
-
-    @property
-    def likelihood(self) -> Floats:
-        """Of what was seen, for every rate, shape (rates,)."""
-        told = [run.likelihood for run in self.runs]  # another array after every judgement
-        if len(told) != len(self._told) or any(map(is_not, told, self._told)):
-            found: Floats = np.ones_like(_RATES)
-            for each in told:
-                found = found * each
-            self._told, self._likelihood = told, found / found.max()
-        return self._likelihood
-
-    def as_if_failed(self) -> "Tried":
-        """The same if all tries of the last run have failed."""
-        last = _Run(self.runs[-1].action)
-        last.tries = self.runs[-1].tries
-        last.needed = float(last.tries)
-        last.likelihood = last.none
-        return Tried([*self.runs[:-1], last])
+    def rates(self, common: Rates) -> Rates:
+        """The expected rates where it is executed: one that never works does nothing at all, and
+        disturbs nothing."""
+        does = 1 - min(max(self.dead, self.at_worst) / max(self.failure, EDGE), 1.0)
+        return replace(common, failure=self.failure, disturbance=does * common.disturbance)
 
 
 class Skills:
@@ -176,15 +85,15 @@ class Skills:
         self._tried: dict[str, dict[Action, Tried]] = {}
         self._known: dict[tuple[Action | str, float, float], SkillState] = {}
         self._shared: dict[tuple[str, float, float], _Shared] = {}
-        self._run: _Run | None = None
-        self._latest: list[_Run | None] = []
+        self._run: Run | None = None
+        self._latest: list[Run | None] = []
 
     def of(self, action: Action, mean: float, strength: float) -> SkillState:
         """What is known of an action.
 
         Args:
             action: The skill with its objects.
-            mean: The common rate of failure.
+            mean: The rate of failure that is expected of the skill.
             strength: How many cases that is known from.
         """
         own = self._tried.get(action.name, {})
@@ -246,7 +155,7 @@ class Skills:
         counted = possible >= 0.05 and 0 < predicted < 1
         if counted:
             if self._run is None:
-                self._run = _Run(action)
+                self._run = Run(action)
                 tried = self._tried.setdefault(action.name, {}).setdefault(action, Tried([]))
                 tried.runs.append(self._run)
             self._run.again(predicted)
@@ -273,7 +182,7 @@ class _Shared:
 
     Args:
         own: Those tries.
-        mean: The common rate of failure.
+        mean: The rate of failure that is expected of it.
         strength: How many cases that is known from.
     """
 
@@ -301,15 +210,15 @@ class _Shared:
         if own:
             dead = min(sum(self._causes.get(each, 0.0) for each in _covering(action)), 1.0)
         weights = self._others.get(action, self._all)
-        weights = weights / max(weights.sum(), _EDGE)
+        weights = weights / max(weights.sum(), EDGE)
         if action in own:
             # Alike as skills are, with other objects it may be easier or harder.
             others = self._times - own[action].times
             known = 1 / (1 / ALIKE + 1 / (self._strength + others))
-            common = _prior(float(weights @ _RATES[:-1]), known)
+            common = _prior(float(weights @ RATES[:-1]), known)
             weights = common * own[action].likelihood[:-1]
-            weights /= max(weights.sum(), _EDGE)
-        failure, tries = float(weights @ _RATES[:-1]), float((weights / (1 - _RATES[:-1])).sum())
+            weights /= max(weights.sum(), EDGE)
+        failure, tries = float(weights @ RATES[:-1]), float((weights / (1 - RATES[:-1])).sum())
         shown = 0.0
         if action in own:
             likelihood = own[action].likelihood
@@ -363,7 +272,7 @@ def _prior(mean: float, strength: float) -> Floats:
     alike = max(1 / (1 / (ALIKE + 1) + 1 / (strength + 1)) - 1, 1.0)
     mean = min(max(mean, 0.005), 0.995)
     a, b = alike * mean, alike * (1 - mean)
-    logs = (a - 1) * np.log(_RATES[:-1]) + (b - 1) * np.log1p(-_RATES[:-1])
+    logs = (a - 1) * np.log(RATES[:-1]) + (b - 1) * np.log1p(-RATES[:-1])
     weights = np.exp(logs - logs.max())
     found: Floats = weights / weights.sum()
     return found

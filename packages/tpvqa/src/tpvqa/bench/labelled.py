@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tpvqa.belief import LabelledAnswer
+from tpvqa.belief.counted import Came, LabelledAct
 from tpvqa.belief.own_words import LabelledReading, LabelledReport, OwnWords
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.own_task import OwnTask
@@ -26,6 +27,13 @@ from tpvqa.worlds import Report
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import BY_SOMEBODY, Simulation
 
+_CAME = {
+    None: Came.SUCCESS,
+    Failure.PRECONDITION: Came.IMPOSSIBLE,
+    Failure.CHANCE: Came.FAILURE,
+    Failure.SCRIPT: Came.FAILURE,
+}
+
 
 class Labeller:
     """A listener that keeps every answer of a VLM with what was true when it was asked, and what
@@ -47,6 +55,7 @@ class Labeller:
         self._state = TrialState()
         self._truths: list[bool] = []
         self._acting, self._idle, self._undoable = "", False, False
+        self._drifts = bool(simulation.rules.numbers)
         self.rows: list[LabelledAnswer] = []
         self.own = OwnWords()
         self._read: set[str] = set()
@@ -63,9 +72,7 @@ class Labeller:
             case Acting():
                 action = self._actions[event.action.pddl()]
                 self._acting, self._idle = action.name, self._simulation.achieved(action)
-                drifts = bool(self._simulation.rules.numbers)
-                undoable = self._idle and not drifts and self._simulation.undoable()
-                self._undoable = bool(undoable)
+                self._undoable = self._could_come_undone()
             case Acted():
                 self._read.clear()
                 self._sense(event.facts)
@@ -107,18 +114,25 @@ class Labeller:
                 self.own.readings.append(reading)
 
     def _report(self, event: Acted) -> None:
-        """A report counts where the action had something to do, and was not refused; what an
-        action undoes where it had nothing to do, and something could come undone."""
+        """A report counts where the action had something to do, and was not refused; what it
+        undoes where something could come undone."""
         truth = event.truth
         if truth is None or truth.failure is Failure.REFUSED:
             return
-        tried = self._undoable and truth.failure is not Failure.DEAD
-        if tried and not truth.undoing.startswith(BY_SOMEBODY):
-            self.own.redone.append(truth.undone is not None)
+        if truth.failure is not Failure.DEAD:
+            came = Came.ACHIEVED if self._idle else _CAME[truth.failure]
+            could = self._undoable or (came is Came.SUCCESS and self._could_come_undone())
+            told = (could or truth.undone is not None) and not self._drifts
+            undone = told and not truth.undoing.startswith(BY_SOMEBODY)
+            lost = truth.undone is not None if undone else None
+            self.own.acts.append(LabelledAct(self._trial, self._acting, came, lost))
         if not self._idle and event.report in (Report.DONE, Report.FAILED):
             reported = event.report is Report.FAILED
             report = LabelledReport(self._acting, reported, failed=not truth.succeeded)
             self.own.reports.append(report)
+
+    def _could_come_undone(self) -> bool:
+        return not self._drifts and bool(self._simulation.undoable())
 
     def _truth(self, question: QuestionRecord) -> bool:
         return yes_is_right(question, self._simulation, self._actions)

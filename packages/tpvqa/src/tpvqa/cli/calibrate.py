@@ -166,7 +166,7 @@ def calibrate(
         found = _from_episodes(episodes, vlm)
         name, rows = found.vlm, found.plain
         if experience is not None:
-            experience_from(episodes, found.own.redone).save(experience)
+            experience_from(found.own.acts).save(experience)
     elif pictures is not None:
         config = combined(layers)
         name, rows = _from_pictures(vlm or default_vlm(), config, pictures, own, hidden=hidden)

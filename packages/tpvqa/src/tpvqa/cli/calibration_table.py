@@ -11,6 +11,7 @@ from tpvqa.cli.saying import cell, tell
 
 if TYPE_CHECKING:
     from tpvqa.belief import Calibration
+    from tpvqa.belief.counted import CountedFaults
     from tpvqa.belief.held_out import HeldOut
     from tpvqa.bench.reliability import Line
 
@@ -54,6 +55,7 @@ def plain(
         "notices": calibration.notices,
         "sensors": [each.model_dump() for each in calibration.sensors],
         "skills": [each.model_dump() for each in calibration.skills],
+        "faults": None if calibration.faults is None else calibration.faults.model_dump(),
         "lines": [asdict(line) for line in table],
     }
 
@@ -96,8 +98,28 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
             f"skills: {skill.action or 'all'} reports {skill.notices:.3f} of its failures, and "
             f"{skill.false_alarms:.3f} of its successes as failures ({skill.rows} actions)."
         )
+    if calibration.faults is not None:
+        _tell_faults(calibration.faults)
     for notice in calibration.notices:
         tell(f"note: {notice}")
+
+
+def _tell_faults(faults: "CountedFaults") -> None:
+    """What was counted of actions, a line for all skills."""
+    told = [
+        f"{name} {each.failed} of {each.failed + each.worked}"
+        for name, each in faults.skills.items()
+    ]
+    if told:
+        tell(f"failed, where it was possible: {', '.join(told)}.")
+    kinds = ("failures", faults.disturbance), ("successes", faults.spontaneous)
+    undone = [
+        f"{cases[0]} of {sum(cases)} {what}"
+        for what, cases in (*kinds, ("actions with nothing left to do", faults.redone))
+        if sum(cases)
+    ]
+    if undone:
+        tell(f"something came undone in {', '.join(undone)}.")
 
 
 def _readings(count: int) -> str:

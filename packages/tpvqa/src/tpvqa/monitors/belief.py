@@ -7,7 +7,6 @@ from typing import Any
 from tpvqa.belief.ablations import belief_without
 from tpvqa.belief.biases import Biases
 from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Chooser
 from tpvqa.belief.controls import Controls
 from tpvqa.belief.doubts import Doubts
@@ -89,9 +88,9 @@ class BeliefMonitor(Learning, PlainArguments):
         settings = settings or BeliefSettings()
         self.task, self.costs, self.name = task, settings.costs, name
         self.belief = belief_without(settings.without, model or FaultModel(task, rules))
-        known = (Chances if experience is None else experience.chances)(settings.rates)
         if calibration is None or settings.without == "calibration":
             calibration = Calibration.default()
+        known = settings.chances(calibration.faults, experience)
         self._risk = bound_for(settings.risk, risk)
         self._learns = settings.without != "learning"
         self._asks_all = settings.without == "relevance"

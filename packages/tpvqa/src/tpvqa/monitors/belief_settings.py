@@ -6,7 +6,10 @@ from typing import Self
 from pydantic import ValidationError
 
 from tpvqa.belief.ablations import PARTS
+from tpvqa.belief.chances import Chances
 from tpvqa.belief.costs import Costs
+from tpvqa.belief.counted import CountedFaults
+from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.other_words import OtherWords
 from tpvqa.belief.own_words import SkillWorth
@@ -27,6 +30,7 @@ class BeliefSettings:
     Attributes:
         costs: What things cost.
         rates: What is believed about faults beforehand.
+        stated: Which of these rates somebody stated, by name: what is calibrated does not count.
         skill: What the report of any skill is worth; None for what is calibrated, or else learned.
         without: One of `belief.ablations.PARTS`, to be left out.
         risk: The share of all trials that may end in "done" with the goal false; None for any.
@@ -39,6 +43,19 @@ class BeliefSettings:
     without: str | None = None
     risk: float | None = None
     words: float | None = None
+    stated: frozenset[str] = frozenset()
+
+    def chances(self, counted: CountedFaults | None, experience: Experience | None) -> Chances:
+        """How often faults are expected.
+
+        Args:
+            counted: What was counted in other trials; what is stated goes before it.
+            experience: What was learned in earlier trials; goes before both.
+        """
+        counted = None if counted is None else counted.besides(self.stated)
+        if experience is None:
+            return Chances(self.rates, counted=counted)
+        return experience.chances(self.rates, counted)
 
     @property
     def other_words(self) -> OtherWords:
@@ -98,7 +115,8 @@ class BeliefSettings:
             ) from None
         except ValueError as error:
             raise PluginError(f"'belief:{arguments}' is not understood: {error}") from None
-        return cls(costs, Rates(**believed), _skill(reports, arguments), without, risk, words)
+        told = Rates(**believed), _skill(reports, arguments), without, risk, words
+        return cls(costs, *told, frozenset(believed))
 
 
 def _skill(reports: dict[str, float], arguments: str) -> SkillWorth | None:
