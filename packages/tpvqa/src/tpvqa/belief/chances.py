@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from tpvqa.belief.bounds import MOST
 from tpvqa.belief.counted import CountedFaults
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.skills import ALIKE, Skills, SkillState
@@ -60,6 +61,11 @@ FIRST = 3.0
 """Tries of one action that tell fully of the others."""
 
 
+MOSTLY = 0.5
+"""A skill that has failed oftener is taken to do so as surely as it was counted: if it might be
+much harder still, it would not be worth trying at all."""
+
+
 class Chances:
     """The rates of faults, learned while running from expected numbers of cases.
 
@@ -112,7 +118,8 @@ class Chances:
         count = self.counts.get(skill)
         if count is None:
             return mean, strength
-        return (count.failed + ALIKE * mean) / (count.tries + ALIKE), strength
+        mean = (count.failed + ALIKE * mean) / (count.tries + ALIKE)
+        return mean, MOST if mean > MOSTLY else strength
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""
