@@ -63,6 +63,13 @@ def test_a_skill_that_breaks_is_noticed_however_often_it_has_worked() -> None:
     assert 3 <= tries <= 10
 
 
+def test_what_was_tried_once_says_little_of_any_skill() -> None:
+    often = [*acts("grasp", 5, 15), *acts("push", 5, 15)]
+    chances = Chances(counted=count_faults([*often, *acts("turn", 1, 0)]))
+    assert chances.rates.failure < 0.3
+    assert chances.skill(NEVER_SEEN).failure < 0.4
+
+
 @given(st.integers(0, 10**9), st.integers(0, 10**9))
 def test_whatever_was_counted_probabilities_lie_between_none_and_all(
     failed: int, worked: int

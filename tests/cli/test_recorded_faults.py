@@ -6,6 +6,7 @@ from tests.cli.conftest import Run
 from tpvqa.belief.experience import Experience
 from tpvqa.bench.labelled_episodes import label_episodes
 from tpvqa.bench.recorded_faults import experience_from
+from tpvqa.labelling import LABELS
 
 QUIET = ("--world", "symbolic", "--vlm", "oracle", "--monitor", "tpvqa", "--failure", 0)
 
@@ -42,6 +43,16 @@ def test_what_doing_again_undoes_is_counted(tpvqa: Run, tmp_path: Path) -> None:
         assert known is not None
         told[redo] = known.chances().rates.redone
     assert told["free"] < 0.005 < 0.1 < told["risky"]
+
+
+def test_what_was_counted_counts_beside_labels_of_a_person(tpvqa: Run, tmp_path: Path) -> None:
+    """The log of a simulated world tells what came of actions, whoever labels its answers."""
+    words = "--world", "symbolic", "--vlm", "oracle:0.8", "--monitor", "tpvqa"
+    assert tpvqa("run", "eat_apple", *words, "--seed", 3, "--out", "e")[0] in (0, 1)
+    before = label_episodes([tmp_path / "e"]).own.acts
+    (tmp_path / "e" / LABELS).write_text("")
+    assert before
+    assert label_episodes([tmp_path / "e"]).own.acts == before
 
 
 LAMPS = """(define (domain lamps) (:types lamp)

@@ -22,7 +22,7 @@ from tpvqa_experiments.belief.taken_over import take_over, taken_over
 from tpvqa_experiments.paper import PAPER
 
 SPEED_FILE = "speed.json"
-METHOD = 3
+METHOD = 2
 """Changes with how calibrations are learnt, so that a bench does not go on with others."""
 
 

@@ -227,7 +227,7 @@ class Belief:
             if outcomes.achieved:
                 fall(number, weight, rates.redone, [came.achieved], [came.kept, came.slipped])
             elif outcomes.intended is None:
-                fall(number, weight, d, [], [came.undisturbed, came.disturbed])
+                fall(number, weight, rates.impossible, [], [came.undisturbed, came.disturbed])
             else:
                 worked = weight * (1 - f), rates.spontaneous, [came.success]
                 fall(outcomes.intended, *worked, [came.stayed, came.fell])

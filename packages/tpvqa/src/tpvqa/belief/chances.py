@@ -88,9 +88,10 @@ class Chances:
         self.redone = Beta(rates.redone * strength, (1 - rates.redone) * strength)
         self.skills = Skills()
         tried = [count for count in counted.skills.values() if count.tries]
-        rates_of_skills = [count.failed / count.tries for count in tried]
-        often = strength * sum(rates_of_skills)
-        _expect(self.failure, (often, strength * len(tried) - often))
+        told = [min(strength / count.tries, 1.0) for count in tried]
+        failed = sum(share * count.failed for share, count in zip(told, tried, strict=True))
+        worked = sum(share * count.worked for share, count in zip(told, tried, strict=True))
+        _expect(self.failure, (failed, worked))
         _expect(self.disturbance, counted.disturbance)
         _expect(self.spontaneous, counted.spontaneous)
         _expect(self.redone, counted.redone)
@@ -113,13 +114,14 @@ class Chances:
         return self.skills.of(action, *self._beforehand(action.name, yes / (yes + no), yes + no))
 
     def _beforehand(self, skill: str, mean: float, strength: float) -> tuple[float, float]:
-        """The rate of a skill before its tries in this trial, by what others come to, and how many
-        cases that is known from."""
+        """The rate of a skill before its tries in this trial, and how many cases that is known
+        from."""
         count = self.counts.get(skill)
         if count is None:
             return mean, strength
         mean = (count.failed + ALIKE * mean) / (count.tries + ALIKE)
-        return mean, MOST if mean > MOSTLY else strength
+        mostly = count.failed > MOSTLY * count.tries
+        return mean, min(strength + count.tries, MOST) if mostly else strength
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""

@@ -52,12 +52,20 @@ class Rates:
         disturbance: That a failure also undoes something achieved.
         spontaneous: That something achieved is undone after a success.
         redone: That doing again what is done undoes something achieved.
+        in_vain: That an action undoes something whose preconditions do not hold; None for as
+            often as a failure does.
     """
 
     failure: float = 0.25
     disturbance: float = 0.25
     spontaneous: float = 0.01
     redone: float = 0.001
+    in_vain: float | None = None
+
+    @property
+    def impossible(self) -> float:
+        """How often an action undoes something whose preconditions do not hold."""
+        return self.disturbance if self.in_vain is None else self.in_vain
 
     @property
     def undone(self) -> float:

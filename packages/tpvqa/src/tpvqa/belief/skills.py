@@ -69,8 +69,9 @@ class SkillState:
     def rates(self, common: Rates) -> Rates:
         """The expected rates where it is executed: one that never works does nothing at all, and
         disturbs nothing."""
-        does = 1 - min(max(self.dead, self.at_worst) / max(self.failure, EDGE), 1.0)
-        return replace(common, failure=self.failure, disturbance=does * common.disturbance)
+        dead, often = max(self.dead, self.at_worst), common.disturbance
+        failed = often * (1 - min(dead / max(self.failure, EDGE), 1.0))
+        return replace(common, failure=self.failure, disturbance=failed, in_vain=often * (1 - dead))
 
 
 class Skills:

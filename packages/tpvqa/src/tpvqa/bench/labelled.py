@@ -55,7 +55,8 @@ class Labeller:
         self._state = TrialState()
         self._truths: list[bool] = []
         self._acting, self._idle, self._undoable = "", False, False
-        self._drifts = bool(simulation.rules.numbers)
+        # What comes undone while actions last, or is a number that drifts, is not told apart.
+        self._drifts = bool(simulation.rules.numbers) or simulation.task.lasting is not None
         self.rows: list[LabelledAnswer] = []
         self.own = OwnWords()
         self._read: set[str] = set()
@@ -121,11 +122,12 @@ class Labeller:
             return
         if truth.failure is not Failure.DEAD:
             came = Came.ACHIEVED if self._idle else _CAME[truth.failure]
-            could = self._undoable or (came is Came.SUCCESS and self._could_come_undone())
-            told = (could or truth.undone is not None) and not self._drifts
-            undone = told and not truth.undoing.startswith(BY_SOMEBODY)
-            lost = truth.undone is not None if undone else None
-            self.own.acts.append(LabelledAct(self._trial, self._acting, came, lost))
+            could = self._could_come_undone() if came is Came.SUCCESS else self._undoable
+            lost = truth.undone is not None and not truth.undoing.startswith(BY_SOMEBODY)
+            told = (could or lost) and not self._drifts
+            self.own.acts.append(
+                LabelledAct(self._trial, self._acting, came, lost if told else None)
+            )
         if not self._idle and event.report in (Report.DONE, Report.FAILED):
             reported = event.report is Report.FAILED
             report = LabelledReport(self._acting, reported, failed=not truth.succeeded)

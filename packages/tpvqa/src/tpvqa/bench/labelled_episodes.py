@@ -1,6 +1,7 @@
 """Answers beside the truth, from recorded episodes: a world's, a person's, or what is probable."""
 
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -116,6 +117,8 @@ def label_episodes(
         recorded = read_recorded(folder)
         if (recorded.folder / LABELS).exists():
             labelled.append(recorded)
+            with suppress(CalibrationError):  # of some actions alone it may be known
+                heard.acts.extend(_label(events, started, folder).own.acts)
         elif any(map(_tells_truth, events)):
             labeller = _label(events, started, folder)
             rows += labeller.rows

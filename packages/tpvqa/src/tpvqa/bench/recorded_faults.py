@@ -20,7 +20,8 @@ def experience_from(acts: Sequence[LabelledAct]) -> Experience:
     counted = count_faults(acts)
     if counted is None:
         raise CalibrationError(
-            "No episode says what truly came of its actions, as in a simulated world it would. "
+            "No episode says of an action that could work what truly came of it, as in a simulated "
+            "world it would. "
             "Leave --experience out: `tpvqa run --experience FILE` learns while it runs"
         )
     chances, skills = Chances(), counted.skills.values()
