@@ -115,8 +115,8 @@ def test_where_everything_is_sensed_no_question_is_needed(tpvqa: Run, at: str) -
         assert ended.questions == 0
         if at == "effect":  # what a failure may have undone besides, nothing tells
             assert ended.actions <= 6 + failed + 2
-        else:
-            assert ended.actions == 6 + failed
+        else:  # one that failed five times in a row looks dead, and is made sure of once
+            assert ended.actions - 6 - failed in ((0, 1) if failed > 5 else (0,))
         assert ended.looks <= (ended.actions if at == "look" else 1)
 
 
