@@ -31,10 +31,7 @@ def test_actions_are_counted_by_skill_and_by_what_came_undone() -> None:
     ]
     assert count_faults(told) == CountedFaults(
         skills={
-            "grasp": SkillCount(
-                failed=4,
-                worked=7,
-            ),
+            "grasp": SkillCount(failed=4, worked=7),
             "push": SkillCount(failed=0, worked=1),
         },
         disturbance=(1, 1),

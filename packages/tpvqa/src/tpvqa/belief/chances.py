@@ -87,15 +87,12 @@ class Chances:
         self.spontaneous = Beta(rates.spontaneous * strength, (1 - rates.spontaneous) * strength)
         self.redone = Beta(rates.redone * strength, (1 - rates.redone) * strength)
         self.skills = Skills()
-        tried = [count for count in counted.skills.values() if count.tries]
-        told = [min(strength / count.tries, 1.0) for count in tried]
-        failed = sum(share * count.failed for share, count in zip(told, tried, strict=True))
-        worked = sum(share * count.worked for share, count in zip(told, tried, strict=True))
-        _expect(self.failure, (failed, worked))
+        tries = [count.at_most(strength) for count in counted.skills.values()]
+        _expect(self.failure, (sum(failed for failed, _ in tries), sum(w for _, w in tries)))
         _expect(self.disturbance, counted.disturbance)
         _expect(self.spontaneous, counted.spontaneous)
         _expect(self.redone, counted.redone)
-        self.counts = counted.skills
+        self._counted = counted.skills
         self._learned: dict[str, tuple[float, float]] = {}
         self._sure = rates.failure in (0.0, 1.0)
 
@@ -116,7 +113,7 @@ class Chances:
     def _beforehand(self, skill: str, mean: float, strength: float) -> tuple[float, float]:
         """The rate of a skill before its tries in this trial, and how many cases that is known
         from."""
-        count = self.counts.get(skill)
+        count = self._counted.get(skill)
         if count is None:
             return mean, strength
         mean = (count.failed + ALIKE * mean) / (count.tries + ALIKE)
@@ -175,7 +172,7 @@ def _expect(beta: Beta, cases: tuple[float, float]) -> None:
     """Expect what was counted, no surer than before: a robot is not for ever what it was, and who
     was sure of it would look less closely. No rate that is believed for certain is changed.
     """
-    cases_before, counted = beta.yes + beta.no, sum(cases)
+    known, counted = beta.yes + beta.no, sum(cases)
     if counted and beta.yes > 0 and beta.no > 0:
-        fewer = cases_before / (cases_before + counted)
+        fewer = known / (known + counted)
         beta.yes, beta.no = fewer * (beta.yes + cases[0]), fewer * (beta.no + cases[1])

@@ -1,5 +1,6 @@
 """How often actions failed and things came undone, in trials of which that is known."""
 
+from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,7 +12,7 @@ from tpvqa.told import ToldModel
 
 
 class Came(StrEnum):
-    """What truly came of an action; the names are those of `Belief.outcome_shares`."""
+    """What truly came of an action."""
 
     SUCCESS = "success"
     FAILURE = "failure"
@@ -56,6 +57,11 @@ class SkillCount(_Told):
         """How often it was tried."""
         return self.failed + self.worked
 
+    def at_most(self, cases: float) -> tuple[float, float]:
+        """How often it failed, and worked, in so many tries, if it had no more."""
+        fewer = min(cases / max(self.tries, 1), 1.0)
+        return fewer * self.failed, fewer * self.worked
+
 
 Cases = tuple[Counted, Counted]
 """For and against."""
@@ -87,26 +93,22 @@ class CountedFaults(_Told):
 
 def count_faults(acts: Iterable[LabelledAct]) -> CountedFaults | None:
     """Count what came of actions; None where there were none."""
-    failed: dict[str, int] = {}
-    worked: dict[str, int] = {}
-    undone: dict[Came, list[bool]] = {came: [] for came in Came}
-    for act in acts:
-        if act.came is Came.FAILURE:
-            failed[act.action] = failed.get(act.action, 0) + 1
-        elif act.came is Came.SUCCESS:
-            worked[act.action] = worked.get(act.action, 0) + 1
-        if act.undone is not None:
-            undone[act.came].append(act.undone)
-    disturbed = _cases(undone[Came.FAILURE] + undone[Came.IMPOSSIBLE])
-    loose, again = _cases(undone[Came.SUCCESS]), _cases(undone[Came.ACHIEVED])
-    skills = {
-        name: SkillCount(failed=failed.get(name, 0), worked=worked.get(name, 0))
-        for name in sorted({*failed, *worked})
-    }
-    if not (skills or sum(disturbed + loose + again)):
-        return None
-    return CountedFaults(skills=skills, disturbance=disturbed, spontaneous=loose, redone=again)
+    told = list(acts)
+    came = Counter((act.action, act.came) for act in told)
+    undone = Counter((act.came, act.undone) for act in told)
+    tried = {name for name, how in came if how in (Came.FAILURE, Came.SUCCESS)}
 
+    def cases(*kinds: Came) -> Cases:
+        yes, no = (sum(undone[kind, lost] for kind in kinds) for lost in (True, False))
+        return yes, no
 
-def _cases(seen: list[bool]) -> Cases:
-    return sum(seen), len(seen) - sum(seen)
+    found = CountedFaults(
+        skills={
+            name: SkillCount(failed=came[name, Came.FAILURE], worked=came[name, Came.SUCCESS])
+            for name in sorted(tried)
+        },
+        disturbance=cases(Came.FAILURE, Came.IMPOSSIBLE),
+        spontaneous=cases(Came.SUCCESS),
+        redone=cases(Came.ACHIEVED),
+    )
+    return None if found == CountedFaults() else found

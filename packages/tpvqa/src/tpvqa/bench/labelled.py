@@ -55,8 +55,8 @@ class Labeller:
         self._state = TrialState()
         self._truths: list[bool] = []
         self._acting, self._idle, self._undoable = "", False, False
-        # What comes undone while actions last, or is a number that drifts, is not told apart.
-        self._drifts = bool(simulation.rules.numbers) or simulation.task.lasting is not None
+        # Numbers drift, and while actions last much else changes what holds.
+        self._tells_undone = not simulation.rules.numbers and simulation.task.lasting is None
         self.rows: list[LabelledAnswer] = []
         self.own = OwnWords()
         self._read: set[str] = set()
@@ -124,7 +124,7 @@ class Labeller:
             came = Came.ACHIEVED if self._idle else _CAME[truth.failure]
             could = self._could_come_undone() if came is Came.SUCCESS else self._undoable
             lost = truth.undone is not None and not truth.undoing.startswith(BY_SOMEBODY)
-            told = (could or lost) and not self._drifts
+            told = self._tells_undone and (could or lost)
             self.own.acts.append(
                 LabelledAct(self._trial, self._acting, came, lost if told else None)
             )
@@ -134,7 +134,7 @@ class Labeller:
             self.own.reports.append(report)
 
     def _could_come_undone(self) -> bool:
-        return not self._drifts and bool(self._simulation.undoable())
+        return self._tells_undone and bool(self._simulation.undoable())
 
     def _truth(self, question: QuestionRecord) -> bool:
         return yes_is_right(question, self._simulation, self._actions)

@@ -117,8 +117,9 @@ def label_episodes(
         recorded = read_recorded(folder)
         if (recorded.folder / LABELS).exists():
             labelled.append(recorded)
-            with suppress(CalibrationError):  # of some actions alone it may be known
-                heard.acts.extend(_label(events, started, folder).own.acts)
+            if any(map(_tells_truth, events)):
+                with suppress(CalibrationError):  # it may be known of some actions alone
+                    heard.acts.extend(_label(events, started, folder).own.acts)
         elif any(map(_tells_truth, events)):
             labeller = _label(events, started, folder)
             rows += labeller.rows

@@ -21,8 +21,8 @@ def experience_from(acts: Sequence[LabelledAct]) -> Experience:
     if counted is None:
         raise CalibrationError(
             "No episode says of an action that could work what truly came of it, as in a simulated "
-            "world it would. "
-            "Leave --experience out: `tpvqa run --experience FILE` learns while it runs"
+            "world it would. Leave --experience out: `tpvqa run --experience FILE` learns while "
+            "it runs"
         )
     chances, skills = Chances(), counted.skills.values()
     tries = sum(each.failed for each in skills), sum(each.worked for each in skills)

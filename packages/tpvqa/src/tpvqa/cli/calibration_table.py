@@ -106,10 +106,7 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
 
 def _tell_faults(faults: "CountedFaults") -> None:
     """What was counted of actions, a line for all skills."""
-    told = [
-        f"{name} {each.failed} of {each.failed + each.worked}"
-        for name, each in faults.skills.items()
-    ]
+    told = [f"{name} {each.failed} of {each.tries}" for name, each in faults.skills.items()]
     if told:
         tell(f"failed, where it was possible: {', '.join(told)}.")
     kinds = ("failures", faults.disturbance), ("successes", faults.spontaneous)
