@@ -24,7 +24,7 @@ from tpvqa.vlm.recorded.vlm import told_by
 RECORDED = "recorded:"
 MISREAD = "flawed:misread:"
 
-SURVEY = "survey"
+SURVEY = "survey:8:twice"
 """Who asks noise models: it asks regardless of the answers, so that all of them count."""
 LOOKING = "tpvqa:3"
 """Who asks VLMs that look: it also goes where things lie elsewhere. Its first answers count."""
@@ -73,7 +73,7 @@ def source_of(cell: Cell, embedded_world: str = "images") -> Source:
     if vlm == "embedded":
         world = embedded_world
     rates = settings_of(cell.condition).items()
-    faults = ",".join(f"{name}={value}" for name, value in rates if name in RATES)
+    faults = ",".join(f"{name}={value}" for name, value in rates if name in (*RATES, "redo"))
     return Source(cell.task, vlm, world, faults)
 
 
