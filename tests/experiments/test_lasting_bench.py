@@ -63,6 +63,7 @@ def rows(
                 episode=number,
                 completed=done,
                 believed_goal=believed,
+                reached=done,
                 because="goal",
                 questions=questions,
                 actions=5,
@@ -212,7 +213,11 @@ class TestTargets:
         assert lied.note == "not in: gemma-3-12b clean_dishes 0.2"
         assert not any(check.reached for check in lasting_targets(results, EXTENT))
         well = found(share(own[0].cell, 99, questions=40), lead)
-        assert all(check.reached for check in lasting_targets(well, EXTENT))
+        judged = [each for each in lasting_targets(well, EXTENT) if each.target != "–"]
+        assert all(check.reached for check in judged)
+        assert (
+            checks(results, "the goal holds")[0].note == "not in: gemma-3-12b clean_dishes -0.300"
+        )
 
     def test_only_trials_after_the_experience_count(self) -> None:
         late = [number >= AFTER for number in range(25)]
@@ -259,12 +264,13 @@ def test_the_tables_say_who_lost_to_whom() -> None:
     results = found(own, lead)
     told = lasting_markdown(results, EXTENT, list(lasting_targets(results, EXTENT)))
     assert "| ≥ 0.9 | **0.40 (0.31–0.50)** | **no** |" in told
-    assert "| lead:2 | 0.75 (0.66–0.82) of 100 | .000 | 10 | 5.0 | **-0.350 (" in told
+    assert "| lead:2 | 0.75 (0.66–0.82) of 100 | .000 | .750 | 10 | 5.0 | **-0.350 (" in told
     assert "| worse |" in told
     two = lasting_targets_markdown(list(lasting_targets(results, EXTENT)), (TASK, "eat_apple"))
     assert "| clean_dishes **0.40 (0.31–0.50)** |" in two
     ours = next(row for row in lasting_rows(results, EXTENT) if row["monitor"] == BELIEF)
-    assert (ours["completion_rate"], ours["wrong_done"], ours["questions"]) == (0.4, 0.1, 200.0)
+    figures = ("completion_rate", "wrong_done", "goal_holds", "questions")
+    assert [ours[name] for name in figures] == [0.4, 0.1, 0.4, 200.0]
 
 
 def test_the_documentation_gets_its_table_from_the_bench(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from tpvqa_experiments.belief.results import BeliefResults
 from tpvqa_experiments.belief.under_noise import (
     UnderNoise,
     completion,
+    in_truth,
     over_robots,
     questions,
     under_noises,
@@ -43,6 +44,7 @@ def lasting_rows(results: BeliefResults, extent: Extent) -> list[dict[str, Any]]
                     "wrong_done": lied.value,
                     "wrong_low": lied.low,
                     "wrong_high": lied.high,
+                    "goal_holds": in_truth(rows).value,
                     "questions": asked.value,
                     "actions": _actions(rows),
                     "best_rival": monitor in names,
@@ -149,17 +151,18 @@ def _beside(found: Sequence[UnderNoise]) -> str:
                 "" if ahead is None else verdict(ahead).removesuffix(" than"),
             )
         )
-    names = ("completed (95%)", "wrong *done*", "questions", "actions")
+    names = ("completed (95%)", "wrong *done*", "goal holds", "questions", "actions")
     heads = ("answers", "redoing", "task", *names, "best rival", *names, "less it (95%)", "is")
     return table(heads, lines) if lines else ""
 
 
-def _figures(rows: Sequence[EpisodeRow]) -> tuple[str, str, str, str]:
+def _figures(rows: Sequence[EpisodeRow]) -> tuple[str, str, str, str, str]:
     if not rows:
-        return ("", "", "", "")
+        return ("", "", "", "", "")
     return (
         f"{_estimate(completion(rows))} of {len(rows)}",
         rate(wrong(rows).value),
+        rate(in_truth(rows).value),
         f"{questions(rows).value:.0f}",
         f"{_actions(rows):.1f}",
     )
@@ -174,12 +177,13 @@ def _experience(results: BeliefResults, extent: Extent) -> str:
                 rows = [row for own in robots for row in own]
                 done = _estimate(over_robots(robots))
                 lines.append((redo, task, str(len(robots)), done, *_figures(rows)[1:]))
-    names = ("redoing", "task", "robots", "completed (95%)", "wrong *done*", "questions", "actions")
+    names = ("wrong *done*", "goal holds", "questions", "actions")
+    heads = ("redoing", "task", "robots", "completed (95%)", *names)
     text = (
         f"The same 10% of the questions are always misread; trials {AFTER + 1} to "
         f"{AFTER + JUDGED} of every robot, of which each counts once.\n\n"
     )
-    return text + table(names, lines) if lines else ""
+    return text + table(heads, lines) if lines else ""
 
 
 def _field(found: Sequence[UnderNoise]) -> str:

@@ -6,6 +6,7 @@ reached, and names the others.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 from tpvqa_experiments.belief.bounded import bounded
 from tpvqa_experiments.belief.check import Check
@@ -133,6 +134,10 @@ def _recorded(redo: str, found: Sequence[UnderNoise]) -> Iterator[Check]:
     ]
     what = f"{CLEARLY:g} above the best rival or ≥ {PERFECT:g}"
     yield _count(where, what, len(beside), short, enough=(len(beside) + 1) // 2)
+    truly = [(_name(each), ahead) for each, _ in beside if (ahead := each.ahead_in_truth)]
+    behind = [(name, f"{ahead.value:+.3f}") for name, ahead in truly if ahead.high < 0]
+    what = "the goal holds in the end, whatever is said, no less often than with the best rival"
+    yield replace(_count(where, what, len(truly), behind), target="–", reached=None)
     own = [(_name(each), each.own) for each in found if each.own]
     yield _all_at_most(where, "wrong done", RECORDED_WRONG, own, wrong)
     yield _all_at_most(where, "questions", RECORDED_QUESTIONS, own, questions)

@@ -80,13 +80,13 @@ def interval(value: float, samples: Floats, count: int) -> Estimate:
     return Estimate(value, max(value - half, -1.0), min(value + half, 1.0))
 
 
-def difference(first: Sequence[EpisodeRow], second: Sequence[EpisodeRow]) -> Estimate:
-    """Completion of the first cell less that of the second, on the episodes of both."""
+def difference(
+    first: Sequence[EpisodeRow], second: Sequence[EpisodeRow], name: str = "completed"
+) -> Estimate:
+    """A share of the first cell less that of the second, on the episodes of both."""
     mine, other = _common(first, second)
     return interval(
-        mine.mean("completed") - other.mean("completed"),
-        mine.means("completed") - other.means("completed"),
-        mine.count,
+        mine.mean(name) - other.mean(name), mine.means(name) - other.means(name), mine.count
     )
 
 

@@ -51,6 +51,11 @@ class UnderNoise:
         """Our completion less that of the best rival, on the trials that both ran."""
         return None if self.best is None else ahead_of(self.own, self.best.rows)
 
+    @cached_property
+    def ahead_in_truth(self) -> Estimate | None:
+        """The same of trials in whose end the goal holds, whatever was said of it."""
+        return None if self.best is None else ahead_of(self.own, self.best.rows, "reached")
+
 
 def under_noises(
     results: BeliefResults, extent: Extent, noises: Sequence[tuple[Noise, Sequence[str]]] = ()
@@ -80,6 +85,11 @@ def completion(rows: Rows) -> Estimate:
     return _share([row.completed for row in rows])
 
 
+def in_truth(rows: Rows) -> Estimate:
+    """The share of trials in whose end the goal holds, whatever was said of it."""
+    return _share([row.reached for row in rows])
+
+
 def over_robots(robots: Sequence[Rows]) -> Estimate:
     """The same of robots whose trials hang together: each counts once.
 
@@ -107,11 +117,11 @@ def questions(rows: Rows) -> Estimate:
     return Estimate(fmean(values), max(fmean(values) - half, 0.0), fmean(values) + half)
 
 
-def ahead_of(own: Rows, rival: Rows) -> Estimate | None:
-    """Our completion less a rival's; None where they have no trial in common."""
+def ahead_of(own: Rows, rival: Rows, name: str = "completed") -> Estimate | None:
+    """Our share less a rival's; None where they have no trial in common."""
     if not {row.episode for row in own} & {row.episode for row in rival}:
         return None
-    return difference(own, rival)
+    return difference(own, rival, name)
 
 
 def _share(values: Sequence[bool]) -> Estimate:
