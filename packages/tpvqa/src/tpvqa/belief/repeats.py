@@ -19,6 +19,9 @@ STRENGTH = 4
 """Pairs that the default counts for: weak, as a few dozen pairs come together in a few trials."""
 UNSURE = 0.02
 """That how errors last in other trials is not how they did in these."""
+LEAST = 1e-12
+"""The scene's own answer is as probable at least: what is rounded away would come back negative, and
+grow with each answer that contradicts it."""
 _RHO = np.array([0.005, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9])
 _SHARE, _STAYS = SHARES[:, None, None], STAYS[:, None, None]
 _BY_VIEW = _RHO[None, :, None], _RHO[None, None, :]
@@ -97,7 +100,7 @@ def _probable(
         if last is not None:
             other = row.view != last.view
             if row.truth != last.truth:
-                yes = _STAYS * (1 - yes - new)
+                yes = _STAYS * np.maximum(1 - yes - new, 0.0)
             else:
                 pairs[other] += row.weight
                 repeats = _BY_VIEW[other]
@@ -108,7 +111,7 @@ def _probable(
         rated = np.full(len(KINDS), rate)
         first = own_rate(rated)[:, None, None]
         afresh = fresh_rate(rated, np.array(float(number)), np.array(float(yeses)))[:, None, None]
-        own = yes + new * first
+        own = np.clip(yes + new * first, LEAST, 1 - LEAST)
         own, fresh = (own, afresh) if said else (1 - own, 1 - afresh)
         drawn = _SHARE * own + (1 - _SHARE) * fresh
         again = repeats if last is not None and row.reply is last.reply else 0.0
