@@ -20,8 +20,8 @@ STRENGTH = 4
 UNSURE = 0.02
 """That how errors last in other trials is not how they did in these."""
 LEAST = 1e-12
-"""The scene's own answer is as probable at least: what is rounded away would come back negative, and
-grow with each answer that contradicts it."""
+"""The scene's own answer is as probable at least: what is rounded away would come back negative,
+and grow with each answer that contradicts it."""
 _RHO = np.array([0.005, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9])
 _SHARE, _STAYS = SHARES[:, None, None], STAYS[:, None, None]
 _BY_VIEW = _RHO[None, :, None], _RHO[None, None, :]
