@@ -40,7 +40,8 @@ class Source:
         task: A task.
         vlm: Who answers.
         world: Specification of the world.
-        faults: The rates of faults there, as a condition; empty for those that all cells share.
+        faults: The rates of faults there, and what comes of redoing, as a condition; empty for
+            those that all cells share.
     """
 
     task: str

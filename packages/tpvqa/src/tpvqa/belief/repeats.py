@@ -100,7 +100,7 @@ def _probable(
         if last is not None:
             other = row.view != last.view
             if row.truth != last.truth:
-                yes = _STAYS * np.maximum(1 - yes - new, 0.0)
+                yes = _STAYS * (1 - yes - new)
             else:
                 pairs[other] += row.weight
                 repeats = _BY_VIEW[other]
