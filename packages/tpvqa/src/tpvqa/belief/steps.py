@@ -1,7 +1,7 @@
 """What single steps do unseen, over many joint states at once."""
 
-from collections.abc import Collection, Iterable, Mapping
-from heapq import heappop, heappush
+from collections.abc import Callable, Collection, Iterable, Mapping
+from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,13 @@ LEAST = 1e-4
 """What is reached less probably is not told apart."""
 TRIES = 4
 """So many tries of a step may each undo something, where it is reckoned what is reached."""
+VAIN = 0.02
+"""How probable it is then that a step is left without having been done."""
+AGAIN = 0.5
+"""How much what is reached by a second way counts, beside what the first leads to."""
+
+Way = tuple[Action, ...]
+"""Actions that are done one after the other."""
 
 Places = NDArray[np.intp]
 Bools = NDArray[np.bool_]
@@ -59,47 +66,71 @@ class Steps:
         self.numbers: list[int] = []
         self.place: dict[int, int] = {}
         self.version = 0
-        self._covered: frozenset[Action] = frozenset()
+        self._covered: frozenset[Way] = frozenset()
         self._leads: dict[Action, _Leads] = {}
         self._falls: _Falls | None = None
 
-    def cover(self, masses: Mapping[int, float], actions: Collection[Action], rates: Rates) -> None:
-        """Tell apart what some actions may lead to.
+    def cover(
+        self,
+        masses: Mapping[int, float],
+        ways: Collection[Way],
+        rates: Rates,
+        reached: Callable[[int], bool],
+    ) -> None:
+        """Tell apart what some ways may lead to.
 
         Args:
             masses: From where, with probabilities.
-            actions: They.
+            ways: They; where one has not led to the goal, another one may follow.
             rates: How often they undo something.
+            reached: Whether a joint state is one of the goal.
         """
-        if masses.keys() <= self.place.keys() and self._covered.issuperset(actions):
+        if masses.keys() <= self.place.keys() and self._covered.issuperset(ways):
             return
         self.version += 1
-        self._covered = frozenset(actions)
+        self._covered = frozenset(way[n:] for way in ways for n in range(len(way)))
         often = max(rates.undone, rates.redone)
-        self.numbers = self._reached(masses, min(1.0, TRIES * often))
+        self.numbers = self._reached(masses, ways, min(1.0, TRIES * often), reached)
         self.place = {number: place for place, number in enumerate(self.numbers)}
         self._leads.clear()
         self._falls = None
 
-    def _reached(self, masses: Mapping[int, float], undone: float) -> list[int]:
-        found, chances = dict.fromkeys(masses), dict(masses)
-        queue = sorted((-mass, number) for number, mass in masses.items())
-        leads_to = [self._model.outcomes(action) for action in sorted(self._covered, key=str)]
-        done = set[int]()
+    def _reached(
+        self,
+        masses: Mapping[int, float],
+        ways: Collection[Way],
+        undone: float,
+        reached: Callable[[int], bool],
+    ) -> list[int]:
+        """The joint states that are met on the ways, the most probable ones."""
+        rests: dict[Way, int] = {}
+        for way in ways:
+            for step in range(len(way) + 1):
+                rests.setdefault(way[step:], len(rests))
+        leads_to = [self._model.outcomes(rest[0]) if rest else None for rest in rests]
+        later, begun = [rests[rest[1:]] for rest in rests], [rests[way] for way in ways]
+        found, done = dict.fromkeys(masses), set[tuple[int, int]]()
+        queue = [(-mass, number, rest) for number, mass in masses.items() for rest in begun]
+        heapify(queue)
         while queue and len(found) < MOST + len(masses):
-            mass, number = heappop(queue)
-            if number in done or -mass < LEAST:
+            mass, number, rest = heappop(queue)
+            if (number, rest) in done:
                 continue
-            done.add(number)
+            done.add((number, rest))
             found.setdefault(number)
-            intended = {each[number].intended for each in leads_to}
-            reached = {there: -mass for there in intended if there is not None}
-            for share, other in self._model.undone(number):
-                reached[other] = max(-mass * share * undone, reached.get(other, 0.0))
-            for other, chance in reached.items():
-                if chance > chances.get(other, 0.0):
-                    chances[other] = chance
-                    heappush(queue, (-chance, other))
+            outcomes = leads_to[rest]
+            if outcomes is None:
+                again = [] if reached(number) else begun
+                met = [(AGAIN, number, each) for each in again]
+            else:
+                there = outcomes[number].intended
+                met = [(1.0, number if there is None else there, later[rest])]
+                if there is not None and there != number:
+                    met.append((VAIN, number, later[rest]))
+                met += [(share * undone, each, rest) for share, each in self._model.undone(number)]
+            for share, other, each in met:
+                if -mass * share >= LEAST and (other, each) not in done:
+                    heappush(queue, (mass * share, other, each))
         return list(found)
 
     def places(self, numbers: Iterable[int]) -> Places:

@@ -178,8 +178,10 @@ class Unseen:
                 for share, other, _ in after:
                     masses[other] = masses.get(other, 0.0) + weight * share / len(actions)
         ways = self._ways(masses.items(), [action for action, _ in actions])
-        steps = {a for place, plan in ways for a in plan.actions[place : place + HORIZON]}
-        self._steps.cover(masses, steps.union(self.following), self._ahead.rates)
+        told = [tuple(plan.actions[place : place + HORIZON]) for place, plan in ways]
+        if self.following:
+            told.append(self.following)
+        self._steps.cover(masses, told, self._ahead.rates, self._ahead.is_goal)
         version = self._ahead.version, self._steps.version
         if version != self._worked_out_for:
             self._worked_out_for = version
