@@ -18,7 +18,7 @@ LEAST = 1e-4
 """What is reached less probably is not told apart."""
 TRIES = 4
 """So many tries of a step may each undo something, where it is reckoned what is reached."""
-VAIN = 0.02
+VAIN = 0.1
 """How probable it is then that a step is left without having been done."""
 AGAIN = 0.5
 """How much what is reached by a second way counts, beside what the first leads to."""
@@ -119,15 +119,14 @@ class Steps:
             done.add((number, rest))
             found.setdefault(number)
             outcomes = leads_to[rest]
-            if outcomes is None:
-                again = [] if reached(number) else begun
-                met = [(AGAIN, number, each) for each in again]
-            else:
+            met = [(share * undone, each, rest) for share, each in self._model.undone(number)]
+            if outcomes is not None:
                 there = outcomes[number].intended
-                met = [(1.0, number if there is None else there, later[rest])]
+                met.append((1.0, number if there is None else there, later[rest]))
                 if there is not None and there != number:
                     met.append((VAIN, number, later[rest]))
-                met += [(share * undone, each, rest) for share, each in self._model.undone(number)]
+            elif not reached(number):
+                met += [(AGAIN, number, each) for each in begun]
             for share, other, each in met:
                 if -mass * share >= LEAST and (other, each) not in done:
                     heappush(queue, (mass * share, other, each))
