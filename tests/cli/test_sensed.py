@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -273,3 +274,14 @@ def test_what_is_said_of_skills_has_to_make_sense(tpvqa: Run, arguments: str, sa
     code, _, err = tpvqa("run", *TRIAL, "--monitor", f"belief:{arguments}")
     assert code == 2
     assert says in " ".join(err.split())
+
+
+def test_a_further_look_that_senses_the_same_is_no_news(tpvqa: Run, tmp_path: Path) -> None:
+    rules = tmp_path / "looks.yaml"
+    rules.write_text(
+        f"{NOTHING}\nsensed:\n  - {{fact: (contaminated ?d), at: [action, look], right: 0.9}}\n"
+    )
+    told = tpvqa("run", *TRIAL, "--world-file", rules, "--vlm", "oracle:0.7", "--seed", 4)[1]
+    assert "the robot senses" in told
+    said = [line for line in told.splitlines() if "Is " not in line]
+    assert not [a for a, b in pairwise(said) if a == b and "the robot senses" in a]
