@@ -279,7 +279,7 @@ def test_what_is_said_of_skills_has_to_make_sense(tpvqa: Run, arguments: str, sa
 def test_a_further_look_that_senses_the_same_is_no_news(tpvqa: Run, tmp_path: Path) -> None:
     rules = tmp_path / "looks.yaml"
     rules.write_text(
-        f"{NOTHING}\nsensed:\n  - {{fact: (contaminated ?d), at: [action, look], right: 0.9}}\n"
+        f'{NOTHING}\nsensed:\n  - {{fact: "(contaminated ?d)", at: [action, look], right: 0.9}}\n'
     )
     told = tpvqa("run", *TRIAL, "--world-file", rules, "--vlm", "oracle:0.7", "--seed", 4)[1]
     assert "the robot senses" in told

@@ -54,9 +54,9 @@ def test_what_tokens_say_is_read_quickly(pieces: list[str]) -> None:
     message = {"role": "assistant", "content": json.dumps(answers)}
     choice = {"message": message, "finish_reason": "stop", "logprobs": {"content": tokens}}
     body = json.dumps({"choices": [choice]})
-    began = time.monotonic()
+    began = time.process_time()
     ((*readings,),) = read_together(body, 64)
-    assert time.monotonic() - began < 5
+    assert time.process_time() - began < 5
     assert {(reading.text, reading.source) for reading in readings} == {("no", "word")}
 
 
