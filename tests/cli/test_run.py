@@ -317,6 +317,16 @@ def test_ctrl_c_ends_cleanly_and_can_be_resumed(how: signal.Signals, tmp_path: P
     assert story(tmp_path / "here") == story(tmp_path / "whole")
 
 
+@pytest.mark.parametrize("out", ["plain", "plain/below"])
+def test_where_no_folder_can_be_nothing_is_said_to_be_whole(tpvqa: Run, out: str) -> None:
+    Path("plain").touch()
+    code, _, err = tpvqa("run", "eat_apple", *SYMBOLIC, "--out", out)
+    assert code == 6
+    assert f"error: {out}: cannot be written (plain is no folder)" in err
+    assert "name another folder with --out" in err
+    assert "whole" not in err
+
+
 def test_a_goal_that_is_only_believed_is_not_told_as_reached(tpvqa: Run) -> None:
     trial = ["run", "serve_breakfast", *SYMBOLIC, "--monitor", "none", "--failure", "0.9"]
     code, out, _ = tpvqa(*trial, "--json", "--out", "here")

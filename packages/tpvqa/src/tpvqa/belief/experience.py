@@ -156,7 +156,9 @@ class Experience(ToldModel):
         except FileNotFoundError:
             return None
         except OSError as error:
-            raise CalibrationError(f"{path}: cannot be read ({error.strerror})") from error
+            raise CalibrationError(
+                f"{path}: cannot be read ({error.strerror}). Name another file with --experience"
+            ) from error
         except ValidationError as error:
             first = first_fault(error)
             place = ".".join(map(str, first["loc"])) or "the file"

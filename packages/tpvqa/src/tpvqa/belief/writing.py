@@ -7,7 +7,7 @@ from pathlib import Path
 from pydantic import BaseModel
 
 from tpvqa.errors import WriteError
-from tpvqa.files import write_whole
+from tpvqa.files import make_folder, write_whole
 
 
 def writable(path: Path, *, remedy: str) -> None:
@@ -17,6 +17,10 @@ def writable(path: Path, *, remedy: str) -> None:
         WriteError: It cannot.
     """
     above = next(each for each in (path, *path.parents) if each.exists())
+    if above != path and not above.is_dir():
+        raise WriteError.of(
+            path, NotADirectoryError(errno.ENOTDIR, f"{above} is no folder"), remedy
+        )
     if not os.access(above, os.W_OK):
         raise WriteError.of(path, PermissionError(errno.EACCES, os.strerror(errno.EACCES)), remedy)
 
@@ -33,7 +37,7 @@ def write_json(path: Path, model: BaseModel, *, remedy: str) -> None:
         WriteError: It cannot be written.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
     except OSError as error:
         raise WriteError.of(path, error, remedy) from error
     write_whole(path, f"{model.model_dump_json(indent=1)}\n".encode(), remedy=remedy)
