@@ -1,6 +1,7 @@
 """What an answer is worth: bounds, symmetry, groups, further looks, the file."""
 
 import json
+from codecs import BOM_UTF8
 from itertools import pairwise
 from math import isclose, log
 from pathlib import Path
@@ -145,6 +146,11 @@ def test_the_file_gives_back_what_was_written(
         (('"yes_if_true": 0.85', '"yes_if_true": 1.85'), ["yes_if_true", "less than or equal"]),
         (('"whole"', '"hole"'), ["whole", "Field required"]),
         (("{", "["), ["Invalid JSON"]),
+        (('"rows": 0', '"rows": 0, "rows": 1'), ["'rows' is given twice", "tpvqa calibrate"]),
+        (
+            ('"vlm": "v"', '"vlm": "v\udce9"'),
+            [":3:", "0xe9 is not UTF-8", "save the file"],
+        ),
         (('"rows": 0', '"rows": -5'), ["rows", "greater than or equal to 0"]),
         (('"rows": 0', '"rows": true'), ["rows", "valid integer"]),
         (('"rows": 0', f'"rows": {10**30}'), ["rows", "less than or equal"]),
@@ -159,11 +165,18 @@ def test_a_broken_file_is_named_with_its_fault_and_a_remedy(
     Calibration.default("v").save(path)
     text = path.read_text()
     assert change[0] in text
-    path.write_text(text.replace(*change))
+    path.write_text(text.replace(*change), errors="surrogateescape")
     with pytest.raises(CalibrationError) as error:
         Calibration.load(path)
     for word in (str(path), *words):
         assert word in str(error.value)
+
+
+def test_a_byte_order_mark_is_no_fault(tmp_path: Path) -> None:
+    path, one = tmp_path / "c.json", Calibration.default("v")
+    one.save(path)
+    path.write_bytes(BOM_UTF8 + path.read_bytes())
+    assert Calibration.load(path) == one
 
 
 def test_a_missing_file_and_one_that_cannot_be_written(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """What is kept from trial to trial, in files of today and of before."""
 
 import json
+from codecs import BOM_UTF8
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,15 @@ def test_a_file_of_a_version_to_come_is_refused(tmp_path: Path) -> None:
     (tmp_path / "new.json").write_text(json.dumps({**OLD, "version": 3}))
     with pytest.raises(CalibrationError, match="version"):
         Experience.load(tmp_path / "new.json")
+
+
+def test_a_byte_order_mark_is_no_fault_and_a_name_given_twice_is(tmp_path: Path) -> None:
+    path = tmp_path / "new.json"
+    path.write_bytes(BOM_UTF8 + json.dumps(OLD).encode())
+    assert Experience.load(path) is not None
+    path.write_text(json.dumps(OLD).replace('"trials": 4', '"trials": 4, "trials": 5'))
+    with pytest.raises(CalibrationError, match=r"new\.json: 'trials' is given twice.*learn anew"):
+        Experience.load(path)
 
 
 @pytest.mark.parametrize(

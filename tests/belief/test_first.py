@@ -13,6 +13,7 @@ from tpvqa.belief.mutexes import h2_mutexes
 from tpvqa.belief.origins import Origins
 from tpvqa.belief.priors import Priors, load_priors
 from tpvqa.pddl import Atom, State, Task, load_task
+from tpvqa.pddl.pattern import Pattern
 from tpvqa.tasks import find_task
 from tpvqa.worlds.world_file import load_world_file
 
@@ -119,9 +120,10 @@ def test_worlds_are_drawn_as_often_as_they_are_probable(tmp_path: Path) -> None:
     assert 0.75 < sum(Atom.parse("(in pump hall)") in state for state in drawn) / 500 < 0.85
 
 
-def test_certainties_that_exclude_each_other_are_shared_out(tmp_path: Path) -> None:
-    said = "(in pump hall): 1\n(in pump store): 1\n(held pump): 1\n(held lamp): 0\n"
-    states = Prior(NIGHT, priors_of(tmp_path, said, NIGHT)).states()
+def test_certainties_that_exclude_each_other_are_shared_out() -> None:
+    said = {"(in pump hall)": 1, "(in pump store)": 1, "(held pump)": 1, "(held lamp)": 0}
+    priors = Priors(tuple((Pattern.parse(form, NIGHT), p) for form, p in said.items()))
+    states = Prior(NIGHT, priors).states()
     held = sum(weight for state, weight in states if Atom.parse("(held lamp)") in state)
     assert states
     assert held < 1e-3

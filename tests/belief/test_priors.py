@@ -6,8 +6,9 @@ import pytest
 
 from tests.ward import ward
 from tpvqa.belief.priors import Priors, load_priors
+from tpvqa.belief.remarks_on_priors import remarks
 from tpvqa.errors import PriorsError
-from tpvqa.pddl import Atom
+from tpvqa.pddl import Atom, Task
 
 NIGHT = ward()
 
@@ -39,6 +40,14 @@ def test_without_a_file_the_problem_is_believed() -> None:
         ("in: 0.5", 1, "'in' is not known here. Known: elsewhere, nothing_known, and facts"),
         ("nothing_known: maybe", 1, "expected true or false"),
         ("- 3", 1, "expected 'name: value' entries"),
+        ("(in lamp hall): .2\n(in  lamp hall): .2", 2, "(in lamp hall) is given twice"),
+        ("(in ?a hall): .2\n\n(in ?b hall): .2", 3, "(in ?b hall) is given twice"),
+        (
+            "(in lamp store): 0.6\n(in ?t hall): 0.6",
+            2,
+            "at most one of (in lamp store) 0.6, (in lamp hall) 0.6 holds, and together that is "
+            "1.2; make them add up to 1 at most",
+        ),
     ],
 )
 def test_what_is_wrong_is_said_with_its_line(
@@ -50,3 +59,51 @@ def test_what_is_wrong_is_said_with_its_line(
         load_priors(NIGHT, path)
     assert str(caught.value).startswith(f"{path}:{line}: ")
     assert says in str(caught.value)
+
+
+CERTAIN = ward("(in lamp hall) (in pump store) (needs anna lamp)")
+
+
+@pytest.mark.parametrize(
+    ("task", "text", "line", "says"),
+    [
+        (CERTAIN, "(in lamp hall): 1", 1, "the problem says so for certain"),
+        (CERTAIN, "(in lamp store): 0", 1, "the problem says so for certain"),
+        (CERTAIN, "(in lamp hall): 0.4", 1, "it holds for certain"),
+        (CERTAIN, "\n(held ?t): 0.1", 2, "it does not hold for certain"),
+        (NIGHT, "(at hall): 0.2", 1, "it holds for certain"),
+        (NIGHT, "(in ?t hall): .3\n(in pump hall): .5\n(in lamp hall): .5", 1, "what follows"),
+        (NIGHT, "(in pump ?r): 0.5", 1, "what else is said of them that makes 1.5"),
+        (NIGHT, "(in pump ?r): 0.2\n(in pump hall): 0.8", 1, "that makes 1.2"),
+        (NIGHT, "", None, "the file says nothing"),
+        (NIGHT, "# nothing yet", None, "the file says nothing"),
+    ],
+)
+def test_what_has_not_the_effect_that_it_says_is_found(
+    tmp_path: Path, task: Task, text: str, line: int | None, says: str
+) -> None:
+    path = tmp_path / "priors.yaml"
+    path.write_text(text)
+    (found,) = remarks(task, load_priors(task, path))
+    assert found.line == line
+    assert says in found.says
+
+
+@pytest.mark.parametrize(
+    ("task", "text"),
+    [
+        (CERTAIN, "(in lamp store): 0.3"),
+        (CERTAIN, "(in lamp hall): .5\n(in lamp store): .4\n(in lamp theatre): 0"),
+        (NIGHT, "(in lamp hall): 0.4"),
+        (NIGHT, "(in lamp hall): 1"),
+        (NIGHT, "(in lamp store): 0"),
+        (NIGHT, "(in pump ?r): 0.2\n(in pump hall): 0.6"),
+        (NIGHT, "(treated anna): 0.3"),
+        (NIGHT, "elsewhere: 0.1"),
+        (NIGHT, "nothing_known: true\n(in lamp hall): 1"),
+    ],
+)
+def test_what_has_its_effect_is_not(tmp_path: Path, task: Task, text: str) -> None:
+    path = tmp_path / "priors.yaml"
+    path.write_text(text)
+    assert list(remarks(task, load_priors(task, path))) == []

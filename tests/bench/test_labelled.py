@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.doubles import configured, truthful
+from tests.labelling.robot import label_nothing
 from tpvqa.belief import LabelledAnswer
 from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.labelled_episodes import label_episodes
@@ -16,6 +17,8 @@ from tpvqa.config import TrialConfig
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import CalibrationError
+from tpvqa.labelling import LABELS
+from tpvqa.labelling.labels import Said
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom
 from tpvqa.questions import Question, Way
@@ -73,6 +76,17 @@ def test_one_action_without_truth_is_enough_to_refuse_it(tmp_path: Path) -> None
     log.write_text("".join(json.dumps(event) + "\n" for event in events))
     with pytest.raises(CalibrationError, match="of some actions what was true"):
         label_episodes([tmp_path / "e"])
+
+
+@pytest.mark.parametrize("said", [None, "cannot see", "yes"])
+def test_labels_that_answer_nothing_leave_what_the_world_knows(
+    said: Said | None, tmp_path: Path
+) -> None:
+    live = recorded(CONFIG, tmp_path / "e")
+    label_nothing(tmp_path / "e", said)
+    found = label_episodes([tmp_path / "e"])
+    assert found.rows == live
+    assert f"{LABELS} answers none of the episode's questions" in found.fit().notices[-1]
 
 
 def test_two_vlms_do_not_mix(tmp_path: Path) -> None:

@@ -88,6 +88,7 @@ class Files:
                 self.folder / "problem.pddl",
                 questions=self.folder / "questions.yaml",
                 world_file=self.folder / "world.yaml",
+                priors=self.folder / "priors.yaml" if "priors.yaml" in self.texts else None,
                 planner=planner,
             )
         finally:
@@ -104,6 +105,35 @@ def files(tmp_path: Path) -> Files:
 
 def test_nothing_is_found_where_nothing_is_wrong(files: Files) -> None:
     assert files.found() == []
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "severity", "says"),
+    [
+        ("(held lid): 0.6\n(held cap): 0.5", 2, Severity.ERROR, "together that is 1.1"),
+        ("\n(pressed hat): 0.5", 2, Severity.ERROR, "no object 'hat'"),
+        ("(free): 0.5", 1, Severity.WARNING, "has no effect"),
+        ("", None, Severity.WARNING, "says nothing"),
+    ],
+)
+def test_a_file_of_priors_is_checked_too(
+    files: Files, text: str, line: int | None, severity: Severity, says: str
+) -> None:
+    files.texts["priors.yaml"] = text
+    (found,) = files.found()
+    place = str(files.folder / "priors.yaml") + ("" if line is None else f":{line}")
+    assert (found.place, found.severity) == (place, severity)
+    assert says in found.says
+
+
+def test_an_empty_file_of_questions_is_told(files: Files) -> None:
+    files.texts["questions.yaml"] = "# to be written\n"
+    assert "empty-questions" in {each.kind for each in files.found()}
+
+
+def test_a_byte_order_mark_hides_no_line(files: Files) -> None:
+    files.change("questions.yaml", "predicates:\n", "\ufeffpredicates:\n  free: 'Is it free?'\n")
+    assert all(each.line for each in files.found() if each.file is not None)
 
 
 FAULTS = {

@@ -279,6 +279,16 @@ def test_what_is_wrong_is_said_before_anything_runs(
     assert not Path("b").exists()
 
 
+@pytest.mark.parametrize("out", ["plain", "plain/below"])
+def test_a_file_in_the_place_of_the_folder_is_told_as_what_cannot_be_written(
+    tpvqa: Run, out: str
+) -> None:
+    Path("plain").touch()
+    code, _, err = tpvqa("bench", "run", *OWN, *QUICK, "--episodes", 1, "--out", out)
+    assert code == 6
+    assert f"{out}: cannot be written (plain is no folder). Name another folder" in err
+
+
 def test_the_core_alone_has_run_and_says_where_the_others_are(
     tpvqa: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -157,6 +157,16 @@ def test_a_file_that_cannot_be_written_is_told_before_the_work(tpvqa: Run, tmp_p
     assert "trials" not in err
 
 
+def test_a_file_below_a_file_is_told_before_the_work(tpvqa: Run) -> None:
+    Path("plain").touch()
+    code, _, err = tpvqa("calibrate", *TRIALS, "--out", "plain/c.json")
+    assert code == 6
+    assert err.endswith(
+        "plain/c.json: cannot be written (plain is no folder). Name another file with --out\n"
+    )
+    assert "trials" not in err
+
+
 def test_trials_that_teach_are_run_under_the_conditions_given(tpvqa: Run) -> None:
     words = ("calibrate", "--tasks", "build_tower", "--vlm", "oracle:0.8", "--trials", 3, "--json")
     rows = []

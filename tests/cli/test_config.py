@@ -130,6 +130,23 @@ def test_paths_in_a_file_are_relative_to_it(tmp_path: Path) -> None:
     assert trial_config([file_layer(file)]).task.domain == str(tmp_path / "d.pddl")
 
 
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("--action-deadline", 0), "--action-deadline must be more than 0, got 0"),
+        (("--max-actions", "xx"), "--max-actions does not fit: write a whole number, or 50x for"),
+        (("--max-actions", 0), "--max-actions must be at least 1, got 0"),
+        (("--max-repeats", "xx"), "--max-repeats does not fit: write a whole number, or none"),
+        (("--monitor", ""), "--monitor must not be empty\n"),
+        (("--max-seconds", "nan"), "--max-seconds must be a number, got nan"),
+    ],
+)
+def test_what_an_option_takes_is_said(tpvqa: Run, words: tuple[object, ...], says: str) -> None:
+    code, _, err = tpvqa("config", "eat_apple", *words)
+    assert code == 2
+    assert says in err
+
+
 def test_what_cannot_be_is_refused(tpvqa: Run) -> None:
     code, _, err = tpvqa("run", "eat_apple", "--failure", 2)
     assert code == 2

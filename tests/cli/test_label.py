@@ -30,6 +30,7 @@ from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import TpvqaError, WriteError
 from tpvqa.labelling import LABELS, Session
+from tpvqa.vlm import Reply
 
 Typed = Callable[[str], None]
 
@@ -99,6 +100,16 @@ def test_json_and_what_is_learnt(tpvqa: Run, folders: list[str], typed: Typed) -
     assert code == 0, err
     assert json.loads(out)["by_hand"] == 3
     assert Calibration.load(Path("calibration.json")).by_hand == 3
+
+
+def test_labels_that_were_exchanged_are_told(tpvqa: Run, folders: list[str]) -> None:
+    with Session(folders) as session:
+        while (now := session.now) is not None:
+            session.say("no" if now.of_vlm[0].reply is Reply.YES else "yes")
+    code, out, err = tpvqa("calibrate", *folders)
+    assert code == 0, err
+    assert "note: yes was said more often where no was right" in out
+    assert "yes and no were not exchanged" in Calibration.load(Path("calibration.json")).notices[-1]
 
 
 def test_it_says_when_there_are_enough(tpvqa: Run, folders: list[str], typed: Typed) -> None:

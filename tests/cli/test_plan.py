@@ -159,7 +159,8 @@ def test_ctrl_c_while_the_command_is_loaded_is_no_traceback(tmp_path: Path) -> N
     assert (done.returncode, done.stderr) == (130, "interrupted\n")
 
 
-def test_ctrl_c_leaves_nothing_behind(folder: Path) -> None:
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_leaves_nothing_behind(how: signal.Signals, folder: Path) -> None:
     (folder / "domain.pddl").write_text(HARD_DOMAIN)
     (folder / "problem.pddl").write_text(hard_problem())
     before = sorted(os.listdir(folder))
@@ -168,7 +169,7 @@ def test_ctrl_c_leaves_nothing_behind(folder: Path) -> None:
     assert eventually(lambda: any(children(child) for child in children(process.pid)))
     (worker,) = children(process.pid)
     searches = children(worker)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(how)
     _, message = process.communicate(timeout=120)
     assert process.returncode == 130, message
     assert message == "interrupted\n"

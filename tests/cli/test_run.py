@@ -281,7 +281,8 @@ def story(folder: Path) -> list[dict[str, object]]:
 
 
 @pytest.mark.slow
-def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_ends_cleanly_and_can_be_resumed(how: signal.Signals, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tpvqa"]
     # Failing on and on, so that there is time to interrupt it.
     trial = ["run", "eat_apple", *SYMBOLIC, "--failure", "1"]
@@ -301,7 +302,7 @@ def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
         assert process.poll() is None
         time.sleep(0.01)
     assert len(marked(mark)) > 1  # the planner's process has a session of its own
-    os.killpg(process.pid, signal.SIGINT)
+    os.killpg(process.pid, how)
     out, err = process.communicate(timeout=20)
     assert process.returncode == 130
     assert "Traceback" not in out + err
@@ -314,6 +315,16 @@ def test_ctrl_c_ends_cleanly_and_can_be_resumed(tmp_path: Path) -> None:
     whole = subprocess.run([*command, *trial, "--out", "whole"], cwd=tmp_path, capture_output=True)
     assert resumed.returncode == whole.returncode == 1
     assert story(tmp_path / "here") == story(tmp_path / "whole")
+
+
+@pytest.mark.parametrize("out", ["plain", "plain/below"])
+def test_where_no_folder_can_be_nothing_is_said_to_be_whole(tpvqa: Run, out: str) -> None:
+    Path("plain").touch()
+    code, _, err = tpvqa("run", "eat_apple", *SYMBOLIC, "--out", out)
+    assert code == 6
+    assert f"error: {out}: cannot be written (plain is no folder)" in err
+    assert "name another folder with --out" in err
+    assert "whole" not in err
 
 
 def test_a_goal_that_is_only_believed_is_not_told_as_reached(tpvqa: Run) -> None:

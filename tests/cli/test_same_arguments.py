@@ -135,6 +135,11 @@ def test_what_names_no_task(tpvqa: Run, command: str, words: tuple[str, ...], sa
             "there is no cost 'qestion'. Did you mean 'question'?",
         ),
         (
+            ("run", "build_tower", "--monitor", "belief:foo=1", "--vlm", "oracle"),
+            "failure_rate, disturbance_rate, spontaneous_rate, redone_rate, notices, "
+            "false_alarms, risk, words=SHARE",
+        ),
+        (
             ("bench", "run", "build_tower", "--conditions", "failrue=1", "--vlm", "oracle"),
             "Did you mean 'failure'?",
         ),

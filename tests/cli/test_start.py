@@ -70,6 +70,20 @@ def test_what_is_wrong_is_told_before_anything_runs(
     assert not Path("episodes").exists()
 
 
+def test_what_says_nothing_is_told_and_the_trial_runs(
+    tpvqa: Run, night: tuple[str, ...], tmp_path: Path
+) -> None:
+    priors, empty = tmp_path / "priors.yaml", tmp_path / "empty.yaml"
+    priors.write_text("elsewhere: 0.1\n(at hall): 0.3\n")
+    empty.touch()
+    code, _, err = tpvqa("run", *night, "--priors", priors, "--questions", empty)
+    assert code in (0, 1)
+    assert f"note: {priors}:2: (at hall): 0.3 has no effect: with all that" in err
+    assert f"note: {empty}: the file is empty" in err
+    code, _, err = tpvqa("run", *night, "--priors", empty)
+    assert f"note: {empty}: the file says nothing of how probable facts are. Leave it out" in err
+
+
 def test_a_condition_of_a_bench_says_what_is_known() -> None:
     cell = Cell("build_tower", "belief", "oracle:0.9", "symbolic", "start=unknown,priors=mine.yaml")
     start = cell.config(TrialConfig(), 0).start

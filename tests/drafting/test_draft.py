@@ -96,6 +96,10 @@ SAID = {
     "(breaker-on ?r - room)": "Is the breaker in the kitchen on?",
     "(eef-has ?b - block)": "Does the eef have the red block?",
     "(no-cover ?c - cup)": "Is it true that the mug does not have a cover?",
+    "(quick-release-open ?t - table)": "Is the quick release of the desk open?",
+    "(front_flap_stuck ?t - table)": "Is the front flap of the desk stuck?",
+    "(wide-open ?d - door)": "Is the front door wide open?",
+    "(front-door-open ?d - door)": "Is the front door open?",
     "(hitched ?b - block ?r - robot)": "Is the red block hitched to the robot?",
 }  # fmt: skip
 

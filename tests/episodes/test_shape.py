@@ -1,6 +1,7 @@
 """A log whose events do not hang together is told with the event, wherever it is read."""
 
 import json
+from codecs import BOM_UTF8
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -126,4 +127,15 @@ def test_json_that_readers_could_take_differently_is_refused(
     data = json.dumps(first).replace('"HERE"', value).encode()
     (tmp_path / LOG).write_bytes(data + b"\n" + lines[1] + b"\n")
     with pytest.raises(EpisodeError, match=rf"episode\.jsonl:1: .*{says}"):
+        read_episode(tmp_path)
+
+
+def test_what_is_damaged_is_told_with_what_can_be_done(lines: list[bytes], tmp_path: Path) -> None:
+    (tmp_path / LOG).write_bytes(b"".join(line + b"\n" for line in [*lines[:9], b"{}", *lines[9:]]))
+    with pytest.raises(EpisodeError, match=r"episode\.jsonl:10: .*keep only the 9 lines before"):
+        read_episode(tmp_path)
+    (tmp_path / LOG).write_bytes(b"".join(line + b"\n" for line in lines[:9]))
+    assert len(read_episode(tmp_path)) == 9
+    (tmp_path / LOG).write_bytes(BOM_UTF8 + lines[0] + b"\n")
+    with pytest.raises(EpisodeError, match=r"jsonl:1: .*byte order mark; save the file as UTF-8"):
         read_episode(tmp_path)

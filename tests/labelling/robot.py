@@ -1,6 +1,7 @@
 """Episodes as a robot writes them: of a simulated world, with what was true taken out."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 from tests.doubles import configured
@@ -9,6 +10,8 @@ from tpvqa.bench.own_task import own_tasks
 from tpvqa.bench.stage import Stage, stage
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG
+from tpvqa.labelling import LABELS, Labels, read_recorded
+from tpvqa.labelling.labels import Said
 
 WARD = Path(__file__).parents[1] / "fixtures" / "ward"
 Truths = dict[tuple[str, int, str], bool]
@@ -44,3 +47,13 @@ def forget_truth(folder: Path) -> None:
         for name in ("truth", "goal_holds", "completed", "snapshot"):
             event.pop(name, None)
     (folder / LOG).write_text("".join(json.dumps(event) + "\n" for event in events))
+
+
+def label_nothing(folder: Path, said: Said | None) -> None:
+    """A file of labels that is empty, says that nothing is seen, or answers what nobody asked."""
+    episode = read_recorded(folder)
+    (folder / LABELS).touch()
+    labels, asked = Labels(episode), episode.askings[0]
+    if said is not None:
+        labels.append(replace(asked, text="What?") if said == "yes" else asked, said)
+    labels.close()

@@ -2,6 +2,7 @@
 
 import json
 import os
+from codecs import BOM_UTF8
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,16 @@ def test_a_torn_line_is_left_out_and_cut_off(folders: list[Path]) -> None:
     labels.close()
     assert read_labels(episode) == {first.key: "yes", second.key: "no"}
     assert path.read_bytes().startswith(whole)
+
+
+def test_what_an_editor_puts_before_the_labels_is_no_fault(folders: list[Path]) -> None:
+    episode = read_recorded(folders[0])
+    labels = Labels(episode)
+    labels.append(episode.askings[0], "yes")
+    labels.close()
+    path = folders[0] / LABELS
+    path.write_bytes(BOM_UTF8 + path.read_bytes())
+    assert read_labels(episode) == {episode.askings[0].key: "yes"}
 
 
 def test_labels_stay_where_an_episode_is_gone_on_with(folders: list[Path]) -> None:

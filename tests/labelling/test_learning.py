@@ -1,5 +1,6 @@
 """What labels, and what came before and after, teach."""
 
+from dataclasses import replace
 from math import sqrt
 from pathlib import Path
 from statistics import fmean
@@ -7,7 +8,7 @@ from statistics import fmean
 import pytest
 
 from tests.doubles import ScriptedVLM, configured
-from tests.labelling.robot import Truths, forget_truth, record
+from tests.labelling.robot import Truths, forget_truth, label_nothing, record
 from tpvqa.assembly import Trial
 from tpvqa.belief import LabelledAnswer
 from tpvqa.belief.fitting import fit
@@ -15,8 +16,9 @@ from tpvqa.bench.labelled_episodes import label_episodes
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import CalibrationError
-from tpvqa.labelling import Labels, read_recorded
+from tpvqa.labelling import LABELS, Labels, read_recorded
 from tpvqa.labelling.inferring import WEIGHT
+from tpvqa.labelling.labels import Said
 from tpvqa.labelling.recorded import said_in_trial
 from tpvqa.labelling.session import Session
 from tpvqa.vlm import Reply
@@ -74,6 +76,17 @@ def test_labels_go_before_what_a_world_knows(tmp_path: Path) -> None:
     labels.close()
     found = label_episodes([folder, folder / LOG])  # twice the same is once
     assert len(found.rows) == len(episode.askings[0].of_vlm)
+
+
+@pytest.mark.parametrize("said", [None, "cannot see", "yes"])
+def test_where_labels_that_answer_nothing_are_all_there_is_they_are_named(
+    said: Said | None, folders: list[Path]
+) -> None:
+    folder = folders[0]
+    label_nothing(folder, said)
+    with pytest.raises(CalibrationError, match=rf"{LABELS} answers none.*`tpvqa label {folder}`"):
+        label_episodes([folder])
+    assert label_episodes(folders).inferred
 
 
 def test_another_vlm_is_told(folders: list[Path], tmp_path: Path) -> None:
@@ -151,7 +164,6 @@ def test_weights_of_one_change_nothing(folders: list[Path], truths: Truths) -> N
 
 
 def _counting(row: LabelledAnswer, weight: float, trial: str | None = None) -> LabelledAnswer:
-    from dataclasses import replace
 
     return replace(row, weight=weight, trial=row.trial if trial is None else trial)
 

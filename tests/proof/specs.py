@@ -85,7 +85,7 @@ _TRIALS = (
     ("apple-tpvqa", APPLE, "images", "embedded", "tpvqa", 3, ""),
     ("apple-palme", APPLE, "images", "embedded", "palmevqa", 1, ""),
     ("apple-palme-hidden", APPLE, "images", "embedded", "palmevqa", 5, ""),
-    ("apple-late", APPLE, "images", "embedded", "tp", 1, "--action-deadline 0"),
+    ("apple-late", APPLE, "images", "embedded", "tp", 1, "--action-deadline 1e-9"),
     # Other pictures, the other simulator.
     ("apple-known", APPLE, "images:known", "embedded", "tpvqa:strict", 8, ""),
     ("apple-held-out-strict", APPLE, "images:held_out", "embedded", "tpvqa", 5,

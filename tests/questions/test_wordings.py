@@ -64,7 +64,7 @@ def book(task: Task, folder: Path, text: str | bytes) -> QuestionBook:
         ("a:\n  b: !!python/object/apply:os.system ['id']", 2, "is not read here; leave it out"),
         ("a: !mine 'B?'", 1, "the tag '!mine' is not read here"),
         ("a: 1\n---\nb: 2", 2, "broken YAML"),
-        ("a: 1\nb: \x01", 2, "broken YAML"),
+        ("a: 1\nb: \x01", 2, "broken YAML: the character '\\x01' may not stand in it; remove it"),
         ("actions:\n  open: {says: 'open'}", 2, "'says' is not known here. Did you mean 'say'"),
         ("actions:\n  open: 'open the {c}'", 2, "expected 'name: value' entries"),
         ("attributes:\n  name: 'the {name}'", 2, "each object's own"),

@@ -77,6 +77,20 @@ def read_plain(path: Path | str, *, most: int = 64 * 2**20) -> bytes:
     return data
 
 
+def make_folder(path: Path) -> None:
+    """Make a folder with those above it, where it is not there.
+
+    Raises:
+        OSError: It cannot be made, or a file lies in the place of one of them.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError):
+        there = next(each for each in (path, *path.parents) if os.path.lexists(each))
+        said = f"{there} is no folder"
+        raise NotADirectoryError(errno.ENOTDIR, said) from None
+
+
 def write_whole(path: Path | str, data: bytes, *, remedy: str, durable: bool = False) -> None:
     """Write a file that is either the old one or the whole new one.
 

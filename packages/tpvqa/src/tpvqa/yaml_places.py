@@ -217,7 +217,13 @@ def read_yaml(path: Path, error: type[PlacedError]) -> Place | None:
         raise error(f"broken YAML: {what}", file=path, line=line) from broken
     except yaml.reader.ReaderError as broken:
         line = text.count("\n", 0, broken.position) + 1
-        raise error(f"broken YAML: {broken.reason}", file=path, line=line) from broken
+        letter = ascii(text[broken.position : broken.position + 1])
+        raise error(
+            f"broken YAML: the character {letter} may not stand in it; remove it, or save the file "
+            "as plain text in UTF-8",
+            file=path,
+            line=line,
+        ) from broken
     except (yaml.YAMLError, RecursionError, ValueError) as broken:
         raise error(f"broken YAML: {broken}", file=path) from broken
     return None if node is None or _is_empty(node) else Place(str(path), node, error)

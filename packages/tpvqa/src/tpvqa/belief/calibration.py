@@ -15,10 +15,9 @@ from tpvqa.belief.bounds import BOUND, EDGE, Counted
 from tpvqa.belief.counted import CountedFaults, count_faults
 from tpvqa.belief.kinds import FRESH, KINDS, UNKNOWN
 from tpvqa.belief.own_words import OwnWords, SensorWorth, SkillWorth, fit_sensors, fit_skills
-from tpvqa.belief.writing import write_json
+from tpvqa.belief.writing import read_json, write_json
 from tpvqa.errors import CalibrationError, PlacedError
 from tpvqa.questions.question import Question, Way
-from tpvqa.text_files import read_bytes
 from tpvqa.told import ToldModel, first_fault
 from tpvqa.vlm.answer import Answer, Reply
 
@@ -267,7 +266,7 @@ class Calibration(_Model):
             CalibrationError: It cannot be read, is of another version, or is broken.
         """
         try:
-            text = read_bytes(path, PlacedError, what="calibration")
+            text = read_json(path, what="calibration")
         except PlacedError as error:
             raise CalibrationError(
                 f"{error}. Name the file that `tpvqa calibrate --out FILE` wrote"

@@ -11,9 +11,8 @@ from pydantic import ConfigDict, Field, ValidationError, field_validator, model_
 from tpvqa.belief.bounds import MOST, Counted
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.trust import GRID, Trust
-from tpvqa.belief.writing import write_json
-from tpvqa.errors import CalibrationError
-from tpvqa.files import read_plain
+from tpvqa.belief.writing import read_json, write_json
+from tpvqa.errors import CalibrationError, PlacedError
 from tpvqa.told import ToldModel, first_fault
 
 if TYPE_CHECKING:
@@ -152,11 +151,11 @@ class Experience(ToldModel):
             CalibrationError: It cannot be read, or is broken.
         """
         try:
-            return cls.model_validate_json(read_plain(path))
-        except FileNotFoundError:
-            return None
-        except OSError as error:
-            raise CalibrationError(f"{path}: cannot be read ({error.strerror})") from error
+            return cls.model_validate_json(read_json(path, what="experience"))
+        except PlacedError as error:
+            if isinstance(error.__cause__, FileNotFoundError):
+                return None
+            raise CalibrationError(f"{error}. Name another file to learn anew") from error
         except ValidationError as error:
             first = first_fault(error)
             place = ".".join(map(str, first["loc"])) or "the file"

@@ -1,7 +1,8 @@
 """What is said beforehand of how the world is at first, besides what the problem says."""
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from math import fsum
 from pathlib import Path
 
 from tpvqa.errors import PDDLError, PriorsError
@@ -9,6 +10,10 @@ from tpvqa.pddl import Atom, Task
 from tpvqa.pddl.pattern import Pattern
 from tpvqa.yaml_places import Place, read_yaml
 
+ROUNDED = 1e-6
+"""What probabilities that add up to 1 may be beyond it."""
+_NAMED = 4
+"""Facts that a message names."""
 ELSEWHERE = "elsewhere"
 NOTHING_KNOWN = "nothing_known"
 
@@ -22,20 +27,33 @@ class Priors:
         elsewhere: Probability that a thing is not where the problem says; None for the usual
             small doubt (`doubts.ELSEWHERE`), while simulated worlds are as the problem says.
         nothing_known: Whether nothing is known but the objects and what no action changes.
+        lines: Where the forms stand in their file.
+        empty: Whether there is a file, and it says nothing.
     """
 
     facts: tuple[tuple[Pattern, float], ...] = ()
     elsewhere: float | None = None
     nothing_known: bool = False
+    lines: tuple[int, ...] = field(default=(), compare=False)
+    empty: bool = field(default=False, compare=False)
 
     def stated(self, atoms: Collection[Atom], task: Task) -> dict[Atom, float]:
         """The probabilities of those of some facts that a form fits."""
-        found: dict[Atom, float] = {}
-        for pattern, probability in self.facts:
+        return {atom: self.facts[nth][1] for atom, nth in self.deciding(atoms, task).items()}
+
+    def deciding(self, atoms: Collection[Atom], task: Task) -> dict[Atom, int]:
+        """Which form counts for those of some facts that one fits."""
+        found: dict[Atom, int] = {}
+        for nth, (pattern, _) in enumerate(self.facts):
             for atom in atoms:
                 if pattern.match(atom, {}, task) is not None:
-                    found[atom] = probability
+                    found[atom] = nth
         return found
+
+    def groups(self, task: Task) -> Iterator[dict[Atom, int]]:
+        """For facts of which one holds at most: which form counts for each that one fits."""
+        for group in (*(group.atoms for group in task.mutex_groups), *task.oneof):
+            yield self.deciding(sorted(atom for atom in group if task.fits(atom)), task)
 
     @property
     def opens(self) -> bool:
@@ -56,10 +74,12 @@ def load_priors(task: Task, path: Path | str | None, start: str = "known") -> Pr
         (in ?thing fridge): 0.1
 
     Raises:
-        PriorsError: It is missing or broken, or does not fit the task; with file and line.
+        PriorsError: It is missing or broken, does not fit the task, or contradicts itself; with
+            file and line.
     """
     root = None if path is None else read_yaml(Path(path), PriorsError)
     facts: list[tuple[Pattern, float]] = []
+    keys: list[Place] = []
     elsewhere, nothing_known = None, start == "unknown"
     for name, key, value in root.entries() if root is not None else ():
         if name == NOTHING_KNOWN:
@@ -69,13 +89,53 @@ def load_priors(task: Task, path: Path | str | None, start: str = "known") -> Pr
             if elsewhere >= 1:
                 raise value.wrong("expected less than 1: the problem says where things are")
         elif name.startswith("("):
-            facts.append((_pattern(key, name, task), value.share()))
+            pattern = _pattern(key, name, task)
+            if any(_same(pattern, other) for other, _ in facts):
+                raise key.wrong(f"{pattern} is given twice; leave one of the two out")
+            facts.append((pattern, value.share()))
+            keys.append(key)
         else:
             raise key.wrong(
                 f"{name!r} is not known here. Known: {ELSEWHERE}, {NOTHING_KNOWN}, and facts such "
                 "as '(in ?thing fridge): 0.1'."
             )
-    return Priors(tuple(facts), elsewhere, nothing_known)
+    empty = path is not None and (root is None or not root.entries())
+    lines = tuple(key.line for key in keys)
+    found = Priors(tuple(facts), elsewhere, nothing_known, lines, empty)
+    _check_sums(found, keys, task)
+    return found
+
+
+def _same(one: Pattern, other: Pattern) -> bool:
+    """Whether two forms differ in the names of variables at most."""
+    return _unnamed(one) == _unnamed(other)
+
+
+def _unnamed(pattern: Pattern) -> tuple[object, ...]:
+    variables = {term: nth for nth, term in reversed(list(enumerate(pattern.terms)))}
+    named = (variables[each] if each.startswith("?") else each for each in pattern.terms)
+    return (pattern.predicate, *named, *pattern.types)
+
+
+def _check_sums(priors: Priors, keys: Sequence[Place], task: Task) -> None:
+    """See that lines about facts of which one holds at most are not more probable together than 1.
+
+    What one line says of several of them is shared out among them.
+
+    Raises:
+        PriorsError: They are.
+    """
+    for deciding in priors.groups(task):
+        first = {nth: atom for atom, nth in reversed(deciding.items())}
+        shares = {first[nth]: priors.facts[nth][1] for nth in sorted(first)}
+        if fsum(shares.values()) <= 1 + ROUNDED:
+            continue
+        named = [f"{atom.pddl()} {share:g}" for atom, share in shares.items() if share]
+        more = f" and {len(named) - _NAMED} more" if len(named) > _NAMED else ""
+        raise keys[max(first)].wrong(
+            f"at most one of {', '.join(named[:_NAMED])}{more} holds, and together that is "
+            f"{fsum(shares.values()):g}; make them add up to 1 at most"
+        )
 
 
 def _pattern(key: Place, name: str, task: Task) -> Pattern:

@@ -17,9 +17,8 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, ValidationError
 
-from tpvqa.belief.writing import write_json
+from tpvqa.belief.writing import read_json, write_json
 from tpvqa.errors import CalibrationError, PlacedError
-from tpvqa.text_files import read_bytes
 from tpvqa.told import ToldModel, first_fault
 
 Goal = Annotated[float, Field(ge=0, le=1)]
@@ -119,7 +118,7 @@ class RiskCalibration(_Model):
         """
         remedy = "Name the file that `tpvqa risk --out FILE` wrote"
         try:
-            return cls.model_validate_json(read_bytes(path, PlacedError, what="risk calibration"))
+            return cls.model_validate_json(read_json(path, what="risk calibration"))
         except PlacedError as error:
             raise CalibrationError(f"{error}. {remedy}") from error
         except ValidationError as error:

@@ -1,13 +1,16 @@
-"""What is learned is written whole or not at all."""
+"""What is learned is written whole or not at all, and read as strictly."""
 
 import errno
+import json
 import os
 from pathlib import Path
 
 from pydantic import BaseModel
 
-from tpvqa.errors import WriteError
-from tpvqa.files import write_whole
+from tpvqa.errors import PlacedError, WriteError
+from tpvqa.files import make_folder, write_whole
+from tpvqa.text_files import read_text
+from tpvqa.told import check_names
 
 
 def writable(path: Path, *, remedy: str) -> None:
@@ -17,6 +20,10 @@ def writable(path: Path, *, remedy: str) -> None:
         WriteError: It cannot.
     """
     above = next(each for each in (path, *path.parents) if each.exists())
+    if above != path and not above.is_dir():
+        raise WriteError.of(
+            path, NotADirectoryError(errno.ENOTDIR, f"{above} is no folder"), remedy
+        )
     if not os.access(above, os.W_OK):
         raise WriteError.of(path, PermissionError(errno.EACCES, os.strerror(errno.EACCES)), remedy)
 
@@ -33,7 +40,27 @@ def write_json(path: Path, model: BaseModel, *, remedy: str) -> None:
         WriteError: It cannot be written.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
     except OSError as error:
         raise WriteError.of(path, error, remedy) from error
     write_whole(path, f"{model.model_dump_json(indent=1)}\n".encode(), remedy=remedy)
+
+
+def read_json(path: Path, *, what: str) -> str:
+    """The text of a JSON file that `write_json` wrote, and that somebody may have changed since.
+
+    Args:
+        path: The file.
+        what: What it is, for messages.
+
+    Raises:
+        PlacedError: It cannot be read, is no text in UTF-8, or gives a name twice.
+    """
+    text = read_text(path, PlacedError, what=what)
+    try:
+        check_names(text)
+    except (json.JSONDecodeError, RecursionError):
+        pass  # the model that it is read into says so
+    except ValueError as error:  # of two values one would count, and nobody knows which is meant
+        raise PlacedError(f"{error} in one object", file=path) from None
+    return text

@@ -21,7 +21,7 @@ from tpvqa.events.events import Acted, Waited
 from tpvqa.labelling import LABELS, RecordedEpisode, read_recorded
 from tpvqa.labelling.inferring import inferred_rows, likelier
 from tpvqa.labelling.recorded import said_in_trial
-from tpvqa.labelling.rows import labelled_rows
+from tpvqa.labelling.rows import answers_some, labelled_rows
 from tpvqa.labelling.session import check_vlm
 from tpvqa.pddl import Atom, Task, task_from_text
 from tpvqa.vlm.making import as_logged, in_full
@@ -47,6 +47,7 @@ class Labelled:
         by_hand: Labels that a person gave; each holds for all answers of its moment.
         inferred: Answers of which later steps told what was probably right.
         unused: Episodes without truth and without labels, where there are labels elsewhere.
+        idle: Files of labels that say of no question what was right.
     """
 
     vlm: str
@@ -55,6 +56,7 @@ class Labelled:
     by_hand: int = 0
     inferred: int = 0
     unused: int = 0
+    idle: tuple[Path, ...] = ()
 
     @property
     def plain(self) -> list[LabelledAnswer]:
@@ -72,6 +74,7 @@ class Labelled:
         notices = list(found.notices)
         if self.inferred:
             notices.append(_INFERRED)
+        notices += map(_says_nothing, self.idle)
         if self.unused:
             said = "1 episode has" if self.unused == 1 else f"{self.unused} episodes have"
             notices.append(f"{said} neither labels nor the truth, and taught nothing.")
@@ -90,8 +93,9 @@ def label_episodes(
     """Label the answers of recorded episodes.
 
     What a person has labelled goes before what a simulated world's log says truly came of every
-    action. A robot's log says nothing of that; where there are no labels at all, what was right is
-    inferred from what came before and after (`labelling.inferring`).
+    action, unless none of it answers a question. A robot's log says nothing of that; where there
+    are no labels at all, what was right is inferred from what came before and after
+    (`labelling.inferring`).
 
     Args:
         folders: The episodes' folders.
@@ -100,13 +104,15 @@ def label_episodes(
 
     Raises:
         CalibrationError: An episode holds the truth of some actions only, another VLM answered in
-            it, or its labels are damaged.
+            it, or its labels are damaged, or are all there is and answer no question.
         EpisodeError: There is no episode, or it is damaged.
     """
     rows: list[LabelledAnswer] = []
     heard = OwnWords()
     labelled: list[RecordedEpisode] = []
     untold: list[RecordedEpisode] = []
+    idle: list[Path] = []
+    lacking = 0
     for folder in map(str, dict.fromkeys(map(episode_folder, folders))):
         events = read_episode(folder)
         started = events[0]
@@ -115,25 +121,43 @@ def label_episodes(
         vlm = in_full(vlm) if vlm else answered
         check_vlm(folder, answered, vlm)
         recorded = read_recorded(folder)
-        if (recorded.folder / LABELS).exists():
+        true = any(map(_tells_truth, events))
+        file = recorded.folder / LABELS
+        useless = file.exists() and not answers_some(recorded)
+        if useless:
+            idle.append(file)
+        if file.exists() and not useless:
             labelled.append(recorded)
-            if any(map(_tells_truth, events)):
+            if true:
                 with suppress(CalibrationError):  # it may be known of some actions alone
                     heard.acts.extend(_label(events, started, folder).own.acts)
-        elif any(map(_tells_truth, events)):
+        elif true:
             labeller = _label(events, started, folder)
             rows += labeller.rows
             heard.add(labeller.own)
+        elif any(map(said_in_trial, recorded.askings)):
+            labelled.append(recorded)
+        elif useless:
+            lacking += 1
         else:
-            asked = any(said_in_trial(each) for each in recorded.askings)
-            (labelled if asked else untold).append(recorded)
+            untold.append(recorded)
         done()
     by_hand, labels = labelled_rows(labelled)
     rows += by_hand
+    if lacking and not (rows or untold):
+        raise CalibrationError(f"{_says_nothing(idle[0])} Nothing else tells what was right")
     if rows or not untold:
-        return Labelled(vlm or "", rows, heard, by_hand=labels, unused=len(untold))
+        unused = len(untold) + lacking
+        return Labelled(vlm or "", rows, heard, by_hand=labels, unused=unused, idle=tuple(idle))
     inferred = inferred_rows(untold, vlm or "")
-    return Labelled(vlm or "", inferred, heard, inferred=len(inferred) // 2)
+    return Labelled(vlm or "", inferred, heard, inferred=len(inferred) // 2, idle=tuple(idle))
+
+
+def _says_nothing(file: Path) -> str:
+    return (
+        f"{file} answers none of the episode's questions with yes or no, so it counts for nothing. "
+        f"Label some (`tpvqa label {file.parent}`), or remove it."
+    )
 
 
 def _label(events: list[Event], started: Started, name: str) -> Labeller:

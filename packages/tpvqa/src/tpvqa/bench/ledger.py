@@ -15,7 +15,7 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.published import differences, read_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError, WriteError
-from tpvqa.files import open_plain, write_all, write_whole
+from tpvqa.files import make_folder, open_plain, write_all, write_whole
 from tpvqa.told import first_fault
 
 ROWS = "episodes.jsonl"
@@ -32,21 +32,20 @@ class Ledger:
         published: Rows of the same bench that count as finished, see `published`.
 
     Raises:
-        BenchError: Another bench lies there, it is being written by another process, it is
-            damaged, or the folder cannot be written to.
+        BenchError: Another bench lies there, it is being written by another process, or it is
+            damaged.
+        WriteError: The folder cannot be written to.
     """
 
     def __init__(self, folder: Path, settings: Mapping[str, Any], published: Path | None = None):
         others = [] if published is None else list(read_published(published, settings))
         self.folder = Path(folder)
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
+            make_folder(self.folder)
             flags = os.O_RDWR | os.O_APPEND | os.O_CREAT
             self._file = os.fdopen(open_plain(self.folder / ROWS, flags), "a+b", buffering=0)
         except OSError as error:
-            raise BenchError(
-                f"{folder}: cannot be written to ({error.strerror}). Name another folder with --out"
-            ) from error
+            raise WriteError.of(folder, error, "Name another folder with --out") from error
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -18,6 +18,10 @@ from tpvqa.vlm import Reply
 from tpvqa.vlm.metrics import calibration_error
 
 BINS = 10
+_FEW = 10
+"""Answers that tell nothing yet."""
+_WORSE = 0.02
+"""Of the calibration error: what a calibration may lose by chance."""
 BEFORE, AFTER = "#d55e00", "#0072b2"
 
 
@@ -56,6 +60,31 @@ def lines(
     every, _ = telling(list(runs(rows)), chosen_looks=chosen_looks)
     kinds = sorted({(row.way, row.predicate) for row in every})
     return [_line(*kind, every, judged) for kind in kinds] + [_line(None, None, every, judged)]
+
+
+def doubts(whole: Line) -> list[str]:
+    """Why a calibration may do harm, in sentences; none where nothing speaks for that.
+
+    Args:
+        whole: The line for all answers.
+    """
+    if whole.answers < _FEW:
+        return []
+    yes_if_true, yes_if_false = whole.yes_if_true, whole.yes_if_false
+    if yes_if_true is not None and yes_if_false is not None and yes_if_true < yes_if_false:
+        return [
+            f"yes was said more often where no was right ({yes_if_false:.2f}) than where yes was "
+            f"({yes_if_true:.2f}): the answers are taken to tell nothing. See that labels and "
+            "questions are right, and that yes and no were not exchanged."
+        ]
+    before, after = whole.error_before, whole.error_after
+    if before is not None and after is not None and after > before + _WORSE:
+        return [
+            f"calibrated, the answers are less reliable than as the VLM says them ({after:.3f} for "
+            f"{before:.3f}): {whole.answers} answers are too few, or what is said to be right is "
+            "not. Give more, or do without this calibration."
+        ]
+    return []
 
 
 def _line(

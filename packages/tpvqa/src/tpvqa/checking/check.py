@@ -1,10 +1,11 @@
-"""All that is wrong with a domain, a problem, its questions and its world file."""
+"""All that is wrong with a domain, a problem, its questions, its world file and its priors."""
 
 from collections.abc import Iterator
 from pathlib import Path
 
 from tpvqa.checking import possible, wordings, world
 from tpvqa.checking.finding import Finding, Severity, of_error
+from tpvqa.checking.priors import of_priors
 from tpvqa.checking.seeing import Telling
 from tpvqa.drafting import words
 from tpvqa.errors import PDDLError, QuestionsError, WorldFileError
@@ -22,6 +23,7 @@ def check(
     *,
     questions: Path | None,
     world_file: Path | None,
+    priors: Path | None = None,
     planner: Planner,
     timeout: float = 60.0,
 ) -> list[Finding]:
@@ -32,6 +34,7 @@ def check(
         problem: The problem.
         questions: The questions file; None for none.
         world_file: The world file; None for none.
+        priors: The file of priors; None for none.
         planner: Says whether the goal can be reached.
         timeout: Seconds for grounding, and for planning.
 
@@ -46,13 +49,18 @@ def check(
         if not (domain.is_file() and problem.is_file()):
             raise
         return [of_error("pddl", error)]
-    found = list(_findings(task, questions, world_file, planner, timeout))
+    found = list(_findings(task, questions, world_file, priors, planner, timeout))
     order = list(Severity)
     return sorted(found, key=lambda each: order.index(each.severity))
 
 
 def _findings(
-    task: Task, questions: Path | None, world_file: Path | None, planner: Planner, timeout: float
+    task: Task,
+    questions: Path | None,
+    world_file: Path | None,
+    priors: Path | None,
+    planner: Planner,
+    timeout: float,
 ) -> Iterator[Finding]:
     into = str(questions) if questions is not None else QUESTIONS
     given, wrong = Wordings(), list[QuestionsError]()
@@ -82,12 +90,21 @@ def _findings(
             "`tpvqa questions --draft` writes one to edit.",
         )
     elif not wrong:
+        if given == Wordings():
+            yield Finding(
+                "empty-questions",
+                Severity.WARNING,
+                "the file is empty, so that all is asked in words made of the names",
+                "`tpvqa questions --draft` writes one to edit.",
+                str(questions),
+            )
         yield from wordings.without_words(task, given, words(task), into)
     book = QuestionBook(task, given)
     yield from wordings.alike(task, book, questions)
     yield from Telling(task, book, rules, into=rules_into, questions=into).findings()
     yield from world.of_rules(task, rules, world_file)
     yield from world.not_taken(task, rules, rules_into)
+    yield from of_priors(task, priors, rules)
 
 
 def _undone(rules: WorldRules) -> frozenset[str]:

@@ -33,7 +33,7 @@ def line_of_entry(file: Path | None, section: str, word: str) -> int | None:
     """The line of a YAML file's section in which a word stands first."""
     if file is None:
         return None
-    text = file.read_text(encoding="utf-8", errors="replace")
+    text = file.read_text(encoding="utf-8-sig", errors="replace")
     start = re.search(rf"^{re.escape(section)}\s*:", text, re.MULTILINE)
     if start is None:
         return None

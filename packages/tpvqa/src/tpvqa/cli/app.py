@@ -120,8 +120,7 @@ def main() -> None:
     """Run the command line.
 
     A `TpvqaError` becomes one clear message and exit code 2, or 6 where something could
-    not be written; Ctrl-C becomes "interrupted" and
-    exit code 130.
+    not be written; Ctrl-C, or SIGTERM, becomes "interrupted" and exit code 130.
     """
     _print_anything()
     try:

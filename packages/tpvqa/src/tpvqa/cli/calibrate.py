@@ -139,7 +139,7 @@ def calibrate(
     from tpvqa.bench.labelled_trials import label_trials
     from tpvqa.bench.own_task import own_tasks
     from tpvqa.bench.recorded_faults import experience_from
-    from tpvqa.bench.reliability import lines
+    from tpvqa.bench.reliability import doubts, lines
     from tpvqa.defaults import default_vlm
     from tpvqa.errors import TpvqaError
     from tpvqa.vlm.making import in_full
@@ -196,9 +196,11 @@ def calibrate(
     else:
         calibration = fit(rows, name, chosen_looks=chosen_looks).hearing(heard)
     judged = held_out(rows, name, chosen_looks=chosen_looks)
+    table = lines(rows, judged, chosen_looks=chosen_looks)
+    told = (*calibration.notices, *doubts(table[-1]))
+    calibration = calibration.model_copy(update={"notices": told})
     calibration.save(out)
     draw(image, judged, name)
-    table = lines(rows, judged, chosen_looks=chosen_looks)
     if as_json:
         typer.echo(json.dumps(plain(calibration, table, out, image), indent=1))
     else:

@@ -44,6 +44,9 @@ def check(
         Path | None,
         typer.Option(help="A world file. Default: the world.yaml beside the domain."),
     ] = None,
+    priors: Annotated[
+        Path | None, typer.Option(help="A file of priors, as `tpvqa run --priors` reads it.")
+    ] = None,
     timeout: Annotated[
         float,
         typer.Option(help="Seconds for grounding, and for planning.", min=0.001),
@@ -53,7 +56,7 @@ def check(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Find what does not fit in a domain, its questions and its world file, with remedies."""
+    """Find what does not fit in a domain, its questions, world file and priors, with remedies."""
     from tpvqa.checking import Severity
     from tpvqa.checking import check as found_in
     from tpvqa.planning.making import make_planner
@@ -67,6 +70,7 @@ def check(
             files[1],
             questions=files[2],
             world_file=files[3],
+            priors=priors,
             planner=planner,
             timeout=timeout,
         )

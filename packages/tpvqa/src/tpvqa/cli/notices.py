@@ -1,11 +1,12 @@
 """What users are told before anything runs."""
 
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from tpvqa.assembly import Trial
     from tpvqa.belief.calibration import Calibration
     from tpvqa.belief.priors import Priors
     from tpvqa.config import TrialConfig
@@ -92,6 +93,21 @@ def about_start(task: "Task", priors: "Priors | None" = None, monitor: object = 
         "this monitor knows no probabilities: what is not known at first, it is told as if it were "
         "known; --monitor belief weighs it"
     ]
+
+
+def about_said(trial: "Trial") -> Iterator[str]:
+    """What to know of files of questions and of priors that say nothing, or something in vain."""
+    from tpvqa.belief.remarks_on_priors import remarks
+    from tpvqa.errors import QuestionsError
+    from tpvqa.yaml_places import read_yaml
+
+    questions, priors = trial.questions, trial.config.start.priors
+    if questions is not None and read_yaml(Path(questions), QuestionsError) is None:
+        yield f"{questions}: the file is empty; `tpvqa questions --draft` writes one to edit"
+    if priors is not None:
+        for each in remarks(trial.task, trial.priors, trial.rules.undo):
+            line = "" if each.line is None else f":{each.line}"
+            yield f"{priors}{line}: {each.says}. {each.remedy}"
 
 
 def about_calibration(vlm: str, calibration: "Calibration | None") -> list[str]:

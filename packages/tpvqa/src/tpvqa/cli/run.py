@@ -15,6 +15,7 @@ from tpvqa.cli.notices import (
     about_answers,
     about_calibration,
     about_prices,
+    about_said,
     about_start,
     about_vlm,
     about_words,
@@ -98,6 +99,7 @@ def run(
             *_about_calibration(trial),
             *about_risk(trial),
             *without_effect(trial, {key for layer in layers for key in layer.values}),
+            *about_said(trial),
             *about_start(trial.task, trial.priors, trial.monitor),
         )
         for notice in told:

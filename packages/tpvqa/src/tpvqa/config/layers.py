@@ -170,7 +170,7 @@ def _what_is_wrong(error: "ErrorDetails") -> str:
     elif kind == "literal_error":
         wanted = str(told["expected"])
     elif kind == "string_too_short":
-        wanted = "text, not nothing"
+        return "must not be empty"
     else:
         wanted = _KINDS.get(kind.partition("_")[0], "")
     if not wanted:

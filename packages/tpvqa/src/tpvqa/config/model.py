@@ -4,12 +4,14 @@ Every field says in its metadata how the command line calls it; `tpvqa run` make
 that, `tpvqa config` prints it, `started` stores it, and `resume` and the bench rebuild from it.
 """
 
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from tpvqa.config.parts import Part, VLMConfig, setting
+from tpvqa.errors import shown
 
 MOST = 2**63
 """Of a seed and of an episode: what every reader of a log takes for a whole number."""
@@ -154,14 +156,36 @@ class PlannerConfig(Part):
     )
 
 
+TIMES = r"^[1-9][0-9]{0,5}x$"
+
+
 def _none(value: Any) -> Any:
-    return None if value == "none" else value
+    if value == "none":
+        return None
+    return _number_or(value, "write a whole number, or none")
+
+
+def _times(value: Any) -> Any:
+    if isinstance(value, str) and re.match(TIMES, value):
+        return value
+    return _number_or(value, "write a whole number, or 50x for fifty times the first plan")
+
+
+def _number_or(value: Any, wanted: str) -> Any:
+    """A value that is no other text than a number."""
+    if isinstance(value, str):
+        try:
+            int(value)
+        except ValueError:
+            raise ValueError(f"{wanted}, not {shown(value)}") from None
+    return value
 
 
 Limit = Annotated[int | None, BeforeValidator(_none)]
 """A limit; `none` for none."""
-Times = Annotated[str, Field(pattern=r"^[1-9][0-9]{0,5}x$")]
+Times = Annotated[str, Field(pattern=TIMES)]
 """So many times the length of the first plan: `50x`."""
+_Actions = Annotated[int, Field(ge=1)] | Times | None
 
 
 class Limits(Part):
@@ -171,14 +195,14 @@ class Limits(Part):
         "--max-repeats", "Repeats of an action in a row, or none.", 10, text=True, ge=0
     )
     replans: Limit = setting("--max-replans", "Replans in the trial, or none.", 10, text=True, ge=0)
-    actions: Annotated[int, Field(ge=1)] | Times | None = setting(
+    actions: Annotated[_Actions, BeforeValidator(_times)] = setting(
         "--max-actions",
         "Actions in the trial, repeats included: a number, or 50x for fifty times the first plan. "
         f"Default: the larger of {LEAST_ACTIONS} and {PLANS}x.",
         text=True,
     )
     seconds: float | None = setting("--max-seconds", "Wall-clock time of the trial.", gt=0)
-    action_seconds: float | None = setting("--action-deadline", "Seconds for one action.", ge=0)
+    action_seconds: float | None = setting("--action-deadline", "Seconds for one action.", gt=0)
     requests: int | None = setting(
         "--max-requests", "openai: requests to the server, retries included.", ge=1
     )

@@ -281,17 +281,18 @@ def _adjective(
     if state in PARTICLES and rest:
         tail = " ".join([phrases.placed(rest[0], "on"), *others(rest[1:])])
     kinds = phrases.things.nouns(first.objects) | {first.parameter}
-    if part and part[-1] not in kinds and part[0] not in ADJECTIVES:
+    if not kinds & {*part[-1:]} and not ADJECTIVES.issuperset(part):
+        # A part of the thing, as in quick-release-open; what is wide open is the thing itself.
         yield Clause("is", Noun(f"the {' '.join(part)} of {first.said}"), f"{state} {tail}".strip())
         return
     said = state if part and part[-1] in kinds else " ".join(words)
     yield Clause("is", first, f"{said} {tail}".strip())
     if not rest and state in ("free", "empty") and phrases.things.hold(first.objects):
         yield Clause("is", first, "holding nothing")
-    elif not rest and state == "open":
+    elif not rest and said == "open":
         yield Clause("does", first, "stand open")
-    elif not rest and state in ELSE:
-        yield Clause("is", first, ELSE[state])
+    elif not rest and said in ELSE:
+        yield Clause("is", first, ELSE[said])
     elif not rest and state not in PARTICLES:
         yield Clause("does", first, f"look {said}")
 

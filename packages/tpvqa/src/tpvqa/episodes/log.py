@@ -49,15 +49,27 @@ class LogReader:
             problem = first_fault(error)
             where = ".".join(map(str, problem["loc"]))[:200]
             raise EpisodeError(
-                f"{place}: not an event of this version ({where}: {problem['msg'][:300]})"
+                f"{place}: not an event of this version ({where}: {problem['msg'][:300]}). "
+                f"{self._remedy}"
             ) from error
         except ValueError as error:
-            raise EpisodeError(f"{place}: damaged: {error}") from error
+            raise EpisodeError(f"{place}: damaged: {error}. {self._remedy}") from error
         try:
             self._shape.take(event)
         except EpisodeError as error:
-            raise EpisodeError(f"{place}: event {event.number} does not fit: {error}") from None
+            raise EpisodeError(
+                f"{place}: event {event.number} does not fit: {error}. {self._remedy}"
+            ) from None
         return event
+
+    @property
+    def _remedy(self) -> str:
+        if self._number == 1:
+            return "Without its beginning nothing can be read of it: leave it out, or run it anew"
+        return (
+            f"Leave the episode out, or keep only the {self._number - 1} lines before this one in "
+            "a copy of its folder: of them it can be shown, and gone on with"
+        )
 
 
 def whole_lines(descriptor: int) -> Iterator[bytes]:

@@ -16,7 +16,7 @@ from tpvqa.errors import EpisodeError, PluginError, WriteError
 from tpvqa.events import EVENT, Ended, Event
 from tpvqa.events.events import CAN_BE_GONE_ON_WITH
 from tpvqa.events.records import depth_file
-from tpvqa.files import open_plain, write_all, write_whole_at
+from tpvqa.files import make_folder, open_plain, write_all, write_whole_at
 from tpvqa.observation import Frame
 from tpvqa.pictures import MOST_BYTES
 from tpvqa.told.strict_json import LONGEST
@@ -102,9 +102,9 @@ class EpisodeWriter:
         self.folder, self._durable, self.begun_anew = Path(folder), durable, False
         self._file = self._frames = -1
         flags = os.O_RDWR | os.O_APPEND | (os.O_CREAT if new else 0)
+        if new:
+            self._make_folder()
         try:
-            if new:
-                self.folder.mkdir(parents=True, exist_ok=True)
             self._file = open_plain(self.folder / LOG, flags)
             with suppress(FileExistsError):
                 (self.folder / FRAMES).mkdir()
@@ -126,6 +126,13 @@ class EpisodeWriter:
                 f"{self.folder} is still being written by another process, or by a writer that was "
                 "not closed; wait for it or end it"
             ) from None
+
+    def _make_folder(self) -> None:
+        try:
+            make_folder(self.folder)
+        except OSError as error:
+            remedy = "Nothing was begun: name another folder with --out"
+            raise WriteError.of(self.folder, error, remedy) from error
 
     def _opened_frames(self) -> int:
         try:

@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+from codecs import BOM_UTF8
 from collections.abc import Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -63,6 +64,8 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
         raise CalibrationError(f"{path}: cannot be read ({error.strerror})") from error
     found: dict[tuple[int, str], Said] = {}
     for number, line in enumerate(lines, 1):
+        if number == 1:
+            line = line.removeprefix(BOM_UTF8)  # as editors put it there
         label = _label(path, number, line)
         if label.log != episode.log:
             raise CalibrationError(

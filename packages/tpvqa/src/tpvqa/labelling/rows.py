@@ -37,6 +37,16 @@ def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAns
     return rows, labels
 
 
+def answers_some(episode: RecordedEpisode) -> bool:
+    """Whether the labels beside an episode say of any answer of its VLM what was right.
+
+    Raises:
+        CalibrationError: The file of labels is damaged.
+    """
+    told = read_labels(episode)
+    return any(told.get(each.key) in ("yes", "no") and each.of_vlm for each in episode.askings)
+
+
 def _fact(asking: Asking) -> tuple[int, object]:
     """The same for all wordings in which a fact is asked about, as one label holds for all."""
     return asking.stretch, asking.atoms or asking.text

@@ -111,6 +111,7 @@ class BeliefSettings:
                 f"'belief:{arguments}' is not understood: {where}: {what.rstrip('?')}"
                 f"{'?' if what.endswith('?') else '.'} Costs are "
                 f"{', '.join(Costs.model_fields)}; write belief:question=0.05:look=0.01, say, "
+                f"or {', '.join((*_RATES, *_REPORTS, 'risk', 'words'))}=SHARE, "
                 f"or without={'|'.join(PARTS)}."
             ) from None
         except ValueError as error:

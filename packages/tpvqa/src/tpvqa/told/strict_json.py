@@ -2,6 +2,7 @@
 
 import json
 import math
+from codecs import BOM_UTF8
 from typing import Any
 
 LONGEST = 16 * 2**20
@@ -54,12 +55,14 @@ def check_json(line: bytes) -> None:
     """
     if len(line) > LONGEST:
         raise ValueError(f"the line is longer than {LONGEST:,} bytes")
+    if line.startswith(BOM_UTF8):
+        raise ValueError("it begins with a byte order mark; save the file as UTF-8 without one")
     try:
         _DECODER.decode(line.decode("utf-8"))
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
     except UnicodeDecodeError as error:
-        raise ValueError(f"it is not UTF-8 ({error.reason})") from None
+        raise ValueError(f"it is not UTF-8 ({error.reason}); save the file as UTF-8") from None
 
 
 def check_names(text: str | bytes) -> None:

@@ -30,7 +30,8 @@ from tpvqa.worlds.world_file import WorldRules
 
 FAILURE = 0.25
 DISTURBANCE = 0.25
-
+LEAST_TIME = 1e-6
+"""Seconds: whatever has less is late."""
 
 BY_SOMEBODY = "somebody moves the "
 """How what people do is told."""

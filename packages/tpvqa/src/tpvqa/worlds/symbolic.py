@@ -11,7 +11,7 @@ from tpvqa.pddl import Action
 from tpvqa.worlds.capabilities import Pictureless, Simulated
 from tpvqa.worlds.outcome import Outcome
 from tpvqa.worlds.protocol import Execution, Report
-from tpvqa.worlds.simulation import SimulatedTruth, Simulation
+from tpvqa.worlds.simulation import LEAST_TIME, SimulatedTruth, Simulation
 
 
 class SymbolicWorld(Simulated, Pictureless):
@@ -48,7 +48,7 @@ class SymbolicWorld(Simulated, Pictureless):
         """Try the action at once; skill and sensors notice what the world file says."""
         if cancel is not None and cancel.is_set():
             return Execution(Report.CANCELLED, 0.0)
-        if deadline is not None and deadline <= 0:
+        if deadline is not None and deadline < LEAST_TIME:
             return Execution(Report.LATE, 0.0, "no time was given")
         self.last_outcome = self.simulation.execute(action)
         return self.last_outcome.execution(0.0)

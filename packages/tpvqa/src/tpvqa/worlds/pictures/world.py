@@ -22,7 +22,7 @@ from tpvqa.worlds.outcome import Outcome
 from tpvqa.worlds.pictures.manifest import P, Picture, media_type
 from tpvqa.worlds.pictures.picture_set import PictureSet, load_set
 from tpvqa.worlds.protocol import Execution, Report
-from tpvqa.worlds.simulation import SimulatedTruth, Simulation
+from tpvqa.worlds.simulation import LEAST_TIME, SimulatedTruth, Simulation
 
 VIEW = "front"
 
@@ -120,7 +120,7 @@ class DrawnWorld(Simulated, Generic[P]):
         """
         if cancel is not None and cancel.is_set():
             return Execution(Report.CANCELLED, 0.0)
-        if deadline is not None and deadline <= 0:
+        if deadline is not None and deadline < LEAST_TIME:
             return Execution(Report.LATE, 0.0, "no time was given")
         before = self.simulation.snapshot()
         outcome = self.simulation.execute(action)
