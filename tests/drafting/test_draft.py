@@ -99,6 +99,8 @@ SAID = {
     "(quick-release-open ?t - table)": "Is the quick release of the desk open?",
     "(front_flap_stuck ?t - table)": "Is the front flap of the desk stuck?",
     "(wide-open ?d - door)": "Is the front door wide open?",
+    "(tightly-closed ?d - door)": "Is the front door tightly closed?",
+    "(fully-open ?d - door)": "Is the front door fully open?",
     "(front-door-open ?d - door)": "Is the front door open?",
     "(hitched ?b - block ?r - robot)": "Is the red block hitched to the robot?",
 }  # fmt: skip

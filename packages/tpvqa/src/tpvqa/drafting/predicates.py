@@ -281,7 +281,7 @@ def _adjective(
     if state in PARTICLES and rest:
         tail = " ".join([phrases.placed(rest[0], "on"), *others(rest[1:])])
     kinds = phrases.things.nouns(first.objects) | {first.parameter}
-    if not kinds & {*part[-1:]} and not ADJECTIVES.issuperset(part):
+    if not kinds & {*part[-1:]} and not all(map(_says_how, part)):
         # A part of the thing, as in quick-release-open; what is wide open is the thing itself.
         yield Clause("is", Noun(f"the {' '.join(part)} of {first.said}"), f"{state} {tail}".strip())
         return
@@ -295,6 +295,12 @@ def _adjective(
         yield Clause("is", first, ELSE[said])
     elif not rest and state not in PARTICLES:
         yield Clause("does", first, f"look {said}")
+
+
+def _says_how(word: str) -> bool:
+    """Whether a word before a state belongs to it: wide open, tightly closed."""
+    stems = {word, word.removesuffix("ly"), word.removesuffix("y"), word.removesuffix("ily") + "y"}
+    return bool(ADJECTIVES & stems)
 
 
 def _property(phrases: Phrases, said: str, nouns: list[Noun], others: Others) -> Iterator[Clause]:
