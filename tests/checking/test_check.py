@@ -114,6 +114,7 @@ def test_nothing_is_found_where_nothing_is_wrong(files: Files) -> None:
         ("\n(pressed hat): 0.5", 2, Severity.ERROR, "no object 'hat'"),
         ("(free): 0.5", 1, Severity.WARNING, "has no effect"),
         ("", None, Severity.WARNING, "says nothing"),
+        ("(lies lid ?t): 0\n(held lid): 0", 2, Severity.WARNING, "all are taken to be as prob"),
     ],
 )
 def test_a_file_of_priors_is_checked_too(

@@ -55,6 +55,7 @@ def remarks(task: Task, priors: Priors, undo: Sequence[Any] = ()) -> Iterator[Re
     prior = Prior(task, priors, undo)
     # Where there are more states than are looked at, what none of them shows may yet be.
     states = [state for state, _ in prior.states()] if prior.covered() else []
+    yield from _scaled_up(task, priors, frozenset(known))
     deciding = priors.deciding(known, task)
     shared = _shared_out(task, priors)
     for nth, (pattern, probability) in enumerate(priors.facts):
@@ -96,6 +97,24 @@ def _shared_out(task: Task, priors: Priors) -> dict[int, float]:
             (widest, _), *_ = Counter(deciding.values()).most_common(1)
             found[widest] = max(total, found.get(widest, 0))
     return found
+
+
+def _scaled_up(task: Task, priors: Priors, possible: State) -> Iterator[Remark]:
+    """Facts of which one holds, all of which have a probability, and which are together less
+    probable than 1."""
+    for group in (*(g.atoms for g in task.mutex_groups if g.exactly_one), *task.oneof):
+        deciding = priors.deciding(sorted(group & possible), task)
+        total = fsum(priors.facts[nth][1] for nth in deciding.values())
+        if len(deciding) < 2 or deciding.keys() < group & possible or total >= 1 - ROUNDED:
+            continue
+        named = ", ".join(atom.pddl() for atom in [*deciding][:3])
+        taken = "each is scaled up" if total else "all are taken to be as probable"
+        yield Remark(
+            f"one of {named}{' …' if len(deciding) > 3 else ''} holds, and together they are given "
+            f"{total:g}: {taken}",
+            "Make them add up to 1, or leave the one that the problem states to it.",
+            priors.lines[max(deciding.values())] if priors.lines else None,
+        )
 
 
 def _said(atom: Atom, task: Task, stated: dict[Atom, float]) -> bool:

@@ -1,17 +1,17 @@
 """What single steps do unseen, over many joint states at once."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.faults import FaultModel, Outcomes, Rates
 from tpvqa.belief.information import Floats
 from tpvqa.pddl import Action
 
-MOST = 260
+MOST = 600
 """Joint states that are told apart besides those that are begun from: those that are reached most
 probably. The rest is lost."""
 LEAST = 1e-4
@@ -25,6 +25,8 @@ AGAIN = 0.5
 
 Way = tuple[Action, ...]
 """Actions that are done one after the other."""
+_END, _CUT = 0, 1
+"""The rests of ways of which nothing is left: another way may follow; more of its own does."""
 
 Places = NDArray[np.intp]
 Bools = NDArray[np.bool_]
@@ -66,7 +68,8 @@ class Steps:
         self.numbers: list[int] = []
         self.place: dict[int, int] = {}
         self.version = 0
-        self._covered: frozenset[Way] = frozenset()
+        self._rests: dict[tuple[Action, int], int] = {}
+        self._covered = set[int]()
         self._leads: dict[Action, _Leads] = {}
         self._falls: _Falls | None = None
 
@@ -75,42 +78,55 @@ class Steps:
         masses: Mapping[int, float],
         ways: Collection[Way],
         rates: Rates,
-        reached: Callable[[int], bool],
+        *,
+        cut: Collection[Way] = (),
+        followed: Way = (),
     ) -> None:
         """Tell apart what some ways may lead to.
 
+        Nothing is done where all joint states are told apart and all ways were, or are what is left
+        of one that was: what is improbable there and may lead elsewhere is left out until then.
+
         Args:
             masses: From where, with probabilities.
-            ways: They; where one has not led to the goal, another one may follow.
+            ways: They; another one may follow each.
             rates: How often they undo something.
-            reached: Whether a joint state is one of the goal.
+            cut: The beginnings of longer ones.
+            followed: What was decided for, which nothing follows.
         """
-        if masses.keys() <= self.place.keys() and self._covered.issuperset(ways):
+        ends = [self._rest(way, _END) for way in ways]
+        again = [*ends, *(self._rest(way, _CUT) for way in cut)]
+        begun = [*again, self._rest(followed, _CUT)] if followed else again
+        if masses.keys() <= self.place.keys() and self._covered.issuperset(begun):
             return
         self.version += 1
-        self._covered = frozenset(way[n:] for way in ways for n in range(len(way)))
         often = max(rates.undone, rates.redone)
-        self.numbers = self._reached(masses, ways, min(1.0, TRIES * often), reached)
+        self.numbers = self._reached(masses, begun, again, min(1.0, TRIES * often))
         self.place = {number: place for place, number in enumerate(self.numbers)}
         self._leads.clear()
         self._falls = None
 
+    def _rest(self, way: Way, end: int) -> int:
+        """The number of a way that ends so; what is left of it has one, too."""
+        rest = end
+        for action in reversed(way):
+            rest = self._rests.setdefault((action, rest), len(self._rests) + 2)
+        return rest
+
     def _reached(
-        self,
-        masses: Mapping[int, float],
-        ways: Collection[Way],
-        undone: float,
-        reached: Callable[[int], bool],
+        self, masses: Mapping[int, float], begun: list[int], again: list[int], undone: float
     ) -> list[int]:
         """The joint states that are met on the ways, the most probable ones."""
-        rests: dict[Way, int] = {}
-        for way in ways:
-            for step in range(len(way) + 1):
-                rests.setdefault(way[step:], len(rests))
-        leads_to = [self._model.outcomes(rest[0]) if rest else None for rest in rests]
-        later, begun = [rests[rest[1:]] for rest in rests], [rests[way] for way in ways]
+        told, steps = [*self._rests], dict[int, tuple[Mapping[int, Outcomes], int]]()
+        for rest in begun:
+            while rest > _CUT and rest not in steps:
+                action, later = told[rest - 2]
+                steps[rest] = self._model.outcomes(action), later
+                rest = later
+        self._covered = set(steps)
         found, done = dict.fromkeys(masses), set[tuple[int, int]]()
         queue = [(-mass, number, rest) for number, mass in masses.items() for rest in begun]
+        best = {(number, rest): mass for mass, number, rest in queue}
         heapify(queue)
         while queue and len(found) < MOST + len(masses):
             mass, number, rest = heappop(queue)
@@ -118,18 +134,22 @@ class Steps:
                 continue
             done.add((number, rest))
             found.setdefault(number)
-            outcomes = leads_to[rest]
-            met = [(share * undone, each, rest) for share, each in self._model.undone(number)]
-            if outcomes is not None:
+            met: list[tuple[float, int, int]] = []
+            if rest in steps:
+                outcomes, later = steps[rest]
                 there = outcomes[number].intended
-                met.append((1.0, number if there is None else there, later[rest]))
+                met.append((mass, number if there is None else there, later))
                 if there is not None and there != number:
-                    met.append((VAIN, number, later[rest]))
-            elif not reached(number):
-                met += [(AGAIN, number, each) for each in begun]
-            for share, other, each in met:
-                if -mass * share >= LEAST and (other, each) not in done:
-                    heappush(queue, (mass * share, other, each))
+                    met.append((mass * VAIN, number, later))
+            elif rest == _END:
+                met += [(mass * AGAIN, number, each) for each in again]
+            if mass * undone <= -LEAST:
+                fallen = self._model.undone(number)
+                met += [(mass * undone * share, each, rest) for share, each in fallen]
+            for reached, other, each in met:
+                if reached <= -LEAST and reached < best.get((other, each), 0.0):
+                    best[other, each] = reached
+                    heappush(queue, (reached, other, each))
         return list(found)
 
     def places(self, numbers: Iterable[int]) -> Places:

@@ -7,7 +7,7 @@ backward from the end, in every joint state, in the belief's own model.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import compress
+from itertools import compress, groupby
 from math import prod
 from typing import NamedTuple
 
@@ -178,10 +178,12 @@ class Unseen:
                 for share, other, _ in after:
                     masses[other] = masses.get(other, 0.0) + weight * share / len(actions)
         ways = self._ways(masses.items(), [action for action, _ in actions])
-        told = [tuple(plan.actions[place : place + HORIZON]) for place, plan in ways]
-        if self.following:
-            told.append(self.following)
-        self._steps.cover(masses, told, self._ahead.rates, self._ahead.is_goal)
+        told, cut = list[tuple[Action, ...]](), list[tuple[Action, ...]]()
+        for place, plan in ways:
+            long = len(plan.actions) - place > HORIZON
+            (cut if long else told).append(tuple(plan.actions[place : place + HORIZON]))
+        once = tuple(action for action, _ in groupby(self.following))
+        self._steps.cover(masses, told, self._ahead.rates, cut=cut, followed=once)
         version = self._ahead.version, self._steps.version
         if version != self._worked_out_for:
             self._worked_out_for = version

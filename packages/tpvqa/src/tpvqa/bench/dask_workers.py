@@ -5,6 +5,7 @@ both ends show certificates that are made for this run and lie in memory alone, 
 page of it. Who wants the page starts a scheduler, and names it.
 """
 
+import os
 import signal
 import threading
 from collections.abc import Iterable, Iterator
@@ -137,12 +138,19 @@ def _cause(error: BaseException) -> str:
 
 @contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """Let processes that start meanwhile ignore Ctrl-C: who started them ends them."""
+    """Let processes that start meanwhile ignore Ctrl-C: who started them ends them. A SIGTERM is
+    answered once they have started."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+    noted: list[int] = []
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Not ignored: that would be inherited, and nannies end their workers by it.
+    ended = signal.signal(signal.SIGTERM, lambda number, _: noted.append(number))
     try:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGTERM, ended)
+        if noted:
+            os.kill(os.getpid(), signal.SIGTERM)

@@ -24,6 +24,7 @@ def check(
     questions: Path | None,
     world_file: Path | None,
     priors: Path | None = None,
+    start: str = "known",
     planner: Planner,
     timeout: float = 60.0,
 ) -> list[Finding]:
@@ -35,6 +36,7 @@ def check(
         questions: The questions file; None for none.
         world_file: The world file; None for none.
         priors: The file of priors; None for none.
+        start: What is known at first where they are used: "known" or "unknown".
         planner: Says whether the goal can be reached.
         timeout: Seconds for grounding, and for planning.
 
@@ -49,7 +51,7 @@ def check(
         if not (domain.is_file() and problem.is_file()):
             raise
         return [of_error("pddl", error)]
-    found = list(_findings(task, questions, world_file, priors, planner, timeout))
+    found = list(_findings(task, questions, world_file, (priors, start), planner, timeout))
     order = list(Severity)
     return sorted(found, key=lambda each: order.index(each.severity))
 
@@ -58,7 +60,7 @@ def _findings(
     task: Task,
     questions: Path | None,
     world_file: Path | None,
-    priors: Path | None,
+    told: tuple[Path | None, str],
     planner: Planner,
     timeout: float,
 ) -> Iterator[Finding]:
@@ -94,7 +96,7 @@ def _findings(
             yield Finding(
                 "empty-questions",
                 Severity.WARNING,
-                "the file is empty, so that all is asked in words made of the names",
+                "the file says nothing, so that all is asked in words made of the names",
                 "`tpvqa questions --draft` writes one to edit.",
                 str(questions),
             )
@@ -104,7 +106,7 @@ def _findings(
     yield from Telling(task, book, rules, into=rules_into, questions=into).findings()
     yield from world.of_rules(task, rules, world_file)
     yield from world.not_taken(task, rules, rules_into)
-    yield from of_priors(task, priors, rules)
+    yield from of_priors(task, told[0], rules, told[1])
 
 
 def _undone(rules: WorldRules) -> frozenset[str]:

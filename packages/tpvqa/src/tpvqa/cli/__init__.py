@@ -4,11 +4,17 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import inf
 from types import FrameType
 
 __all__ = ["main"]
+
+TWICE = 2.0
+"""Seconds in which a second SIGTERM is the first once more, as `timeout` sends it: it must not
+break off the end."""
 
 
 def main() -> None:
@@ -32,15 +38,15 @@ def _sigterm_as_ctrl_c() -> Iterator[None]:
     if not main_thread or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
         yield
         return
-    program, told = os.getpid(), False
+    program, told = os.getpid(), -inf
 
     def end(number: int, frame: FrameType | None) -> None:
         nonlocal told
         if os.getpid() != program:  # a fork has nothing to keep
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
-        elif not told:  # `timeout` sends it twice: the second must not break off the end
-            told = True
+        elif time.monotonic() - told > TWICE:
+            told = time.monotonic()
             raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, end)

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -47,6 +47,10 @@ def check(
     priors: Annotated[
         Path | None, typer.Option(help="A file of priors, as `tpvqa run --priors` reads it.")
     ] = None,
+    start: Annotated[
+        Literal["known", "unknown"],
+        typer.Option(help="What is known at first where the priors are used, as in `tpvqa run`."),
+    ] = "known",
     timeout: Annotated[
         float,
         typer.Option(help="Seconds for grounding, and for planning.", min=0.001),
@@ -71,6 +75,7 @@ def check(
             questions=files[2],
             world_file=files[3],
             priors=priors,
+            start=start,
             planner=planner,
             timeout=timeout,
         )

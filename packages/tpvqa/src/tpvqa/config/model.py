@@ -166,18 +166,15 @@ def _none(value: Any) -> Any:
 
 
 def _times(value: Any) -> Any:
-    if isinstance(value, str) and re.match(TIMES, value):
+    if isinstance(value, str) and re.fullmatch(TIMES, value):
         return value
     return _number_or(value, "write a whole number, or 50x for fifty times the first plan")
 
 
 def _number_or(value: Any, wanted: str) -> Any:
     """A value that is no other text than a number."""
-    if isinstance(value, str):
-        try:
-            int(value)
-        except ValueError:
-            raise ValueError(f"{wanted}, not {shown(value)}") from None
+    if isinstance(value, str) and not re.fullmatch(r"\s*[+-]?[0-9]{1,18}\s*", value):
+        raise ValueError(f"{wanted}, not {shown(value)}")
     return value
 
 

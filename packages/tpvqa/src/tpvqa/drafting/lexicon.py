@@ -98,6 +98,10 @@ SIDES = word_set(
     "small up down large long short tall old new cold hot near far inner outer"
 )
 """Words that are names only together with what they say something of: the left lamp."""
+DEGREES = word_set("almost half halfway already still semi well over self not very quite")
+"""How far, or how, something is so, beside words in -ly."""
+NO_ADVERBS = word_set("assembly belly family fly jelly ply supply level light spare")
+"""Things, though they look like words that say how."""
 
 IRREGULAR = {  # base: (past, past participle)
     "be": ("was", "been"), "become": ("became", "become"), "begin": ("began", "begun"),

@@ -203,7 +203,10 @@ def of_noun(
         if words[0] in ELSE:
             yield Clause("is", first, ELSE[words[0]])
     elif last in ("empty", "free", "full", "busy", "clean", "dirty") and len(words) > 1:
-        yield from _hand(phrases, words, first)
+        if all(map(_says_how, words[:-1])):
+            yield Clause("is", first, said)
+        else:
+            yield from _hand(phrases, words, first)
     elif len(words) == 1 and last == "clear" and not rest:
         yield from _clear(phrases, first)
     elif rest and last in COMPARED:
@@ -233,6 +236,8 @@ def of_noun(
         yield from _property(phrases, said, nouns, others)
     elif last in kinds or last in things.vocabulary:
         yield Clause("is", first, f"{indefinite_article(said)} {said}")
+    elif len(words) > 1 and verb_form(last) is not None and all(map(_says_how, words[:-1])):
+        yield Clause("is", first, said)
     elif len(words) > 1 and verb_form(last) is not None:
         subject = Noun(f"the {' '.join(words[:-1])} of {first.said}")
         yield Clause("is", subject, last)
@@ -281,7 +286,8 @@ def _adjective(
     if state in PARTICLES and rest:
         tail = " ".join([phrases.placed(rest[0], "on"), *others(rest[1:])])
     kinds = phrases.things.nouns(first.objects) | {first.parameter}
-    if not kinds & {*part[-1:]} and not all(map(_says_how, part)):
+    upright = part[-1:] == ["side"] and state in ("up", "down")
+    if not (kinds & {*part[-1:]} or upright or all(map(_says_how, part))):
         # A part of the thing, as in quick-release-open; what is wide open is the thing itself.
         yield Clause("is", Noun(f"the {' '.join(part)} of {first.said}"), f"{state} {tail}".strip())
         return
@@ -298,9 +304,11 @@ def _adjective(
 
 
 def _says_how(word: str) -> bool:
-    """Whether a word before a state belongs to it: wide open, tightly closed."""
-    stems = {word, word.removesuffix("ly"), word.removesuffix("y"), word.removesuffix("ily") + "y"}
-    return bool(ADJECTIVES & stems)
+    """Whether a word before a state belongs to it: wide open, tightly closed, half full. What only
+    tells a part from others does not: front open."""
+    if word.endswith("ly"):
+        return word not in lexicon.NO_ADVERBS
+    return word in lexicon.DEGREES or word in ADJECTIVES - lexicon.SIDES - lexicon.NO_ADVERBS
 
 
 def _property(phrases: Phrases, said: str, nouns: list[Noun], others: Others) -> Iterator[Clause]:

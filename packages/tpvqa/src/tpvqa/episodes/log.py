@@ -65,7 +65,7 @@ class LogReader:
     @property
     def _remedy(self) -> str:
         if self._number == 1:
-            return "Without its beginning nothing can be read of it: leave it out, or run it anew"
+            return "Where that cannot be mended, leave it out, or run it anew"
         return (
             f"Leave the episode out, or keep only the {self._number - 1} lines before this one in "
             "a copy of its folder: of them it can be shown, and gone on with"
