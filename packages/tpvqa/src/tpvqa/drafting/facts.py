@@ -144,12 +144,12 @@ class Facts:
             yield from self._where(words, nouns, predicate)
         elif words[0] in PREPOSITIONS and len(words) > 1:
             yield from self._at_something(words, nouns)
-        elif len(words) == 2 and len(nouns) == 1 and self._switches(words):
+        elif len(words) > 1 and len(nouns) == 1 and self._switches(words):
+            *switched, state = words
             placed = self._things.are_places(nouns[0].objects)
             where = self._phrases.placed(nouns[0]) if placed else f"of {nouns[0].said}"
-            yield Clause(
-                "is", Noun(f"the {words[0]} {where}", plural=words[0] == "lights"), words[1]
-            )
+            what = Noun(f"the {' '.join(switched)} {where}", plural=switched[-1] == "lights")
+            yield Clause("is", what, state)
         elif words[-1] in PREPOSITIONS and (
             (verb_form(words[0]) or ("", Form.BASE))[1] is Form.BASE
         ):
@@ -158,10 +158,14 @@ class Facts:
             yield from self._verb(words, nouns)
 
     def _switches(self, words: list[str]) -> bool:
-        """Whether words say that something is on or off: light-on; bus-on, where bus-off is."""
+        """Whether words say that something is on or off: light-on, red-light-on; bus-on, where
+        bus-off is."""
         other = {"on": "off", "off": "on"}.get(words[-1])
-        if other is None:
+        *which, thing = words[:-1]
+        if other is None or not all(word in lexicon.SIDES for word in which):
             return False
+        if which:
+            return thing in lexicon.SWITCHED
         ones = [name for name, kinds in self._task.predicates.items() if len(kinds) == 1]
         contrary = any(self._things.words(name) == [words[0], other] for name in ones)
         return words[0] in lexicon.SWITCHED or contrary
@@ -305,7 +309,10 @@ class Facts:
         yield from self._elsewhere_said(subject, place, preposition)
 
     def _verb(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
-        form = None if words[0] in ADJECTIVES and len(words) == 1 else verb_form(words[0])
+        side = len(words) > 1 and words[0] in lexicon.SIDES  # the left hand; not what was left
+        part = side and words[1] in lexicon.HANDS | lexicon.PARTS
+        alone = words[0] in ADJECTIVES and len(words) == 1
+        form = None if alone or part else verb_form(words[0])
         if form is not None and words[0] not in lexicon.HANDS and not self._is_noun(words, nouns):
             yield from of_verb(self._phrases, form, words, nouns, self._others)
         else:
