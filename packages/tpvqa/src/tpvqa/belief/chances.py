@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from tpvqa.belief.bounds import MOST
 from tpvqa.belief.counted import CountedFaults
 from tpvqa.belief.faults import Rates
-from tpvqa.belief.skills import ALIKE, Skills, SkillState
+from tpvqa.belief.skills import Skills, SkillState
+from tpvqa.belief.spread import ALIKE, SURE, alike
 from tpvqa.pddl import Action
 
 
@@ -110,15 +111,16 @@ class Chances:
         yes, no = max(self.failure.yes - yes, LEAST), max(self.failure.no - no, LEAST)
         return self.skills.of(action, *self._beforehand(action.name, yes / (yes + no), yes + no))
 
-    def _beforehand(self, skill: str, mean: float, strength: float) -> tuple[float, float]:
-        """The rate of a skill before its tries in this trial, and how many cases that is known
-        from."""
+    def _beforehand(self, skill: str, mean: float, strength: float) -> tuple[float, float, float]:
+        """The rate of a skill before its tries in this trial, how many cases that is known from,
+        and of how many tries of an action it tells."""
         count = self._counted.get(skill)
         if count is None:
-            return mean, strength
-        mean = (count.failed + ALIKE * mean) / (count.tries + ALIKE)
+            return mean, strength, ALIKE
+        mean, told = (count.failed + ALIKE * mean) / (count.tries + ALIKE), alike(count)
         mostly = count.failed > MOSTLY * count.tries
-        return mean, min(strength + count.tries, MOST) if mostly else strength
+        most = MOST if mostly else strength if told is None else SURE
+        return mean, min(strength + count.tries, max(most, strength)), told or ALIKE
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""

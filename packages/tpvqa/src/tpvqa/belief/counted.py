@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import tee
 
 from pydantic import ConfigDict, Field
 
@@ -29,12 +30,14 @@ class LabelledAct:
         action: The action's name.
         came: What came of it.
         undone: Whether something came undone by it; None where nothing could, or people did it.
+        objects: What it was done with.
     """
 
     trial: str
     action: str
     came: Came
     undone: bool | None
+    objects: tuple[str, ...] = ()
 
 
 class _Told(ToldModel):
@@ -47,10 +50,13 @@ class SkillCount(_Told):
     Attributes:
         failed: How often.
         worked: How often it did not.
+        together: In how many trials so many tries with the same objects failed, and so many
+            worked: (failed, worked, trials). Nothing in older files.
     """
 
     failed: Counted = 0
     worked: Counted = 0
+    together: tuple[tuple[Counted, Counted, Counted], ...] = ()
 
     @property
     def tries(self) -> int:
@@ -104,7 +110,11 @@ def count_faults(acts: Iterable[LabelledAct]) -> CountedFaults | None:
 
     found = CountedFaults(
         skills={
-            name: SkillCount(failed=came[name, Came.FAILURE], worked=came[name, Came.SUCCESS])
+            name: SkillCount(
+                failed=came[name, Came.FAILURE],
+                worked=came[name, Came.SUCCESS],
+                together=_together(act for act in told if act.action == name),
+            )
             for name in sorted(tried)
         },
         disturbance=cases(Came.FAILURE, Came.IMPOSSIBLE),
@@ -112,3 +122,13 @@ def count_faults(acts: Iterable[LabelledAct]) -> CountedFaults | None:
         redone=cases(Came.ACHIEVED),
     )
     return None if found == CountedFaults() else found
+
+
+def _together(acts: Iterable[LabelledAct]) -> tuple[tuple[int, int, int], ...]:
+    """In how many trials so many tries with the same objects failed, and so many worked."""
+    failed, worked = (
+        Counter((act.trial, act.objects) for act in told if act.came is came)
+        for told, came in zip(tee(acts), (Came.FAILURE, Came.SUCCESS), strict=True)
+    )
+    trials = Counter((failed[key], worked[key]) for key in failed.keys() | worked.keys())
+    return tuple((*tries, often) for tries, often in sorted(trials.items()))

@@ -15,16 +15,10 @@ import numpy as np
 from tpvqa.belief.belief import LOOKED_BACK
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.information import Floats
+from tpvqa.belief.spread import ALIKE, DEAD, DEAD_WITH
 from tpvqa.belief.tries import EDGE, RATES, Run, Tried
 from tpvqa.pddl import Action
 
-ALIKE = 12.0
-"""How many tries of a skill the rates of the others are worth."""
-DEAD = 0.02
-"""Chance that a skill never works."""
-DEAD_WITH = 0.02
-"""Chance that a skill never works with what it is tried with: with one of the objects in its place,
-or with just these together, one as probable as the other."""
 SUSPECT = 0.1
 """Where an action is dead with this probability, what it needs is doubted first."""
 CLOSELY = 0.3
@@ -89,13 +83,14 @@ class Skills:
         self._run: Run | None = None
         self._latest: list[Run | None] = []
 
-    def of(self, action: Action, mean: float, strength: float) -> SkillState:
+    def of(self, action: Action, mean: float, strength: float, alike: float = ALIKE) -> SkillState:
         """What is known of an action.
 
         Args:
             action: The skill with its objects.
             mean: The rate of failure that is expected of the skill.
             strength: How many cases that is known from.
+            alike: How many of its own tries that is worth, the same whenever it is asked about.
         """
         own = self._tried.get(action.name, {})
         key = (action if own else action.name, round(mean, 3), round(strength, 1))
@@ -103,12 +98,13 @@ class Skills:
         if found is None:
             shared = self._shared.get((action.name, mean, strength))
             if shared is None:
-                shared = self._shared[action.name, mean, strength] = _Shared(own, mean, strength)
+                shared = _Shared(own, mean, strength, alike)
+                self._shared[action.name, mean, strength] = shared
             found = shared.of(action)
             if self._run is not None and self._run.action == action:
                 # Where there still is something to do, all tries of the run have failed.
                 own = {**own, action: own[action].as_if_failed()}
-                worst = _Shared(own, mean, strength).of(action)
+                worst = _Shared(own, mean, strength, alike).of(action)
                 found = replace(found, failure=worst.failure, at_worst=worst.dead)
             self._known[key] = found
         return found
@@ -185,10 +181,11 @@ class _Shared:
         own: Those tries.
         mean: The rate of failure that is expected of it.
         strength: How many cases that is known from.
+        alike: How many tries of one action that is worth.
     """
 
-    def __init__(self, own: "Mapping[Action, Tried]", mean: float, strength: float):
-        self._own, self._prior = own, _prior(mean, strength)
+    def __init__(self, own: "Mapping[Action, Tried]", mean: float, strength: float, alike: float):
+        self._own, self._prior, self._alike = own, _prior(mean, strength, alike), alike
         self._causes = _causes(own, self._prior) if own else {}
         self._strength, self._times = strength, sum(tried.times for tried in own.values())
         self._vain: dict[Cause, float] = {}
@@ -215,8 +212,8 @@ class _Shared:
         if action in own:
             # Alike as skills are, with other objects it may be easier or harder.
             others = self._times - own[action].times
-            known = 1 / (1 / ALIKE + 1 / (self._strength + others))
-            common = _prior(float(weights @ RATES[:-1]), known)
+            known = 1 / (1 / self._alike + 1 / (self._strength + others))
+            common = _prior(float(weights @ RATES[:-1]), known, self._alike)
             weights = common * own[action].likelihood[:-1]
             weights /= max(weights.sum(), EDGE)
         failure, tries = float(weights @ RATES[:-1]), float((weights / (1 - RATES[:-1])).sum())
@@ -267,12 +264,12 @@ def _summed(logs: Floats) -> Floats:
 
 
 @lru_cache(maxsize=1024)
-def _prior(mean: float, strength: float) -> Floats:
+def _prior(mean: float, strength: float, alike: float) -> Floats:
     """Of a skill's rate, if it works: as far from the common one as skills are from each other
     and as the common one is unsure; shape (rates - 1,)."""
-    alike = max(1 / (1 / (ALIKE + 1) + 1 / (strength + 1)) - 1, 1.0)
+    cases = max(1 / (1 / (alike + 1) + 1 / (strength + 1)) - 1, 1.0)
     mean = min(max(mean, 0.005), 0.995)
-    a, b = alike * mean, alike * (1 - mean)
+    a, b = cases * mean, cases * (1 - mean)
     logs = (a - 1) * np.log(RATES[:-1]) + (b - 1) * np.log1p(-RATES[:-1])
     weights = np.exp(logs - logs.max())
     found: Floats = weights / weights.sum()

@@ -54,7 +54,8 @@ class Labeller:
         self._views: dict[int, str | None] = {}
         self._state = TrialState()
         self._truths: list[bool] = []
-        self._acting, self._idle, self._undoable = "", False, False
+        self._acting: Action | None = None
+        self._idle, self._undoable = False, False
         # Numbers drift, and while actions last much else changes what holds.
         self._tells_undone = not simulation.rules.numbers and simulation.task.lasting is None
         self.rows: list[LabelledAnswer] = []
@@ -71,8 +72,8 @@ class Labeller:
                 if not event.during:
                     self._sense(event.facts)
             case Acting():
-                action = self._actions[event.action.pddl()]
-                self._acting, self._idle = action.name, self._simulation.achieved(action)
+                self._acting = action = self._actions[event.action.pddl()]
+                self._idle = self._simulation.achieved(action)
                 self._undoable = self._could_come_undone()
             case Acted():
                 self._read.clear()
@@ -118,19 +119,19 @@ class Labeller:
         """A report counts where the action had something to do, and was not refused; what it
         undoes where something could come undone."""
         truth = event.truth
-        if truth is None or truth.failure is Failure.REFUSED:
+        acting = self._acting
+        if truth is None or acting is None or truth.failure is Failure.REFUSED:
             return
         if truth.failure is not Failure.DEAD:
             came = Came.ACHIEVED if self._idle else _CAME[truth.failure]
             could = self._could_come_undone() if came is Came.SUCCESS else self._undoable
             lost = truth.undone is not None and not truth.undoing.startswith(BY_SOMEBODY)
-            told = self._tells_undone and (could or lost)
-            self.own.acts.append(
-                LabelledAct(self._trial, self._acting, came, lost if told else None)
-            )
+            undone = lost if self._tells_undone and (could or lost) else None
+            act = LabelledAct(self._trial, acting.name, came, undone, acting.arguments)
+            self.own.acts.append(act)
         if not self._idle and event.report in (Report.DONE, Report.FAILED):
             reported = event.report is Report.FAILED
-            report = LabelledReport(self._acting, reported, failed=not truth.succeeded)
+            report = LabelledReport(acting.name, reported, failed=not truth.succeeded)
             self.own.reports.append(report)
 
     def _could_come_undone(self) -> bool:

@@ -148,8 +148,8 @@ class Facts:
             *switched, state = words
             placed = self._things.are_places(nouns[0].objects)
             where = self._phrases.placed(nouns[0]) if placed else f"of {nouns[0].said}"
-            what = Noun(f"the {' '.join(switched)} {where}", plural=switched[-1] == "lights")
-            yield Clause("is", what, state)
+            thing = Noun(f"the {' '.join(switched)} {where}", plural=switched[-1] == "lights")
+            yield Clause("is", thing, state)
         elif words[-1] in PREPOSITIONS and (
             (verb_form(words[0]) or ("", Form.BASE))[1] is Form.BASE
         ):
