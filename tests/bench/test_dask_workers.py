@@ -7,7 +7,7 @@ from urllib.request import urlopen
 
 import dask
 import pytest
-from distributed import Client, Security
+from distributed import Client, Future, Security, wait
 
 from tpvqa.bench.dask_workers import as_they_finish, dask_client
 from tpvqa.errors import BenchError
@@ -63,7 +63,7 @@ def test_a_worker_that_dies_at_the_start(
 def test_work_that_no_worker_is_left_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tpvqa.bench.dask_workers.WAIT", 1)
     with dask_client(1) as client:
-        assert [each.result() for each in as_they_finish(client, [client.submit(int, "7")])] == [7]
+        assert [value for _, value, _ in as_they_finish(client, [client.submit(int, "7")])] == [7]
         client.cluster.scale(0)
         while client.nthreads():
             time.sleep(0.05)
@@ -82,3 +82,35 @@ def test_a_scheduler_without_workers(monkeypatch: pytest.MonkeyPatch) -> None:
         dask_client(1, cluster.scheduler_address),
     ):
         pass
+
+
+@pytest.mark.slow
+def test_what_is_lost_with_its_worker_holds_up_nothing_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A worker that dies with a result, as after a machine has slept: it is waited for in vain."""
+    with dask_client(1) as client:
+        lost, other = client.submit(int, "7"), client.submit(int, "8")
+        wait([lost, other])
+        result = Future.result
+        waited: list[str | None] = []
+
+        def late(future: Future, timeout: str | None = None) -> int:
+            if future.key == lost.key and not waited:
+                waited.append(timeout)
+                raise TimeoutError
+            value: int = result(future, timeout)
+            return value
+
+        monkeypatch.setattr(Future, "result", late)
+        found = [value for _, value, _ in as_they_finish(client, [lost, other])]
+        assert sorted(found) == [7, 8]
+        assert len(waited) == 1
+
+
+@pytest.mark.slow
+def test_what_failed_comes_with_its_error() -> None:
+    with dask_client(1) as client:
+        ((_, value, failed),) = as_they_finish(client, [client.submit(int, "seven")])
+        assert value is None
+        assert isinstance(failed, ValueError)

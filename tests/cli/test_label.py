@@ -267,11 +267,15 @@ def test_the_page_shows_pictures_and_takes_keys(seen: Path) -> None:
         assert now is not None
         assert (state["question"], state["pictures"]) == (now.text, len(now.pictures))
         assert got(f"{page.address}picture/0?1") == (seen / now.pictures[0]).read_bytes()
-        after = json.loads(got(f"{page.address}key", key="y"))
+        after = json.loads(got(f"{page.address}key/{state['of']}", key="y"))
         assert after["labels"] == 1
         assert after["when"] != state["when"]
         assert not after["ended"]
-        back = json.loads(got(f"{page.address}key", key="b"))
+        # A tab that still shows the question before labels nothing, and shows this one.
+        for key in "ynsb":
+            stale = json.loads(got(f"{page.address}key/{state['of']}", key=key))
+            assert (stale["labels"], stale["of"]) == (1, after["of"])
+        back = json.loads(got(f"{page.address}key/{after['of']}", key="b"))
         assert (back["question"], back["when"]) == (now.text, state["when"])
         assert back["label"] == "yes"
         assert json.loads(got(f"{page.address}key", key="q"))["ended"]
@@ -332,7 +336,8 @@ def test_a_label_that_cannot_be_written_ends_the_page(
     with Session([seen]) as session, served(session) as (page, ended):
         with monkeypatch.context() as patch:
             patch.setattr(os, "fsync", full)
-            state = json.loads(got(f"{page.address}key", key="n"))
+            shown = json.loads(got(f"{page.address}state"))["of"]
+            state = json.loads(got(f"{page.address}key/{shown}", key="n"))
         assert state["ended"]
         assert "labels before are kept" in state["broken"]
         for _ in range(100):

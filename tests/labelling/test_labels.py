@@ -2,12 +2,14 @@
 
 import json
 import os
+import shutil
 from codecs import BOM_UTF8
 from pathlib import Path
 
 import pytest
 
 from tests.labelling.robot import Truths
+from tpvqa.bench.labelled_episodes import label_episodes
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import CalibrationError, WriteError
 from tpvqa.labelling import LABELS, Labels, read_labels, read_recorded
@@ -158,3 +160,14 @@ def test_one_label_holds_for_one_truth(folders: list[Path], truths: Truths) -> N
             assert len(right) == 1
             answers += len(asking.of_vlm)
     assert answers == len(truths)
+
+
+def test_a_copy_of_an_episode_does_not_count_twice(folders: list[Path], tmp_path: Path) -> None:
+    copy, link = tmp_path / "copy", tmp_path / "link"
+    shutil.copytree(folders[0], copy)
+    link.symlink_to(folders[0])
+    for other in (copy, link):
+        with pytest.raises(CalibrationError, match="is a copy of"):
+            Session([folders[0], other])
+        with pytest.raises(CalibrationError, match="is a copy of"):
+            label_episodes([folders[0], other])

@@ -133,8 +133,9 @@ def run_abroad_bench(
     declared = bench.declared(folder, calibrating, version)
     if not declared.wanted:
         raise BenchError(
-            "There is nothing to run: none of these parts has a task. Name domains of others with "
-            "--others FOLDER, see experiments/tools/others_domains.py"
+            "There is nothing to run: none of these parts has such a task. `--parts` and `--tasks` "
+            "choose; domains of others are named with --others FOLDER, see "
+            "experiments/tools/others_domains.py"
         )
     ledger = run_bench(
         replace(declared, wanted={}) if only_tables else declared,

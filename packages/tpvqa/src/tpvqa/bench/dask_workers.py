@@ -60,8 +60,10 @@ def dask_client(workers: int, scheduler: str | None = None) -> "Iterator[Client]
             cluster.close()
 
 
-def as_they_finish(client: "Client", futures: "Iterable[Future]") -> "Iterator[Future]":
-    """Futures, each once it is finished.
+def as_they_finish(
+    client: "Client", futures: "Iterable[Future]"
+) -> "Iterator[tuple[Future, Any, BaseException | None]]":
+    """Futures, each once it is finished, with what came of it, or the error that it ended with.
 
     Raises:
         BenchError: No worker is left that could finish them.
@@ -72,8 +74,13 @@ def as_they_finish(client: "Client", futures: "Iterable[Future]") -> "Iterator[F
     while left:
         try:
             for future in as_completed(list(left), timeout=f"{WAIT}s"):
+                try:
+                    failed = future.exception(timeout=f"{WAIT}s")
+                    value = None if failed else future.result(timeout=f"{WAIT}s")
+                except TimeoutError:  # lost with its worker: it comes again, others before it
+                    continue
                 left.discard(future)
-                yield future
+                yield future, value, failed
         except TimeoutError as error:
             if not client.nthreads():
                 raise BenchError(

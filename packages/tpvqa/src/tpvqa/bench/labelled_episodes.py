@@ -18,7 +18,7 @@ from tpvqa.episodes.log import episode_folder
 from tpvqa.errors import CalibrationError
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.events import Acted, Waited
-from tpvqa.labelling import LABELS, RecordedEpisode, read_recorded
+from tpvqa.labelling import LABELS, RecordedEpisode, check_apart, read_recorded
 from tpvqa.labelling.inferring import inferred_rows, likelier
 from tpvqa.labelling.recorded import said_in_trial
 from tpvqa.labelling.rows import answers_some, labelled_rows
@@ -104,11 +104,13 @@ def label_episodes(
 
     Raises:
         CalibrationError: An episode holds the truth of some actions only, another VLM answered in
-            it, or its labels are damaged, or are all there is and answer no question.
+            it, it is a copy of another, its labels are damaged, or they are all there is and
+            answer no question.
         EpisodeError: There is no episode, or it is damaged.
     """
     rows: list[LabelledAnswer] = []
     heard = OwnWords()
+    seen: list[RecordedEpisode] = []
     labelled: list[RecordedEpisode] = []
     untold: list[RecordedEpisode] = []
     idle: list[Path] = []
@@ -121,6 +123,8 @@ def label_episodes(
         vlm = in_full(vlm) if vlm else answered
         check_vlm(folder, answered, vlm)
         recorded = read_recorded(folder)
+        seen.append(recorded)
+        check_apart(seen)
         true = any(map(_tells_truth, events))
         file = recorded.folder / LABELS
         useless = file.exists() and not answers_some(recorded)

@@ -123,14 +123,11 @@ def _on_dask(
             client.submit(run_batch, *given(batch), pure=False, retries=RETRIES): batch
             for batch in todo
         }
-        for future in as_they_finish(client, futures):
+        for future, values, failed in as_they_finish(client, futures):
             batch = futures.pop(future)
-            failed = future.exception()
             yield (
                 batch,
-                _rows(future.result())
-                if failed is None
-                else _failed(batch, given(batch)[1], repr(failed)),
+                _rows(values) if failed is None else _failed(batch, given(batch)[1], repr(failed)),
             )
 
 

@@ -5,6 +5,7 @@ import json
 import secrets
 import sys
 from functools import cached_property
+from hashlib import sha256
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
@@ -113,12 +114,28 @@ class LabelPage:
             "when": None if asking is None else when(asking),
             "pictures": 0 if asking is None else len(asking.pictures),
             "number": secrets.token_hex(4),  # so that no browser shows an earlier picture
+            "of": self._of,
             "label": None if asking is None else session.label_of(asking),
         }
 
-    def press(self, key: str) -> bool:
-        """Do what a key says; whether to go on."""
+    @property
+    def _of(self) -> str:
+        """Tells the question that is shown now from others."""
+        asking = self._session.now
+        key = None if asking is None else (str(asking.episode), *asking.key)
+        return sha256(repr(key).encode()).hexdigest()[:16]
+
+    def press(self, key: str, of: str) -> bool:
+        """Do what a key says; whether to go on.
+
+        Args:
+            key: Which.
+            of: The question that was shown when it was pressed: where another tab has gone on
+                since, nothing but to quit is done.
+        """
         with self._one:
+            if of != self._of and key != "q":
+                return True
             try:
                 return not self._over and press(self._session, key)
             except TpvqaError as error:
@@ -183,7 +200,8 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         page = self.server.page
-        if self._what() != "key":
+        what, _, of = (self._what() or "").partition("/")
+        if what != "key":
             self._refuse(HTTPStatus.NOT_FOUND, "nothing is here")
             return
         length = _number(self.headers.get("Content-Length", ""))
@@ -191,7 +209,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._refuse(HTTPStatus.BAD_REQUEST, "what is said is too long")
             return
         key = self.rfile.read(length).decode(errors="replace")
-        going = page.press(key)
+        going = page.press(key, of)
         self._send_state(ended=not going)
         if not going:
             page.end()

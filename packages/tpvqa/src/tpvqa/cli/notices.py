@@ -110,12 +110,15 @@ def about_said(trial: "Trial") -> Iterator[str]:
             yield f"{priors}{line}: {each.says}. {each.remedy}"
 
 
-def about_calibration(vlm: str, calibration: "Calibration | None") -> list[str]:
+def about_calibration(
+    vlm: str, calibration: "Calibration | None", task: "Task | None" = None
+) -> list[str]:
     """What to know of what a VLM's answers are taken to be worth.
 
     Args:
         vlm: Specification of the VLM.
         calibration: What the monitor is told; None for nothing.
+        task: What is asked about.
     """
     notices = []
     if calibration is None and vlm != "oracle":  # which is always right
@@ -125,6 +128,14 @@ def about_calibration(vlm: str, calibration: "Calibration | None") -> list[str]:
         )
     if calibration is not None and calibration.vlm not in ("", vlm):
         notices.append(f"the calibration was learnt of {calibration.vlm}, and this VLM is {vlm}")
+    if calibration is not None and task is not None:
+        told = {group.predicate for group in calibration.groups if group.predicate}
+        here = {*task.predicates, *(schema.name for schema in task.schemas)}
+        if told and told.isdisjoint(here):
+            notices.append(
+                f"the calibration was learnt of another domain ({', '.join(sorted(told)[:3])} …): "
+                "of each question it tells what it knows of all"
+            )
     return notices
 
 

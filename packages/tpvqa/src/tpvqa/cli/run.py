@@ -281,7 +281,7 @@ def _about_calibration(trial: "Trial") -> list[str]:
             f"how far to trust {known.vlm} was learned with another VLM or calibration, and is "
             "learned anew; how often actions fail is taken over"
         )
-    return [*notices, *about_calibration(vlm, calibration)]
+    return [*notices, *about_calibration(vlm, calibration, trial.task)]
 
 
 def _keep_experience(trial: "Trial", ended: "Ended") -> "WriteError | None":

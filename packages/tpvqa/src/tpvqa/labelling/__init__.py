@@ -1,7 +1,7 @@
 """Labelling recorded episodes: what to ask a person next, and what their labels teach."""
 
 from tpvqa.labelling.labels import LABELS, Label, Labels, read_labels
-from tpvqa.labelling.recorded import Asking, Given, RecordedEpisode, read_recorded
+from tpvqa.labelling.recorded import Asking, Given, RecordedEpisode, check_apart, read_recorded
 from tpvqa.labelling.session import Session
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "Labels",
     "RecordedEpisode",
     "Session",
+    "check_apart",
     "read_labels",
     "read_recorded",
 ]

@@ -1,6 +1,6 @@
 """What was asked in a recorded episode, put together by what one label answers."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -8,6 +8,7 @@ from typing import Literal
 
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import LOG, episode_folder, whole_lines
+from tpvqa.errors import CalibrationError
 from tpvqa.events import Event, Exchange, Resumed, Started, TrialState
 from tpvqa.events.events import Acted, Acting, Answered, Observed, QuestionRecord
 from tpvqa.files import opened_plain
@@ -118,6 +119,22 @@ def read_recorded(folder: Path | str) -> RecordedEpisode:
         tuple(gathering.askings()),
         tuple(gathering.done),
     )
+
+
+def check_apart(episodes: Iterable[RecordedEpisode]) -> None:
+    """See that no episode is the copy of another, whose answers would count twice.
+
+    Raises:
+        CalibrationError: One is.
+    """
+    known: dict[str, Path] = {}
+    for episode in episodes:
+        first = known.setdefault(episode.log, episode.folder)
+        if first != episode.folder:
+            raise CalibrationError(
+                f"{episode.folder} is a copy of {first}: its answers would count twice. Give one "
+                "of them"
+            )
 
 
 def said_in_trial(asking: Asking) -> Literal["yes", "no"] | None:

@@ -10,7 +10,7 @@ from tpvqa.episodes.log import episode_folder
 from tpvqa.errors import CalibrationError
 from tpvqa.labelling.labels import Labels, Said
 from tpvqa.labelling.order import Order, Standing
-from tpvqa.labelling.recorded import Asking, read_recorded, said_in_trial
+from tpvqa.labelling.recorded import Asking, check_apart, read_recorded, said_in_trial
 
 KEYS: dict[str, Said] = {"y": "yes", "n": "no", "c": "cannot see"}
 """Keys that label. The others are s (skip), b (back) and q (quit)."""
@@ -49,13 +49,14 @@ class Session:
         now: The question to label now; None where there is none left.
 
     Raises:
-        CalibrationError: Different VLMs answered in the episodes, nothing was asked in any, or
-            labels that there are are damaged.
+        CalibrationError: Different VLMs answered in the episodes, one is a copy of another,
+            nothing was asked in any, or labels that there are are damaged.
         EpisodeError: There is no episode, or it is damaged.
     """
 
     def __init__(self, folders: Sequence[Path | str], *, vlm: str | None = None):
         episodes = [read_recorded(folder) for folder in dict.fromkeys(map(episode_folder, folders))]
+        check_apart(episodes)
         self.vlm = vlm or episodes[0].started.vlm
         for episode in episodes:
             check_vlm(episode.folder, episode.started.vlm, self.vlm)
