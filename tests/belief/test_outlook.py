@@ -66,6 +66,16 @@ def test_what_has_to_be_done_unseen_is_not_worth_more_tries_in_vain() -> None:
     assert ahead.dearer > 2
 
 
+def test_what_no_try_can_show_is_given_up_after_twice_as_many() -> None:
+    """Where it is doubtful throughout whether it could have worked, as in 236 tries of a trial."""
+    ahead = _outlook(failure=50.0)
+    ahead.add(_known())
+    for vain, dead, given_up in ((39.0, 0.98, False), (40.0, 0.98, True), (99.0, 0.5, False)):
+        tried = SkillState(0.99, dead, 1.3, 0.45, dead, vain=vain)
+        ahead.learned({ACTIONS[0]: tried}.__getitem__, Rates())
+        assert ahead.given_up(ACTIONS[0]) is given_up
+
+
 def test_what_is_closed_is_not_chosen() -> None:
     done, other = Choice(None, TASK.init), Choice(ACTIONS[0], TASK.init)
     work = np.ones((2, 1, 2))

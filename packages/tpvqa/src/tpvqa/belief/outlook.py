@@ -157,12 +157,13 @@ class Outlook:
         skill = self.skill(action)
         won = (1 - skill.failure) * self._lost_seen
         hopeless = skill.dead >= NAMED and won < self._costs.action
-        tried = skill.shown >= SHOWN and self._tried_enough(skill)
+        # Where it is doubtful throughout whether it could have worked, no tries ever show it.
+        tried = self._tried_enough(skill, 1 if skill.shown >= SHOWN else 2)
         return tried and (skill.dead >= GIVEN_UP or hopeless)
 
-    def _tried_enough(self, skill: SkillState) -> bool:
+    def _tried_enough(self, skill: SkillState, times: float = 1) -> bool:
         """Whether so much was spent on tries in vain that it may be given up."""
-        return skill.vain * self._costs.action >= FOREGONE * self._lost_seen
+        return skill.vain * self._costs.action >= times * FOREGONE * self._lost_seen
 
     def blocked(self, number: int) -> bool:
         """Whether the way from a joint state leads through a skill that is given up."""
