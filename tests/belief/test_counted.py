@@ -8,8 +8,8 @@ from tpvqa.belief.chances import Chances
 from tpvqa.belief.counted import Came, CountedFaults, LabelledAct, SkillCount, count_faults
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.faults import Rates
-from tpvqa.belief.skills import NAMED
-from tpvqa.belief.spread import ALIKE, TRIES, alike
+from tpvqa.belief.skills import ALIKE, NAMED
+from tpvqa.belief.spread import TRIES, alike
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.pddl import Action, Conjunction
 
@@ -20,7 +20,7 @@ GRASP, PUSH, NEVER_SEEN = (
 
 def acts(action: str, failed: int, worked: int) -> list[LabelledAct]:
     came = [Came.FAILURE] * failed + [Came.SUCCESS] * worked
-    return [LabelledAct(f"{n}", action, each, None) for n, each in enumerate(came)]
+    return [LabelledAct(f"{n % 10}", action, each, None) for n, each in enumerate(came)]
 
 
 def test_actions_are_counted_by_skill_and_by_what_came_undone() -> None:

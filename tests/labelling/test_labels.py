@@ -171,3 +171,15 @@ def test_a_copy_of_an_episode_does_not_count_twice(folders: list[Path], tmp_path
             Session([folders[0], other])
         with pytest.raises(CalibrationError, match="is a copy of"):
             label_episodes([folders[0], other])
+
+
+def test_episodes_that_only_begin_alike_both_count(folders: list[Path]) -> None:
+    """As of one command that was run often: its start took equally long twice."""
+    first, second = ((each / LOG).read_bytes().splitlines(keepends=True) for each in folders[:2])
+    (folders[1] / LOG).write_bytes(b"".join([first[0], *second[1:]]))
+    episodes = [read_recorded(each) for each in folders[:2]]
+    assert episodes[0].log == episodes[1].log
+    assert label_episodes(folders[:2]).rows
+    (folders[1] / LOG).write_bytes(b"".join(first[:-1]))  # one that was gone on with later
+    with pytest.raises(CalibrationError, match="is a copy of"):
+        label_episodes(folders[:2])

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from tpvqa.belief.bounds import MOST
 from tpvqa.belief.counted import CountedFaults
 from tpvqa.belief.faults import Rates
-from tpvqa.belief.skills import Skills, SkillState
-from tpvqa.belief.spread import ALIKE, SURE, alike
+from tpvqa.belief.skills import ALIKE, Skills, SkillState
+from tpvqa.belief.spread import SURE, alike
 from tpvqa.pddl import Action
 
 

@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import tee
 
 from pydantic import ConfigDict, Field
 
@@ -126,9 +125,7 @@ def count_faults(acts: Iterable[LabelledAct]) -> CountedFaults | None:
 
 def _together(acts: Iterable[LabelledAct]) -> tuple[tuple[int, int, int], ...]:
     """In how many trials so many tries with the same objects failed, and so many worked."""
-    failed, worked = (
-        Counter((act.trial, act.objects) for act in told if act.came is came)
-        for told, came in zip(tee(acts), (Came.FAILURE, Came.SUCCESS), strict=True)
-    )
-    trials = Counter((failed[key], worked[key]) for key in failed.keys() | worked.keys())
+    came = Counter((act.trial, act.objects, act.came) for act in acts)
+    tried = {each[:2] for each in came if each[2] in (Came.FAILURE, Came.SUCCESS)}
+    trials = Counter((came[*each, Came.FAILURE], came[*each, Came.SUCCESS]) for each in tried)
     return tuple((*tries, often) for tries, often in sorted(trials.items()))

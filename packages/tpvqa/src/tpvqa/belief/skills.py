@@ -15,10 +15,16 @@ import numpy as np
 from tpvqa.belief.belief import LOOKED_BACK
 from tpvqa.belief.faults import Rates
 from tpvqa.belief.information import Floats
-from tpvqa.belief.spread import ALIKE, DEAD, DEAD_WITH
 from tpvqa.belief.tries import EDGE, RATES, Run, Tried
 from tpvqa.pddl import Action
 
+ALIKE = 12.0
+"""How many tries of a skill the rates of the others are worth."""
+DEAD = 0.02
+"""Chance that a skill never works."""
+DEAD_WITH = 0.02
+"""Chance that a skill never works with what it is tried with: with one of the objects in its place,
+or with just these together, one as probable as the other."""
 SUSPECT = 0.1
 """Where an action is dead with this probability, what it needs is doubted first."""
 CLOSELY = 0.3

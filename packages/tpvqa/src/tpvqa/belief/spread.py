@@ -9,14 +9,8 @@ from functools import lru_cache
 from math import exp, lgamma, log, log1p
 
 from tpvqa.belief.counted import SkillCount
+from tpvqa.belief.skills import ALIKE, DEAD, DEAD_WITH
 
-ALIKE = 12.0
-"""How many tries of a skill the rates of the others are worth."""
-DEAD = 0.02
-"""Chance that a skill never works."""
-DEAD_WITH = 0.02
-"""Chance that a skill never works with what it is tried with: with one of the objects in its place,
-or with just these together, one as probable as the other."""
 TRIES = (ALIKE, 25.0, 50.0)
 """How many tries of an action in a trial the mean of its skill may be worth."""
 SURE = 40.0

@@ -124,7 +124,6 @@ def label_episodes(
         check_vlm(folder, answered, vlm)
         recorded = read_recorded(folder)
         seen.append(recorded)
-        check_apart(seen)
         true = any(map(_tells_truth, events))
         file = recorded.folder / LABELS
         useless = file.exists() and not answers_some(recorded)
@@ -146,6 +145,7 @@ def label_episodes(
         else:
             untold.append(recorded)
         done()
+    check_apart(seen)
     by_hand, labels = labelled_rows(labelled)
     rows += by_hand
     if lacking and not (rows or untold):

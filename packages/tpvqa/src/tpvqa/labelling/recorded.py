@@ -127,14 +127,24 @@ def check_apart(episodes: Iterable[RecordedEpisode]) -> None:
     Raises:
         CalibrationError: One is.
     """
-    known: dict[str, Path] = {}
+    known: dict[str, list[Path]] = {}
     for episode in episodes:
-        first = known.setdefault(episode.log, episode.folder)
-        if first != episode.folder:
-            raise CalibrationError(
-                f"{episode.folder} is a copy of {first}: its answers would count twice. Give one "
-                "of them"
-            )
+        alike = known.setdefault(episode.log, [])
+        for first in alike:
+            if _goes_on(first / LOG, episode.folder / LOG):
+                raise CalibrationError(
+                    f"{episode.folder} is a copy of {first}: its answers would count twice. Give "
+                    "one of them"
+                )
+        alike.append(episode.folder)
+
+
+def _goes_on(one: Path, other: Path) -> bool:
+    """Whether one of two logs is the other, or goes on with it. That they begin alike says little:
+    the same command does, run often enough."""
+    with opened_plain(one) as first, opened_plain(other) as second:
+        both = zip(whole_lines(first), whole_lines(second), strict=False)
+        return all(line == same for line, same in both)
 
 
 def said_in_trial(asking: Asking) -> Literal["yes", "no"] | None:
@@ -161,8 +171,8 @@ def view_of(observed: Observed) -> str | None:
 
 
 def _fingerprint(path: Path) -> str:
-    """Of the first line of a log, which no other log has and which stays when it is gone on with:
-    times and seeds stand in it."""
+    """Of the first line of a log, which hardly another log has and which stays when it is gone on
+    with: times and seeds stand in it."""
     with opened_plain(path) as descriptor:
         return sha256(next(whole_lines(descriptor))).hexdigest()[:12]
 
