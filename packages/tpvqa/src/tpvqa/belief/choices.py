@@ -94,8 +94,9 @@ class Chooser:
         self._decided = None
         self.seeking.acted()
         self._doing.acted(action, belief.ranked())
-        self.rounds.acted(belief.ranked()[0][0], action)
-        state = self._model.state(belief.ranked()[0][0])
+        number = belief.ranked()[0][0]
+        self.rounds.acted(action, belief.ranked(), self._model.outcomes(action)[number].intended)
+        state = self._model.state(number)
         if self.settles < SETTLED and not self.follows(action, state):
             self._unseen.follow(action)
         self._unseen.acted(action, state)
@@ -169,8 +170,7 @@ class Chooser:
                 found += [(each, column, work[each]) for column in self._ends(ranked)]
                 continue
             more = 0.0 if self._in(each, current) else self._costs.replan
-            dearer = self.rounds.dearer(each.action, ranked[0][0], self.ahead.progress, undone)
-            more += self.settles * dearer if blind else dearer
+            more += self.rounds.dearer(each.action, ranked, self.ahead.progress, undone)
             seen = self._column(each.action, ranked, kinds, rates) + more
             if self.settles >= SETTLED:
                 found.append((each, seen, work[each]))
