@@ -17,7 +17,7 @@ from tpvqa.config import TrialConfig
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import CalibrationError
-from tpvqa.labelling import LABELS
+from tpvqa.labelling import LABELS, Labels, read_recorded
 from tpvqa.labelling.labels import Said
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom
@@ -87,6 +87,19 @@ def test_labels_that_answer_nothing_leave_what_the_world_knows(
     found = label_episodes([tmp_path / "e"])
     assert found.rows == live
     assert f"{LABELS} answers none of the episode's questions" in found.fit().notices[-1]
+
+
+def test_labels_of_no_question_are_told_beside_those_that_count(tmp_path: Path) -> None:
+    recorded(CONFIG, tmp_path / "e")
+    label_nothing(tmp_path / "e", "yes")
+    episode = read_recorded(tmp_path / "e")
+    labels = Labels(episode)
+    labels.append(episode.askings[0], "yes")
+    labels.close()
+    found = label_episodes([tmp_path / "e"])
+    assert found.by_hand == 1
+    told = '1 label is of no question that was asked, and counts for nothing: "What?" (stretch '
+    assert told in found.fit().notices[-1]
 
 
 def test_two_vlms_do_not_mix(tmp_path: Path) -> None:

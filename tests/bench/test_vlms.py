@@ -5,6 +5,7 @@ import json
 import random
 from collections.abc import Sequence
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 
 import numpy as np
@@ -380,6 +381,10 @@ def test_episodes_are_asked_again(tpvqa: Run) -> None:  # noqa: F811
     embedded, oracle = json.loads(out)["vlms"]
     assert oracle["score"]["accuracy"]["value"] == 1
     assert embedded["score"]["answers"] == oracle["score"]["answers"] > 0
+    copytree("one", "copy")
+    code, _, err = tpvqa("vlm", "compare", "oracle", "--episodes", "one", "--episodes", "copy")
+    assert code == 2
+    assert "is a copy of" in err
 
 
 @pytest.mark.parametrize(

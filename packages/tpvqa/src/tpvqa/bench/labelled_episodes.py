@@ -1,8 +1,8 @@
 """Answers beside the truth, from recorded episodes: a world's, a person's, or what is probable."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,7 +21,7 @@ from tpvqa.events.events import Acted, Waited
 from tpvqa.labelling import LABELS, RecordedEpisode, check_apart, read_recorded
 from tpvqa.labelling.inferring import inferred_rows, likelier
 from tpvqa.labelling.recorded import said_in_trial
-from tpvqa.labelling.rows import answers_some, labelled_rows
+from tpvqa.labelling.rows import answers_some, labelled_rows, stray_labels
 from tpvqa.labelling.session import check_vlm
 from tpvqa.pddl import Atom, Task, task_from_text
 from tpvqa.vlm.making import as_logged, in_full
@@ -48,6 +48,7 @@ class Labelled:
         inferred: Answers of which later steps told what was probably right.
         unused: Episodes without truth and without labels, where there are labels elsewhere.
         idle: Files of labels that say of no question what was right.
+        stray: What is to be told of labels that are of no question.
     """
 
     vlm: str
@@ -57,6 +58,7 @@ class Labelled:
     inferred: int = 0
     unused: int = 0
     idle: tuple[Path, ...] = ()
+    stray: tuple[str, ...] = ()
 
     @property
     def plain(self) -> list[LabelledAnswer]:
@@ -74,7 +76,7 @@ class Labelled:
         notices = list(found.notices)
         if self.inferred:
             notices.append(_INFERRED)
-        notices += map(_says_nothing, self.idle)
+        notices += [*map(_says_nothing, self.idle), *self.stray]
         if self.unused:
             said = "1 episode has" if self.unused == 1 else f"{self.unused} episodes have"
             notices.append(f"{said} neither labels nor the truth, and taught nothing.")
@@ -114,6 +116,7 @@ def label_episodes(
     labelled: list[RecordedEpisode] = []
     untold: list[RecordedEpisode] = []
     idle: list[Path] = []
+    stray: list[str] = []
     lacking = 0
     for folder in map(str, dict.fromkeys(map(episode_folder, folders))):
         events = read_episode(folder)
@@ -131,6 +134,7 @@ def label_episodes(
             idle.append(file)
         if file.exists() and not useless:
             labelled.append(recorded)
+            stray += _of_no_question(file, stray_labels(recorded))
             if true:
                 with suppress(CalibrationError):  # it may be known of some actions alone
                     heard.acts.extend(_label(events, started, folder).own.acts)
@@ -152,9 +156,24 @@ def label_episodes(
         raise CalibrationError(f"{_says_nothing(idle[0])} Nothing else tells what was right")
     if rows or not untold:
         unused = len(untold) + lacking
-        return Labelled(vlm or "", rows, heard, by_hand=labels, unused=unused, idle=tuple(idle))
-    inferred = inferred_rows(untold, vlm or "")
-    return Labelled(vlm or "", inferred, heard, inferred=len(inferred) // 2, idle=tuple(idle))
+        told = Labelled(vlm or "", rows, heard, by_hand=labels, unused=unused)
+    else:
+        inferred = inferred_rows(untold, vlm or "")
+        told = Labelled(vlm or "", inferred, heard, inferred=len(inferred) // 2)
+    return replace(told, idle=tuple(idle), stray=tuple(stray))
+
+
+def _of_no_question(file: Path, labels: Sequence[tuple[int, str]]) -> list[str]:
+    if not labels:
+        return []
+    (stretch, text), *others = labels
+    said = f"{len(labels)} labels are" if others else "1 label is"
+    return [
+        f"{file}: {said} of no question that was asked, and count{'' if others else 's'} for "
+        f'nothing: "{text}" (stretch {stretch})'
+        + (", …" if others else "")
+        + f". Label anew (`tpvqa label {file.parent}`), or remove the lines."
+    ]
 
 
 def _says_nothing(file: Path) -> str:

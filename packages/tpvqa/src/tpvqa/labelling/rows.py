@@ -47,6 +47,16 @@ def answers_some(episode: RecordedEpisode) -> bool:
     return any(told.get(each.key) in ("yes", "no") and each.of_vlm for each in episode.askings)
 
 
+def stray_labels(episode: RecordedEpisode) -> tuple[tuple[int, str], ...]:
+    """The labels beside an episode that are of no question which was asked in it, by when and what.
+
+    Raises:
+        CalibrationError: The file of labels is damaged.
+    """
+    asked = {each.key for each in episode.askings}
+    return tuple(key for key in read_labels(episode) if key not in asked)
+
+
 def _fact(asking: Asking) -> tuple[int, object]:
     """The same for all wordings in which a fact is asked about, as one label holds for all."""
     return asking.stretch, asking.atoms or asking.text

@@ -15,6 +15,7 @@ from tpvqa.errors import CalibrationError
 from tpvqa.events import Started
 from tpvqa.events.events import Asked, Observed, QuestionRecord
 from tpvqa.events.records import observation_from
+from tpvqa.labelling import check_apart, read_recorded
 from tpvqa.labelling.recorded import OF_FACTS
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom, Literal, Task, task_from_text
@@ -66,12 +67,15 @@ def looks_of_episodes(
         wordings: Questions files whose words are taken instead, for facts.
 
     Raises:
-        CalibrationError: Of an episode nobody knows what was right, or it has no pictures.
+        CalibrationError: Of an episode nobody knows what was right, it has no pictures, or it is a
+            copy of another.
         EpisodeError: There is no episode, or it is damaged.
         QuestionsError: A questions file does not fit an episode's domain.
     """
     found: list[LabelledLook] = []
-    for folder in dict.fromkeys(map(episode_folder, folders)):
+    episodes = dict.fromkeys(map(episode_folder, folders))
+    check_apart(map(read_recorded, episodes))
+    for folder in episodes:
         told = label_episodes([folder])
         if told.inferred or not told.rows:
             raise CalibrationError(
