@@ -194,6 +194,30 @@ def test_every_decision_explains_itself_from_the_numbers(plain: Plain) -> None:
     assert told > 12
 
 
+def test_what_moved_against_its_own_answers_moved_by_others(plain: Plain) -> None:
+    told = re.compile(r"(not )?[^;]*? (\d\.\d\d) → (\d\.\d\d) after ([a-z0-9 ]+)(, by what else)?")
+    numbers = ("a", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+    against = 0
+
+    def number(said: str) -> int:
+        return numbers.index(said) + 1 if said in numbers else int(said)
+
+    for n in range(30):
+        for event in plain(0.7, n)[1]:
+            if not isinstance(event, Decided) or event.when == "before":
+                continue
+            for denied, before, now, words, else_ in told.findall(event.reason):
+                said = dict(each.split()[::-1] for each in words.split(" and "))
+                yeses, noes = (
+                    number(said.get(one) or said.get(many, "0"))
+                    for one, many in (("yes", "yeses"), ("no", "noes"))
+                )
+                risen = (float(now) - float(before)) * (-1 if denied else 1)
+                assert bool(else_) == (risen * (yeses - noes) < 0), event.reason
+                against += bool(else_)
+    assert against
+
+
 def likely(event: Decided, literal: Literal) -> float:
     p = event.belief.get(literal.atom.pddl(), 1.0)
     return p if literal.positive else 1 - p

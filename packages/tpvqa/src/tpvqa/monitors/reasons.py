@@ -13,6 +13,7 @@ from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated
 from tpvqa.pddl import Action, Atom, Literal, State
 from tpvqa.questions import FactWords
+from tpvqa.vlm import Reply
 
 SAID = 2
 """Facts that a reason names, at most."""
@@ -277,6 +278,8 @@ def _fact(grounds: Grounds, need: Literal, *, needing: bool = True) -> str:
         by = [] if noticed is None else list(noticed.by)
         by += [] if told is None else [f"after {words(told.replies)}"]
         text += f" {' and '.join(by)}"
+        if told is not None and noticed is None and _against(grounds, told):
+            text += ", by what else was answered"
     elif not grounds.step.book.asked(Literal(need.atom)):
         pass  # bookkeeping that nothing shows
     elif not grounds.questions_left:
@@ -289,6 +292,13 @@ def _fact(grounds: Grounds, need: Literal, *, needing: bool = True) -> str:
     if needing and place is not None and grounds.plan is not None:
         text += f", which {_consumer(grounds, grounds.plan, place)} needs"
     return text
+
+
+def _against(grounds: Grounds, told: Replies) -> bool:
+    """Whether a fact has become more probable against most of its answers, or less so."""
+    risen = grounds.belief.probability(told.atoms[0], told.atoms[1:]) - told.before
+    more = told.replies.count(Reply.YES) - told.replies.count(Reply.NO)
+    return risen * more < 0 and _figure(risen + told.before) != _figure(told.before)
 
 
 def _consumer(grounds: Grounds, plan: AnnotatedPlan, place: int) -> str:
