@@ -235,6 +235,11 @@ def test_actions_that_are_never_possible_are_told_with_what_they_lack(files: Fil
     assert found[0].line == files.line("domain.pddl", "(:action polish")
 
 
+def test_a_goal_that_names_a_fact_twice_can_be_reached(files: Files) -> None:
+    files.change("problem.pddl", "(:goal (and ", "(:goal (and (lies lid out_tray) ")
+    assert not [each for each in files.found() if each.kind == "goal-unreachable"]
+
+
 def test_what_a_disturbance_brings_about_hides_no_other_impossible_action(files: Files) -> None:
     """What falls back onto a tray makes neither a curse, nor what rests on it, possible."""
     extra = """

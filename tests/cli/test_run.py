@@ -141,6 +141,10 @@ def test_experience_is_kept_for_one_vlm_and_by_whoever_goes_on(tpvqa: Run) -> No
     assert two is not None
     assert (two.vlm, two.trials) == ("oracle:0.9", 2)
     assert sum(two.failure) > sum(one.failure)
+    assert "another domain" not in err
+    code, _, err = tpvqa("run", "build_tower", *words, "--vlm", "oracle:0.9", "--out", "three")
+    assert code == 0
+    assert f"learned in another domain, {two.domain};" in err
 
 
 def test_without_a_questions_file_the_fallbacks_are_reported_once(tpvqa: Run) -> None:

@@ -74,6 +74,7 @@ def test_a_skill_is_dead_for_what_is_named_alone() -> None:
         ("pick_up aple", "apple"),
         ("pick_up apple table left left", "takes"),
         ("pick_up left", "takes"),
+        ("pick_up+", r"missing before or behind a \+"),
     ],
 )
 def test_a_dead_skill_that_there_is_not_is_told(text: str, said: str) -> None:

@@ -368,7 +368,8 @@ class Trial:
         if learned is None:
             return None
         known = "" if self.calibration is None else self.calibration.fingerprint
-        return learned.model_copy(update={"vlm": self.vlm_spec, "calibration": known})
+        told = {"vlm": self.vlm_spec, "calibration": known, "domain": self.task.domain_name}
+        return learned.model_copy(update=told)
 
     def close(self) -> None:
         """End planner and world. Can be called twice.

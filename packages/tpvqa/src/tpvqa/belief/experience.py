@@ -44,6 +44,7 @@ class Experience(ToldModel):
             was learned.
         vlm: Which VLM that was.
         calibration: Which calibration (`Calibration.fingerprint`).
+        domain: The name of the last trial's domain; empty in files of before it was kept.
         trials: How many trials that is from.
     """
 
@@ -66,6 +67,7 @@ class Experience(ToldModel):
     )
     vlm: str = ""
     calibration: str = ""
+    domain: str = ""
     trials: Counted = 0
 
     @model_validator(mode="before")

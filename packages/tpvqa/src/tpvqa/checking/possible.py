@@ -154,7 +154,7 @@ def _excluded(action: Action, proved: Mutexes, undone: frozenset[str]) -> str:
 def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
     """A goal that cannot be reached, or for which no plan is found in time."""
     file, line = named(task.problem_path), line_of_goal(task)
-    demanded = [each.atom for each in _needs(task.goal) if each.positive]
+    demanded = dict.fromkeys(each.atom for each in _needs(task.goal) if each.positive)
     for one, other in combinations(demanded, 2):
         if any({one, other} <= group.atoms for group in task.mutex_groups):
             yield Finding(

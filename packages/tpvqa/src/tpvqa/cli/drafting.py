@@ -54,6 +54,6 @@ def write_draft(
         said = {"written": str(target), "to_look_at": unsure, "notices": notices}
         print(json.dumps(said, indent=1))
         return
-    look = f", of which {unsure} {'is' if unsure == 1 else 'are'} marked LOOK" if unsure else ""
+    look = f"; {unsure} {'line is' if unsure == 1 else 'lines are'} marked LOOK" if unsure else ""
     tell(f"{target} is written: {len(task.fluents | task.derived)} questions to read{look}.")
     tell("Edit it, then: tpvqa check, with the same domain and problem.")

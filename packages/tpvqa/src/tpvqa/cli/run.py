@@ -281,6 +281,11 @@ def _about_calibration(trial: "Trial") -> list[str]:
             f"how far to trust {known.vlm} was learned with another VLM or calibration, and is "
             "learned anew; how often actions fail is taken over"
         )
+    if known is not None and known.domain not in ("", trial.task.domain_name):
+        notices.append(
+            f"the experience was learned in another domain, {known.domain}; how often actions "
+            "fail is taken over. Name another file with --experience to learn anew"
+        )
     return [*notices, *about_calibration(vlm, calibration, trial.task)]
 
 

@@ -387,6 +387,7 @@ class BeliefMonitor(Learning, PlainArguments):
             questions_left=self._asking.may_ask,
             actions_left=step.actions_left,
             failing=self._ways.failing(step),
+            settles=self._chooser.settles,
             risk=self._risk,
         )
         errand = "" if self._errand is None else f"{self._errand.why}; "

@@ -21,6 +21,8 @@ SURE = 0.9
 """What is surer than this and was not asked about needs no words."""
 OPEN = 0.05
 """What is less probable than this, or its contrary, is in no doubt that anything has to settle."""
+LITTLE = 0.5
+"""Where answers settle less than this, that is why no plan is worth trying."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +40,7 @@ class Grounds:
         questions_left: Whether anything more may be asked.
         actions_left: Actions that the trial still allows; None for any number.
         failing: That the step's skill seems never to work, in words; empty where it does.
+        settles: How far answers are expected to settle what is in doubt.
         risk: Where "done" may be reported; None for where the goal is likely.
     """
 
@@ -51,6 +54,7 @@ class Grounds:
     questions_left: bool
     actions_left: int | None
     failing: str = ""
+    settles: float = 1.0
     risk: RiskBound | None = None
 
     @property
@@ -124,7 +128,8 @@ def _reason(
         doubt = f"{IN_DOUBT}: " if _stopped(grounds, decision) else ""
         return doubt + "; ".join((*_of_goal(grounds, decision), _end(grounds, decision)))
     missing = [each for each in _needs(grounds) if not each.holds(state)]
-    said = grounds.step.book.say(action)
+    planned = action if place is None else grounds.step.plan.actions[place]
+    said = grounds.step.book.say(planned)  # as its step says it: what is rebound is the same skill
     number = "" if place is None else f" (step {place + 1})"
     if decision is Decision.GO_ON and place == grounds.next:
         return "; ".join((*_why_on(grounds, action, missing), f"{said}{number}"))
@@ -142,7 +147,8 @@ def _reason(
         return "; ".join((*facts, f"replanning from {there}"))
     if place is not None and place > grounds.next:
         return "; ".join((*facts, f"on to {said}{number}, which can be done already: {there}"))
-    return "; ".join((*facts, f"back to {said}{number}: {there}"))
+    undone = _undone(grounds, planned, state) or there
+    return "; ".join((*facts, f"back to {said}{number}: {undone}"))
 
 
 def _needs(grounds: Grounds) -> list[Literal]:
@@ -252,8 +258,15 @@ def _end(grounds: Grounds, decision: Decision) -> str:
         return f"{why}the goal holds with {goal}{_never_seen(grounds)}"
     if not why and grounds.step.replans_left == 0:
         why = "no change of plan is left, and "
+    if not why and grounds.failing:
+        why = "no other way is known, and "
     if not why:
-        why = "no other way is known, and " if grounds.failing else "no plan is worth trying, and "
+        why = "no plan is worth trying, and "
+        if grounds.settles < LITTLE:
+            why = (
+                f"no plan is worth trying, as answers settle {_figure(grounds.settles)} of what "
+                "is in doubt, and "
+            )
     doubt = _settling(grounds) if OPEN < probability < 1 - OPEN and not grounds.failing else ""
     return f"{why}the goal holds with only {goal}{doubt}"
 
@@ -321,6 +334,20 @@ def _instead(grounds: Grounds, missing: Iterable[Literal], state: State) -> str:
     )
     asked = [atom for atom in found if grounds.step.book.asked(Literal(atom))]
     return _list(grounds, [atom for atom in asked if task.groups_of(atom)])
+
+
+def _undone(grounds: Grounds, action: Action, state: State) -> str:
+    """What an action brings about that was believed, and is not any more."""
+    lost = [
+        effect.literal
+        for effect in action.effects
+        if effect.literal.holds(grounds.step.state) and not effect.literal.holds(state)
+    ]
+    asked = [each for each in lost if grounds.step.book.asked(Literal(each.atom))] or lost
+    return " and ".join(
+        f"{grounds.say(missing)} ({_figure(grounds.probability(missing))})"
+        for missing in (Literal(each.atom, not each.positive) for each in asked[:SAID])
+    )
 
 
 def _news(grounds: Grounds, state: State) -> str:

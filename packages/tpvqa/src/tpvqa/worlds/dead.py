@@ -26,9 +26,12 @@ class Dead:
         """Read what a user wrote: `pick_up apple + wash`.
 
         Raises:
-            WorldError: The task has no such action or object, or none of the kind it takes.
+            WorldError: The task has no such action or object, or none of the kind it takes; or
+                nothing stands between two signs.
         """
         parts = [part.strip(" ()").lower().split() for part in (text or "").split("+")]
+        if text and text.strip() and not all(parts):
+            raise WorldError(f"--dead: a skill is missing before or behind a + in {text!r}")
         return cls(tuple(_checked(words, task) for words in parts if words))
 
     def holds(self, action: Action) -> bool:
