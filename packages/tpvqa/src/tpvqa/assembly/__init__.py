@@ -365,11 +365,9 @@ class Trial:
     def experience(self) -> Experience | None:
         """What the monitor has learned, for the next trial; None where it learns nothing."""
         learned = experience_of(self.monitor)
-        if learned is None:
-            return None
         known = "" if self.calibration is None else self.calibration.fingerprint
         told = {"vlm": self.vlm_spec, "calibration": known, "domain": self.task.domain_name}
-        return learned.model_copy(update=told)
+        return None if learned is None else learned.model_copy(update=told)
 
     def close(self) -> None:
         """End planner and world. Can be called twice.

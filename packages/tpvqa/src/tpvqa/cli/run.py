@@ -282,10 +282,8 @@ def _about_calibration(trial: "Trial") -> list[str]:
             "learned anew; how often actions fail is taken over"
         )
     if known is not None and known.domain not in ("", trial.task.domain_name):
-        notices.append(
-            f"the experience was learned in another domain, {known.domain}; how often actions "
-            "fail is taken over. Name another file with --experience to learn anew"
-        )
+        said = f"the experience was learned in another domain, {known.domain}; to learn anew, name"
+        notices.append(f"{said} another file with --experience")
     return [*notices, *about_calibration(vlm, calibration, trial.task)]
 
 
