@@ -185,6 +185,24 @@ def test_what_is_stored_is_in_a_box_and_on_a_shelf(tmp_path: Path) -> None:
     assert "Is the {v} packed in the {b}?" in written
 
 
+@pytest.mark.parametrize(
+    ("second", "asked"),
+    [("bench", "Is the robot at the {s}?"), ("kitchen", "Is the robot in the {s}?")],
+)
+def test_who_stands_at_a_bench_is_not_on_it(second: str, asked: str) -> None:
+    domain = """(define (domain lab) (:types station item - object)
+      (:predicates (robot-at ?s - station) (stored ?i - item ?s - station))
+      (:action take :parameters (?i - item ?s - station)
+        :precondition (and (robot-at ?s) (stored ?i ?s)) :effect (not (stored ?i ?s)))
+      (:action drive :parameters (?from ?to - station)
+        :precondition (robot-at ?from) :effect (and (not (robot-at ?from)) (robot-at ?to))))"""
+    places = f"pantry {second}"
+    problem = f"""(define (problem p) (:domain lab) (:objects {places} - station tube - item)
+      (:init (robot-at pantry) (stored tube {second})) (:goal (not (stored tube {second}))))"""
+    written = yaml.safe_load(draft(task_from_text(domain, problem)))["predicates"]
+    assert written["robot-at"][0] == asked
+
+
 ENDING = """(define (domain set) (:types lamp circuit - object)
   (:predicates (bolted ?l - lamp) (bus-on ?c - circuit) (bus-off ?c - circuit) (metered ?l - lamp))
   (:action undo :parameters (?l - lamp) :precondition (bolted ?l)

@@ -93,6 +93,11 @@ class Phrases:
             return f"{ways.pop()} {noun.said}"
         return f"{written or 'at'} {noun.said}"
 
+    def stood_at(self, noun: Noun, written: str) -> str:
+        """A noun as where somebody stands: at the bench, not on it. Arguments as of `placed`."""
+        upon = any(self.things.place_of(obj) == "on" for obj in noun.objects)
+        return f"at {noun.said}" if upon and written == "at" else self.placed(noun, written)
+
     def another(self, place: str) -> str:
         """The same place in other words: "inside the {x}" for "in the {x}"."""
         preposition, _, rest = place.partition(" ")

@@ -252,7 +252,7 @@ class Facts:
         elif preposition in ("in", "inside", "out", "outside", "up", "down", "above", "below"):
             yield Clause("is", noun, {"in": "inside"}.get(preposition, preposition))
         else:
-            place = self._phrases.placed(noun, preposition)
+            place = self._phrases.stood_at(noun, preposition)
             yield Clause("is", ROBOT, place)
             yield from self._elsewhere_said(ROBOT, place, preposition)
 
@@ -281,7 +281,7 @@ class Facts:
             yield Clause("is", holder, f"holding {first.said}")
         elif not rest and named[-1] in lexicon.AGENTS and preposition in ("at", "in"):
             subject = Noun(f"the {'robot' if what == 'robby' else what}")
-            place = self._phrases.placed(first, preposition)
+            place = self._phrases.stood_at(first, preposition)
             yield Clause("is", subject, place)
             yield from self._elsewhere_said(subject, place, preposition)
         elif rest and named[-1] in self._things.nouns(rest[0].objects):
@@ -300,7 +300,7 @@ class Facts:
         *who, preposition = words
         name = " ".join(who)
         subject = Noun(f"the {'robot' if name == 'robby' else name}")
-        place = self._phrases.placed(nouns[0], preposition)
+        place = self._phrases.stood_at(nouns[0], preposition)
         if who[-1] in lexicon.MASS:
             yield Clause("is", Noun("there"), f"{name} {place}")
             yield Clause("is", Noun("there"), f"any {name} {place}")
