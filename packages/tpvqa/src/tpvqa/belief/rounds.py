@@ -55,12 +55,12 @@ class Rounds:
             intended: The joint state to which it leads from the most probable one, if it works.
         """
         number = ranked[0][0]
+        self._fault = self._last_fault(number)
         if action != self._before:
             times = self._begun.setdefault((number, action), _Times())
             self._in_vain += self._idle(times, ranked)
             times.whole += 1
             times.last, times.belief = self._steps, dict(ranked)
-        self._notice(number)
         self._before, self._steps = action, self._steps + 1
         self._expected = (number,) if intended is None else (number, intended)
 
@@ -95,16 +95,16 @@ class Rounds:
         if times is None:
             return 0.0
         over = max(0.0, times.whole - ROUNDS / progress - undone * self._steps)
-        self._notice(ranked[0][0])
         again = action != self._before and self._idle(times, ranked)
         return self._price * float(over**2 + (again * (self._in_vain + 1)) ** 2)
 
-    def _notice(self, number: int) -> None:
-        """Notice where it has come to otherwise than by what was done."""
-        if self._expected is not None and number not in self._expected:
-            self._fault = self._steps
+    def _last_fault(self, number: int) -> int:
+        """The step before which it last came to another joint state than what was done leads to,
+        where this one is the most probable now."""
+        unexpected = self._expected is not None and number not in self._expected
+        return self._steps if unexpected else self._fault
 
     def _idle(self, times: _Times, ranked: Ranked) -> bool:
         """Whether what was done since something was begun last was a round in vain."""
-        on_purpose = times.whole > 0 and times.last >= self._fault
+        on_purpose = times.whole > 0 and times.last >= self._last_fault(ranked[0][0])
         return on_purpose and moved(ranked, times.belief) < NO_NEWS
