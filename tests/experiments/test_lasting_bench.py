@@ -22,6 +22,7 @@ from tpvqa_experiments.belief.calibrations import Source, calibrations, source_o
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.lasting import (
     AFTER,
+    KNOWS,
     NOISES,
     draws,
     experienced,
@@ -119,6 +120,15 @@ class TestCells:
         assert told.pop("recorded:gemma-3-12b:1:lasting") == "recorded:gemma-3-12b:0:lasting"
         assert all(told[vlm] == vlm for vlm in told)
 
+    def test_who_knows_how_answers_err_is_calibrated_on_the_very_same(self) -> None:
+        cells = dict(EXTENT.cells(Part.LASTING))
+        for noise in (USELESS, GEMMA):
+            for redo in ("free", "risky"):
+                cell = noise.cell(TASK, KNOWS[redo], redo)
+                assert cells[cell] == 100
+                assert source_of(cell).vlm == noise.vlm == cell.vlm
+        assert MISREAD.cell(TASK, KNOWS["free"], "free") not in cells
+
     def test_who_gathers_experience_is_not_told_which_questions_are_misread(self) -> None:
         cell = experienced(TASK, "risky", 3)
         assert cell.vlm.endswith(":same:3")
@@ -134,6 +144,22 @@ def test_a_calibration_of_recorded_answers_says_how_errors_last(
     source = Source(TASK, f"recorded:qwen2.5-vl-7b:{half}", "symbolic")
     learnt = calibrations(tmp_path, [source], PAPER, 12)[source]
     assert (learnt.lasting_share > 0.3) is (least > 0)
+
+
+def test_who_knows_how_answers_err_stands_beside_ours_as_a_limit_not_as_a_rival() -> None:
+    own, knowing = (GEMMA.cell(TASK, monitor, "free") for monitor in (BELIEF, KNOWS["free"]))
+    rival = GEMMA.cell(TASK, "tpvqa", "free")
+    results = found(share(own, 60, lied=20), share(knowing, 90, lied=10), share(rival, 50))
+    told = lasting_markdown(results, EXTENT, list(lasting_targets(results, EXTENT)))
+    section = told.partition("## Ours beside who knows how its answers err")[2]
+    line = next(line for line in section.splitlines() if line.startswith("| gemma-3-12b"))
+    assert "0.60" in line
+    assert "0.90" in line
+    (limit,) = checks(results, "of who knows how answers err: wrong done")
+    assert limit.reached is None
+    assert limit.note == f"not in: gemma-3-12b {TASK} 0.1"
+    best = {row["monitor"]: row["best_rival"] for row in lasting_rows(results, EXTENT)}
+    assert best == {"tpvqa": True, BELIEF: False, "knowing": False}
 
 
 class TestBestRival:

@@ -20,6 +20,7 @@ from tpvqa.defaults import looks
 from tpvqa.vlm.flawed import SAME
 from tpvqa.vlm.recorded.spec import RecordedSpec
 from tpvqa.vlm.recorded.vlm import told_by
+from tpvqa_experiments.belief.lasting import KNOWS
 
 RECORDED = "recorded:"
 MISREAD = "flawed:misread:"
@@ -60,14 +61,15 @@ def source_of(cell: Cell, embedded_world: str = "images") -> Source:
     """Where the calibration of a cell comes from.
 
     A recorded VLM that answers by one half of its problems is calibrated on the other half; one
-    that misreads the same questions in every trial on trials that each misread their own.
+    that misreads the same questions in every trial on trials that each misread their own. Who
+    knows how answers err is calibrated on the very same.
 
     Args:
         cell: Which.
         embedded_world: Where the embedded network's trials are run.
     """
     vlm, world = cell.believed or cell.vlm, cell.world
-    if vlm.startswith(RECORDED):
+    if vlm.startswith(RECORDED) and cell.monitor not in KNOWS.values():
         vlm = RECORDED + str(RecordedSpec.parse(vlm.removeprefix(RECORDED)).other_half())
     if vlm.startswith(MISREAD):
         vlm = vlm.partition(f":{SAME}")[0]

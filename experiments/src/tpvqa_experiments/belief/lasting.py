@@ -16,6 +16,13 @@ LIMITS = "limits=none,replans=300"
 a fact for ever plans anew for ever, without an action between."""
 REDOING: Mapping[str, str] = {"free": LIMITS, "risky": f"{LIMITS},redo=risky"}
 """What comes of doing again what is done, and the condition that says so."""
+KNOWS: Mapping[str, str] = {
+    "free": f"{BELIEF}:spontaneous_rate=0:redone_rate=0",
+    "risky": f"{BELIEF}:spontaneous_rate=0",
+}
+"""The limit beside the belief monitor: the same, calibrated on the very answers that it gets, and
+told what no count of faults tells for sure: that nothing works loose of itself, and, where redoing
+is free, that it undoes nothing."""
 CALIBRATED = "oracle:0.8"
 """What monitors are told where they are told something wrong, and the fresh errors."""
 RISKS = (0.02, 0.05)
@@ -39,6 +46,7 @@ class Noise:
             that is no measure.
         today: Whether to compare with what was reached under fresh errors before errors that last
             were known of.
+        limit: Whether who knows how its answers err is run beside ours.
     """
 
     name: str
@@ -49,6 +57,7 @@ class Noise:
     wrong: float | None = None
     behind_blind: float | None = None
     today: bool = False
+    limit: bool = False
 
     def cell(self, task: str, monitor: str, redo: str) -> Cell:
         """The cell of a task and monitor, where redoing is as said.
@@ -63,7 +72,7 @@ class Noise:
         condition = REDOING[redo]
         if monitor in BLIND:
             return Cell(task, monitor, CALIBRATED, SYMBOLIC, condition)
-        if self.believed:
+        if self.believed and monitor != KNOWS[redo]:
             condition += f",believed={self.believed}"
         return Cell(task, monitor, self.vlm, SYMBOLIC, condition)
 
@@ -79,6 +88,7 @@ NOISES = (
         believed=CALIBRATED,
         questions=50,
         behind_blind=0.02,
+        limit=True,
     ),
     Noise(
         name="`on` biased, calibrated at .8",
@@ -86,6 +96,7 @@ NOISES = (
         believed=CALIBRATED,
         completion=0.95,
         wrong=0.03,
+        limit=True,
     ),
     Noise(name="fresh, .8", vlm=CALIBRATED, today=True),
 )
@@ -102,6 +113,7 @@ def recorded_noise(model: str) -> Noise:
         vlm=f"recorded:{model}:1:lasting",
         questions=RECORDED_QUESTIONS,
         wrong=RECORDED_WRONG,
+        limit=True,
     )
 
 
@@ -159,7 +171,8 @@ def lasting_cells(
     for redo in REDOING:
         for noise, own in lasting_noises(models, tasks):
             for task in own:
-                for monitor in (BELIEF, *BLIND, *FIELD):
+                limit = (KNOWS[redo],) if noise.limit else ()
+                for monitor in (BELIEF, *limit, *BLIND, *FIELD):
                     yield noise.cell(task, monitor, redo), episodes
         for task in tasks:
             for draw in draws(episodes):

@@ -28,7 +28,7 @@ def lasting_rows(results: BeliefResults, extent: Extent) -> list[dict[str, Any]]
     found = []
     for each in under_noises(results, extent):
         names = each.best.names if each.best else ()
-        for monitor, rows in _all(each):
+        for monitor, rows in (*_all(each), *((("knowing", each.limit),) if each.limit else ())):
             done, lied, asked = completion(rows), wrong(rows), questions(rows)
             found.append(
                 {
@@ -67,6 +67,7 @@ def lasting_markdown(results: BeliefResults, extent: Extent, checks: Sequence[Ch
     sections = [
         ("Targets", lasting_targets_markdown(checks, extent.tasks)),
         ("Ours beside the best rival", _beside(found)),
+        ("Ours beside who knows how its answers err", _limits(found)),
         ("After experience", _experience(results, extent)),
         ("Everybody: completed @ questions", _field(found)),
         ("Everybody: wrong *done*", _lies(found)),
@@ -154,6 +155,27 @@ def _beside(found: Sequence[UnderNoise]) -> str:
     names = ("completed (95%)", "wrong *done*", "goal holds", "questions", "actions")
     heads = ("answers", "redoing", "task", *names, "best rival", *names, "less it (95%)", "is")
     return table(heads, lines) if lines else ""
+
+
+def _limits(found: Sequence[UnderNoise]) -> str:
+    """Ours, and the same told how its answers err, on the trials that both ran."""
+    lines = []
+    for each in found:
+        both = {row.episode for row in each.own} & {row.episode for row in each.limit}
+        if both:
+            own, limit = (
+                _figures([row for row in rows if row.episode in both])
+                for rows in (each.own, each.limit)
+            )
+            lines.append((each.noise.name, each.redo, each.task, *own, *limit))
+    names = ("completed (95%)", "wrong *done*", "goal holds", "questions", "actions")
+    heads = ("answers", "redoing", "task", *names, *(f"{name}, knowing" for name in names))
+    text = (
+        "The same monitor, calibrated on the very answers that it gets (of recorded VLMs the same "
+        "half of the problems, of the others the flaw itself), and told that nothing works loose "
+        "of itself; on the trials that both ran.\n\n"
+    )
+    return text + table(heads, lines) if lines else ""
 
 
 def _figures(rows: Sequence[EpisodeRow]) -> tuple[str, str, str, str, str]:

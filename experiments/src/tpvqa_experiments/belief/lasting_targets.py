@@ -79,15 +79,26 @@ def _one(found: UnderNoise) -> Iterator[Check]:
         yield at_most(where, f"questions, {task}", round(TIMES * TODAY[task], 1), own, questions)
     if noise.questions is not None:
         yield at_most(where, f"questions, {task}", noise.questions, own, questions)
+        yield from _limit(where, f"questions, {task}", found.limit, questions)
     if noise.wrong is not None:
         yield at_most(where, f"wrong done, {task}", noise.wrong, own, wrong)
+        yield from _limit(where, f"wrong done, {task}", found.limit, wrong)
     if noise.behind_blind is not None:
         blind = found.best_blind
         what, target = f"completion less the best blind's, {task}", -noise.behind_blind
         ahead = None if blind is None else ahead_of(own, blind.rows)
         reached = None if ahead is None else ahead.high >= target
         yield Check(where, what, f"≥ {target:+g}", ahead, reached, str(blind or ""))
+        yield from _limit(where, f"completion, {task}", found.limit, completion)
     yield _beside(where, found)
+
+
+def _limit(
+    where: str, what: str, limit: Rows, measure: Callable[[Rows], Estimate]
+) -> Iterator[Check]:
+    """A figure of who knows how its answers err, where that was run."""
+    if limit:
+        yield Check(where, f"of who knows how answers err: {what}", "–", measure(limit), None)
 
 
 def _beside(where: str, found: UnderNoise) -> Check:
@@ -140,6 +151,11 @@ def _recorded(redo: str, found: Sequence[UnderNoise]) -> Iterator[Check]:
     yield replace(_count(where, what, len(truly), behind), target="–", reached=None)
     own = [(_name(each), each.own) for each in found if each.own]
     yield _all_at_most(where, "wrong done", RECORDED_WRONG, own, wrong)
+    knowing = [(_name(each), each.limit) for each in found if each.limit]
+    if knowing:
+        what = "of who knows how answers err: wrong done"
+        limit = _all_at_most(where, what, RECORDED_WRONG, knowing, wrong)
+        yield replace(limit, target="–", reached=None)
     yield _all_at_most(where, "questions", RECORDED_QUESTIONS, own, questions)
 
 

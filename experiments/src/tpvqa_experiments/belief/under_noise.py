@@ -10,7 +10,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import wilson
 from tpvqa.events.events import BELIEVED
 from tpvqa_experiments.belief.best_rival import BestRival, best_rival
-from tpvqa_experiments.belief.lasting import REDOING, Noise, lasting_noises
+from tpvqa_experiments.belief.lasting import KNOWS, REDOING, Noise, lasting_noises
 from tpvqa_experiments.belief.parts import BELIEF, BLIND, FIELD, Extent
 from tpvqa_experiments.belief.resampling import Estimate, Z, difference
 from tpvqa_experiments.belief.results import BeliefResults
@@ -28,6 +28,7 @@ class UnderNoise:
         task: Its name.
         own: Trials of the belief monitor; empty where it was not run.
         rivals: Trials of every rival that was run.
+        limit: Trials of ours where it knows how its answers err; empty where that was not run.
     """
 
     noise: Noise
@@ -35,6 +36,7 @@ class UnderNoise:
     task: str
     own: Rows
     rivals: Mapping[str, Rows]
+    limit: Rows = ()
 
     @cached_property
     def best(self) -> BestRival | None:
@@ -72,12 +74,12 @@ def under_noises(
             for task in tasks:
                 found = {
                     monitor: rows
-                    for monitor in (BELIEF, *BLIND, *FIELD)
+                    for monitor in (BELIEF, KNOWS[redo], *BLIND, *FIELD)
                     if (rows := results.of(noise.cell(task, monitor, redo)))
                 }
-                own = found.pop(BELIEF, ())
+                own, limit = found.pop(BELIEF, ()), found.pop(KNOWS[redo], ())
                 if own or found.keys() - {*BLIND}:  # blind trials are those of every noise
-                    yield UnderNoise(noise, redo, task, own, found)
+                    yield UnderNoise(noise, redo, task, own, found, limit)
 
 
 def completion(rows: Rows) -> Estimate:
