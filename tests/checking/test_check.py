@@ -235,6 +235,19 @@ def test_actions_that_are_never_possible_are_told_with_what_they_lack(files: Fil
     assert found[0].line == files.line("domain.pddl", "(:action polish")
 
 
+def test_what_an_effect_is_conditional_on_is_needed_like_a_precondition(files: Files) -> None:
+    files.change("domain.pddl", "    (pressed ?p - part)", "    (hot)\n    (pressed ?p - part)")
+    files.change(
+        "domain.pddl",
+        "    :effect (pressed ?p)))",
+        "    :effect (when (hot) (pressed ?p)))\n  (:action heat :effect (hot)))",
+    )
+    files.change("questions.yaml", "never_asked:", "never_asked:\n  - fact: (hot)")
+    found = [each for each in files.found() if each.kind == "fact-unseen"]
+    assert [each.line for each in found] == [files.line("domain.pddl", "(hot)")]
+    assert "the action press rests on hot" in found[0].says
+
+
 def test_a_goal_that_names_a_fact_twice_can_be_reached(files: Files) -> None:
     files.change("problem.pddl", "(:goal (and ", "(:goal (and (lies lid out_tray) ")
     assert not [each for each in files.found() if each.kind == "goal-unreachable"]

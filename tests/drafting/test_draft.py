@@ -112,6 +112,11 @@ SAID = {
     "(fully-open ?d - door)": "Is the front door fully open?",
     "(front-door-open ?d - door)": "Is the front door open?",
     "(hitched ?b - block ?r - robot)": "Is the red block hitched to the robot?",
+    "(robot-holds ?b - block)": "Is the robot holding the red block?",
+    "(switch-turned-on ?s - switch)": "Is the ceiling light turned on?",
+    "(cup-connected-to ?c - cup ?t - table)": "Is the mug connected to the desk?",
+    "(cup-in-drawer ?c - cup ?d - drawer)": "Is the mug in the top drawer?",
+    "(carrying-key ?k - key)": "Is the robot carrying key 1?",
 }  # fmt: skip
 
 
@@ -201,6 +206,40 @@ def test_who_stands_at_a_bench_is_not_on_it(second: str, asked: str) -> None:
       (:init (robot-at pantry) (stored tube {second})) (:goal (not (stored tube {second}))))"""
     written = yaml.safe_load(draft(task_from_text(domain, problem)))["predicates"]
     assert written["robot-at"][0] == asked
+
+
+TOWER = """(define (domain tower) (:types lift room floor can slot tote shelf - object)
+  (:predicates (robot-in ?r - room) (robot-inside ?l - lift) (lift-at ?l - lift ?f - floor)
+    (can-in-slot ?c - can ?s - slot) (stored ?c - can ?s - shelf) (held ?c - can)
+    (in-tote ?c - can ?t - tote) (delivered ?t - tote))
+  (:action call-lift :parameters (?l - lift ?from ?to - floor)
+    :precondition (lift-at ?l ?from) :effect (and (lift-at ?l ?to) (not (lift-at ?l ?from))))
+  (:action board-lift :parameters (?l - lift ?r - room) :precondition (robot-in ?r)
+    :effect (and (robot-inside ?l) (not (robot-in ?r))))
+  (:action leave-lift :parameters (?l - lift ?r - room) :precondition (robot-inside ?l)
+    :effect (and (robot-in ?r) (not (robot-inside ?l))))
+  (:action put-down :parameters (?c - can ?s - shelf) :precondition (held ?c)
+    :effect (and (stored ?c ?s) (not (held ?c))))
+  (:action fill :parameters (?c - can ?s - slot) :precondition (held ?c)
+    :effect (can-in-slot ?c ?s))
+  (:action drop-in-tote :parameters (?c - can ?t - tote) :precondition (held ?c)
+    :effect (and (in-tote ?c ?t) (not (held ?c))))
+  (:action push-through-hatch :parameters (?t - tote) :effect (delivered ?t)))"""
+
+
+def test_what_a_name_says_of_its_arguments_is_said_once() -> None:
+    problem = """(define (problem p) (:domain tower) (:objects north-lift - lift hall - room
+        low high - floor cola - can upper-slot - slot red-tote - tote steel-shelf - shelf)
+      (:init (robot-in hall) (held cola)) (:goal (delivered red-tote)))"""
+    written = yaml.safe_load(draft(task_from_text(TOWER, problem)))
+    said = {name: each["say"] for name, each in written["actions"].items()}
+    assert said["call-lift"] == "call the {l} from the {from} to the {to}"
+    assert said["board-lift"].startswith("board the {l}")
+    assert said["leave-lift"].startswith("leave the {l}")
+    assert said["put-down"] == "put down the {c} on the {s}"
+    assert said["drop-in-tote"] == "drop the {c} into the {t}"
+    assert said["push-through-hatch"] == "push the {t} through the hatch"
+    assert written["predicates"]["can-in-slot"][0] == "Is the {c} in the {s}?"
 
 
 ENDING = """(define (domain set) (:types lamp circuit - object)

@@ -270,16 +270,18 @@ def _predicates(condition: ConditionSchema) -> Iterator[str]:
 
 
 def needed_predicates(task: Task) -> Mapping[str, str]:
-    """The predicates that the goal or a precondition rests on, each with who needs it."""
+    """The predicates that the goal, a precondition or an effect's condition rests on, each with who
+    needs it."""
     found: dict[str, str] = {}
     for literal in literals(task.goal):
         found.setdefault(literal.atom.predicate, "the goal")
     running = frozenset[str]() if task.lasting is None else task.lasting.predicates
     for schema in task.schemas:
-        for predicate in _predicates(schema.precondition):
-            if predicate in running:
-                continue
-            found.setdefault(predicate, f"the action {schema.name}")
+        conditions = (effect.condition for effect in schema.effects)
+        for condition in (schema.precondition, *conditions):
+            for predicate in _predicates(condition):
+                if predicate not in running:
+                    found.setdefault(predicate, f"the action {schema.name}")
     return found
 
 

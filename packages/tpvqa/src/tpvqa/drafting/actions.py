@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import Noun, Phrases
@@ -29,6 +30,8 @@ _DIRECT = word_set("board enter leave exit cross reach visit")
 _WAYS = word_set("up down left right forward forwards backward backwards north south east west")
 _UNSAID = word_set("first second third half not")
 """Words of names that are left out, and may be what matters."""
+_NO_ARTICLE = word_set("the a an place order use service operation motion action half two pieces")
+_IN = word_set("in on at into onto")
 _SEEKING = word_set("find search seek look detect")
 
 
@@ -72,7 +75,7 @@ class Actions:
         mentioned = {name: noun for name, noun in nouns.items() if name in roles.changing}
         mentioned = self._without_the_only_one(mentioned or dict(list(nouns.items())[:2]), rest)
         mentioned = {n: noun for n, noun in mentioned.items() if n not in roles.counted}
-        doer = self._doer(verb, mentioned, roles)
+        doer = self._doer(verb, rest, mentioned, roles)
         told = {name: noun for name, noun in mentioned.items() if noun is not doer}
         pieces = list(self._pieces(verb, rest, told, roles, schema))
         tail = " ".join(piece for piece in pieces if piece)
@@ -99,12 +102,17 @@ class Actions:
         }
         return left or nouns
 
-    def _doer(self, verb: str, nouns: Mapping[str, Noun], roles: Roles) -> Noun | None:
+    def _doer(
+        self, verb: str, rest: list[str], nouns: Mapping[str, Noun], roles: Roles
+    ) -> Noun | None:
         """Who of several does it, where that is no vehicle, tool or hand."""
         for name, noun in nouns.items():
             people = bool(self._things.nouns(noun.objects) & lexicon.PEOPLE)
             alone = verb in lexicon.INTRANSITIVE and self._things.act(noun.objects)
             alone = alone and verb not in ("move", "sail", "fly", "turn", "drive")
+            alone = alone and not any(
+                self._names(word, {name: noun}) for word in rest
+            )  # board-lift
             passive = roles.moved == name and verb not in lexicon.INTRANSITIVE | {"go", "drive"}
             if name not in roles.ends and (alone or (people and not passive)):
                 several = len(noun.objects) > 1 or alone
@@ -118,7 +126,7 @@ class Actions:
         extra = [word for word in rest if not self._names(word, nouns)]
         if len(extra) > 1 and extra[0] in PREPOSITIONS and extra[1] not in PARTICLES:
             trailing, extra = " ".join(extra), []
-            trailing = "" if trailing.startswith("to ") else trailing
+            trailing = "" if trailing.startswith("to ") else _with_article(trailing)
         else:
             trailing = ""
         ends = {name: roles.ends[name] for name in nouns if name in roles.ends}
@@ -141,8 +149,11 @@ class Actions:
             patients = list(roles.reversed)
             tools, ends = [n for n in tools if n not in patients], {}
         preposition = next((w for w in extra if w in PREPOSITIONS and len(nouns) > 1), None)
-        joined = [word for word in extra if word != preposition or word in _particles(verb)]
-        if preposition in _particles(verb):
+        before = pairwise(rest)  # of a thing that the name says: drop-in-tote
+        joins = any(w == preposition in _IN and self._names(named, nouns) for w, named in before)
+        particles = frozenset() if joins else _particles(verb)
+        joined = [word for word in extra if word != preposition or word in particles]
+        if preposition in particles:
             preposition = None
         direct = [
             n
@@ -150,7 +161,11 @@ class Actions:
             if verb in _DIRECT
             and (end.source == (verb in ("leave", "exit")) and self._things.act(nouns[n].objects))
         ]
-        if verb in _DIRECT and tools and not direct and not patients:
+        entered = [n for n in nouns if any(self._names(word, {n: nouns[n]}) for word in rest)]
+        if verb in _DIRECT and entered:  # board-lift
+            direct, tools = entered[:1], [n for n in tools if n not in entered]
+            patients = [n for n in patients if n not in entered]
+        elif verb in _DIRECT and tools and not direct and not patients:
             direct, tools, ends = tools[:1], tools[1:], {}
         first = [nouns[name].said for name in (direct or patients)[:1]]
         yield from self._object(joined, first, nouns, patients, schema)
@@ -239,6 +254,9 @@ class Actions:
             if verb in _MOVING:
                 yield f"to {nouns[name].said}"
                 continue
+            if nouns[name].parameter == "to" and any(e.source for e in ends.values()):
+                yield f"to {nouns[name].said}"
+                continue
             place = self._phrases.placed(nouns[name], preposition or end.preposition)
             into = verb in _INTO | _TAKING and place.startswith("in ")
             yield f"into {place.removeprefix('in ')}" if into else place
@@ -250,6 +268,14 @@ def _verb_first(words: list[str]) -> tuple[str, list[str]]:
         return "go", words
     verb = next((word for word in words if is_verb(word)), words[0])
     return verb, [word for word in words if word != verb]
+
+
+def _with_article(words: str) -> str:
+    """A preposition and a thing: through hatch, through the hatch."""
+    preposition, _, thing = words.partition(" ")
+    if preposition not in PREPOSITIONS or not thing or thing.split()[0] in _NO_ARTICLE:
+        return words
+    return f"{preposition} the {thing}"
 
 
 def _particles(verb: str) -> frozenset[str]:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases
 from tpvqa.drafting.facts_tables import ROADS, SAME
-from tpvqa.drafting.forms import Form, does, participle, stands, verb_form
+from tpvqa.drafting.forms import Form, does, ing, participle, stands, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PREPOSITIONS
 from tpvqa.drafting.of_nothing import WEATHER, of_nothing
-from tpvqa.drafting.predicates import of_noun, of_verb
+from tpvqa.drafting.predicates import of_noun, of_verb, without_kind
 from tpvqa.drafting.things import Things, some
 from tpvqa.questions.template import indefinite_article
 
@@ -111,11 +111,17 @@ class Facts:
                 return other
         return None
 
+    def _named(self, noun: Noun) -> frozenset[str]:
+        """What a name may call an argument."""
+        return self._things.nouns(noun.objects) | {noun.parameter}
+
     # Which kind of name it is
 
     def _clauses(self, words: list[str], nouns: list[Noun], predicate: str) -> Iterator[Clause]:
         if len(words) > 1 and (words[0] in ("is", "are", "was", "being") or stands(words)):
             words = words[1:]
+        if nouns:
+            words = without_kind(words, self._named(nouns[0]), alone=len(nouns) == 1)
         if words[-1] == "top" and words[0] in PREPOSITIONS and len(nouns) > 1:
             words = [*words, "of"]
         if words[-1] == "of" and len(words) > 1 and len(nouns) > 1 and words[-2] != "top":
@@ -126,7 +132,7 @@ class Facts:
         elif (
             len(words) > 1
             and words[0] in lexicon.AGENTS | lexicon.HANDS
-            and (words[1] in ("has", "have") or _is_ing(words[1]))
+            and (words[1] in ("has", "have") or _is_verb(words[1]))
         ):
             yield from self._of_agent(words, nouns)
         elif len(words) == 2 and words[-1] in ("has", "have") and words[0] not in PREPOSITIONS:
@@ -134,7 +140,7 @@ class Facts:
             yield Clause("does", who, f"have {' '.join(what)}")
         elif words[0] in ("have", "has", "got", "having", "possess", "possesses", "owns", "own"):
             yield from self._having(words[1:], nouns)
-        elif words[0] == "can" and len(words) > 1:
+        elif words[0] == "can" and len(words) > 1 and verb_form(words[1]) is not None:
             yield Clause(
                 "can", nouns[0], " ".join([*words[1:], *self._others(nouns[1:], plain=True)])
             )
@@ -174,7 +180,10 @@ class Facts:
         """robot_has(x), gripper-holding(x)."""
         who = Noun(f"the robot's {words[0]}" if words[0] in lexicon.HANDS else f"the {words[0]}")
         rest = " ".join([*words[2:], *self._others(nouns, plain=True)])
-        if words[1] in ("has", "have"):
+        form = verb_form(words[1])
+        if form is not None and form[1] is Form.THIRD and words[1] != "has":  # robot-holds(x)
+            yield Clause("is", who, f"{ing(form[0])} {rest}")
+        elif words[1] in ("has", "have"):
             yield Clause("does", who, f"have {rest}")
         else:
             yield Clause("is", who, f"{words[1]} {rest}")
@@ -373,9 +382,10 @@ def _is_done(word: str) -> bool:
     return form is not None and form[1] is Form.PARTICIPLE
 
 
-def _is_ing(word: str) -> bool:
+def _is_verb(word: str) -> bool:
+    """Whether a word says what somebody does: holding, holds."""
     form = verb_form(word)
-    return form is not None and form[1] is Form.ING
+    return form is not None and form[1] in (Form.ING, Form.THIRD)
 
 
 def _unknown(words: list[str], nouns: list[Noun]) -> Clause:

@@ -13,6 +13,28 @@ Others = Callable[[list[Noun]], list[str]]
 """Says further things with their prepositions."""
 
 
+def without_kind(words: list[str], kinds: frozenset[str], *, alone: bool) -> list[str]:
+    """The words of a predicate without what its first argument is, where they say that again:
+    wheel-mounted(wheel), hose-connected-to(hose, valve), can-in-slot(can, slot),
+    carrying-card(card).
+
+    Args:
+        words: Of its name.
+        kinds: What the argument is called.
+        alone: Whether there is no other argument.
+    """
+    form = verb_form(words[-2 if len(words) > 2 and words[-1] in PREPOSITIONS else -1])
+    if len(words) > 1 and words[0] in kinds:
+        done = form is not None and form[1] in (Form.PARTICIPLE, Form.ING)
+        placed = len(words) > 2 and words[1] in PREPOSITIONS and not alone
+        second = verb_form(words[1])
+        begun = len(words) > 2 and second is not None and second[1] is Form.PARTICIPLE
+        return words[1:] if done or placed or begun else words
+    first = verb_form(words[0])
+    doing = first is not None and first[1] is Form.ING
+    return words[:1] if len(words) == 2 and alone and doing and words[1] in kinds else words
+
+
 def of_verb(
     phrases: Phrases, form: tuple[str, Form], words: list[str], nouns: list[Noun], others: Others
 ) -> Iterator[Clause]:

@@ -60,7 +60,8 @@ def roles_of(schema: ActionSchema, things: Things) -> Roles:
     for predicate, arguments, positive in _placing(schema, things):
         *subject, place = arguments
         if place in names and place not in ends:
-            ends[place] = End(not positive, _preposition(predicate, things))
+            kind = next(p.type for p in schema.parameters if p.name == place)
+            ends[place] = End(not positive, _preposition(predicate, things, kind))
             moved = moved or (subject[0] if subject else "")
         elif place in names and ends[place].source == positive:
             del ends[place]  # it is both left and reached
@@ -93,11 +94,13 @@ def _placing(schema: ActionSchema, things: Things) -> Iterator[tuple[str, tuple[
             yield literal.predicate, literal.arguments, literal.positive
 
 
-def _preposition(predicate: str, things: Things) -> str | None:
+def _preposition(predicate: str, things: Things, kind: str) -> str | None:
     words = things.words(predicate)
     found = next((word for word in words if word in PREPOSITIONS and word != "at"), None)
     form = verb_form(words[0])
     joint = lexicon.TAKES.get(form[0]) if form is not None else None
+    if all(map(things.holds_things, things.of_kind(kind))):  # stored: in a box, but on a shelf
+        joint = None
     return found or (joint if joint not in ("at", "") else None)
 
 
