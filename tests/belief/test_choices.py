@@ -107,3 +107,41 @@ def test_where_nothing_can_be_done_any_more_it_is_still_worth_knowing_how_it_end
     known = table.weights @ table.costs.min(axis=1)
     worth = float(table.expected.min() - known)
     assert worth == pytest.approx(min(likely, 1 - likely) * costs.misreport)
+
+
+SAFE = task_from_text(
+    """(define (domain vault) (:requirements :strips :typing) (:types place)
+  (:predicates (robot_at ?p - place) (key_at ?p - place) (key_held) (open) (lies ?p - place)
+    (locked ?p - place))
+  (:action drive :parameters (?from ?to - place) :precondition (robot_at ?from)
+    :effect (and (robot_at ?to) (not (robot_at ?from))))
+  (:action take :parameters (?p - place) :precondition (and (robot_at ?p) (key_at ?p) (lies ?p))
+    :effect (and (key_held) (not (key_at ?p))))
+  (:action unlock :parameters (?p - place)
+    :precondition (and (robot_at ?p) (key_held) (locked ?p)) :effect (open)))""",
+    """(define (problem p) (:domain vault) (:objects desk safe - place)
+  (:init (robot_at desk) (key_at desk) (lies desk) (locked safe)) (:goal (open)))""",
+)
+
+
+def test_where_no_plan_leads_on_no_action_does() -> None:
+    """The key in the locked safe: wherever the robot drives, of which no planner was asked, nothing
+    is saved by it. One such state of .01 decided what was done for forty actions."""
+    take, there = SAFE.action("take", ["desk"]), SAFE.action("drive", ["desk", "safe"])
+    plan = (take, there, SAFE.action("unlock", ["safe"]))
+    locked_in = SAFE.init - {Atom("key_at", ("desk",))} | {Atom("key_at", ("safe",))}
+    held = SAFE.apply(SAFE.init, take)
+    model = FaultModel(SAFE)
+    belief, chooser = Belief(model), Chooser(model, Costs())
+    belief.begin([(SAFE.init, 0.6), (held, 0.39), (locked_in, 0.01)])
+    chooser.ahead.add(AnnotatedPlan(SAFE, plan, regress(SAFE, plan)))
+    chooser.ahead.give_up_on(locked_in)
+    table = chooser.table(belief, Rates(), plan)
+    lost = [
+        float(cost)
+        for choice, cost in zip(table.choices, table.costs[2], strict=True)
+        if choice.action is not None
+    ]
+    assert {take, there} <= {choice.action for choice in table.choices}
+    assert max(lost) - min(lost) < 1
+    assert min(lost) >= chooser.ahead.failure

@@ -8,6 +8,7 @@ from tpvqa.pddl import load_task
 
 TASK = load_task("clean_dishes")
 THERE, BACK = TASK.action("find", ["plate", "tv"]), TASK.action("find", ["sink", "plate"])
+CLOSE = TASK.action("find", ["tv", "sink"])
 PROGRESS = 0.69
 """Of failures and disturbances of .25."""
 
@@ -43,6 +44,25 @@ def test_a_round_on_purpose_of_which_nothing_came_is_dear_at_once() -> None:
     assert dearer(gone_round(1), 0) == 1.0
     assert dearer(gone_round(2), 0) > 1.0
     assert dearer(gone_round(2), 2) == 0.0  # something else is believed now
+
+
+def test_what_led_nowhere_and_is_come_back_to_costs_no_more() -> None:
+    """A lid that does not close: what was done in between went round, not who tries it again."""
+    rounds = Rounds(price=1.0)
+    rounds.acted(CLOSE, believed(0), 2)
+    rounds.acted(THERE, believed(0), 1)
+    rounds.acted(BACK, believed(1), 0)
+    assert rounds.dearer(CLOSE, believed(0), PROGRESS, 0.0) == 0.0
+    assert rounds.dearer(THERE, believed(0), PROGRESS, 0.0) == 1.0
+
+
+def test_a_round_is_paid_once() -> None:
+    """Where it was begun anew: who is half way round goes the rest of it."""
+    rounds = gone_round(1)
+    rounds.acted(THERE, believed(0), 1)
+    assert rounds.dearer(BACK, believed(1), PROGRESS, 0.0) == 0.0
+    rounds.acted(BACK, believed(1), 0)
+    assert dearer(rounds, 0) == 4.0
 
 
 def test_a_round_in_vain_makes_others_dear() -> None:

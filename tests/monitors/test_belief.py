@@ -218,6 +218,22 @@ def test_what_moved_against_its_own_answers_moved_by_others(plain: Plain) -> Non
     assert against
 
 
+def test_what_is_done_in_case_something_holds_is_told_from_what_is_done_as_it_holds(
+    planner: Planner,
+) -> None:
+    told = re.compile(r"(?:back to|on to) [^;:]*?(: | in case )([^;]*)")
+    seen = set[str]()
+    for n in range(12):
+        _, events, _ = run(planner, "belief", vlm="oracle:0.7:0:0.74", episode=n)
+        for event in events:
+            if isinstance(event, Decided):
+                for since, facts in told.findall(event.reason):
+                    figures = [float(each) for each in re.findall(r"\((\d\.\d\d)\)", facts)]
+                    assert (since != ": ") == (min(figures, default=1.0) < 0.5), event.reason
+                    seen.add(since)
+    assert len(seen) == 2
+
+
 def likely(event: Decided, literal: Literal) -> float:
     p = event.belief.get(literal.atom.pddl(), 1.0)
     return p if literal.positive else 1 - p

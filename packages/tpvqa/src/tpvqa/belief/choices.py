@@ -266,7 +266,6 @@ class Chooser:
         together = self._together(action, ranked, rates)
         if together:
             return np.array([self._paid(action, *each, rates, together) for each in ranked])
-
         near, column = self._near.setdefault(action, {}), np.empty(len(ranked))
         many = sum(weight >= DISTURBED for _, weight in ranked)  # the first ones
         for place, (number, _) in enumerate(ranked[:many]):
@@ -304,9 +303,10 @@ class Chooser:
         together: Mapping[int, float],
     ) -> float:
         """What an action costs in a joint state, with all that lies ahead."""
-        to_go = self.ahead.to_go
+        if self.ahead.no_way(number):
+            return self._step + self.ahead.failure
         return self._step + sum(
-            share * ((together[other] if other in together else to_go(other)) + more)
+            share * ((together[other] if other in together else self.ahead.to_go(other)) + more)
             for share, other, more in self._successors(action, number, weight, rates)
         )
 

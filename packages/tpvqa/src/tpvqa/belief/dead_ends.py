@@ -1,7 +1,7 @@
 """States that surely no plan leads on from."""
 
 from collections.abc import Iterable
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from tpvqa.pddl import Atom, Condition, Conjunction, Literal, State, Task, literals
 
@@ -129,3 +129,17 @@ class DeadEnds:
         for atom in atoms:
             found |= self._bits.setdefault(atom, 1 << len(self._bits))
         return found
+
+
+def dead_ends_of(task: Task) -> DeadEnds:
+    """Those of a task, the same object for the world and the belief, and in the trials of a bench.
+
+    Args:
+        task: One that differs in what may hold besides, or in its goal, is equal and has others.
+    """
+    return _kept(task, task.besides, task.goal)
+
+
+@lru_cache(maxsize=4)
+def _kept(task: Task, besides: State, goal: Condition) -> DeadEnds:
+    return DeadEnds(task)

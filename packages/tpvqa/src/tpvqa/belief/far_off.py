@@ -30,7 +30,7 @@ class FarOff:
 
     def forget(self) -> None:
         """Note that costs have changed."""
-        self._to_go, self._idle = ByKind(1), ByKind(1)
+        self._to_go, self._idle, self._lost = ByKind(1), ByKind(1), ByKind(1)
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
@@ -75,7 +75,7 @@ class FarOff:
             rates: How often something is undone: that costs one more action.
             idling: What it costs in a joint state to have done nothing.
         """
-        model, to_go = self._model, self._ahead.to_go
+        model, to_go, no_way = self._model, self._ahead.to_go, self._ahead.no_way
         undone, possible, led = self.does(action, ranked, kinds).T
         numbers = led.astype(np.intp).tolist()
         there = np.array([model.kind(number) for number in numbers], np.intp)
@@ -90,4 +90,5 @@ class FarOff:
         fails = stays + (idle + rates.disturbance * self._step)
         tried = np.where(possible > 0, (1 - failure) * leads + failure * fails, fails)
         found: Floats = np.where(undone > 0, tried, stays + idle + rates.redone * self._step)
-        return found
+        lost = self._lost.of(kinds, lambda place: (float(no_way(ranked[place][0])),))[:, 0]
+        return np.where(lost > 0, stays, found)

@@ -8,6 +8,7 @@ import numpy as np
 from tpvqa.belief.annotated import AnnotatedPlan, Wanted
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.hopeless import Hopeless
 from tpvqa.belief.needed import Needed
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.skills import DOUBTED, FOREGONE, GIVEN_UP, NAMED, SHOWN, SkillState
@@ -52,7 +53,7 @@ class Outlook:
         self._task = task or model.task
         self.plans: list[AnnotatedPlan] = []
         self._most_steps = 0
-        self.hopeless: set[State] = set()
+        self.hopeless = Hopeless(self._task)
         self.left: int | None = None
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
         self._rates = Rates()
@@ -254,6 +255,10 @@ class Outlook:
             known = self._skills[action] = self._skill(action)
         return known
 
+    def no_way(self, number: int) -> bool:
+        """Whether no plan leads on from a joint state, so that no action does."""
+        return self.best(number) is None and self._model.state(number) in self.hopeless
+
     def to_go(self, number: int) -> float:
         """What is left to pay from a joint state, if it is known."""
         kind = self._model.kind(number)
@@ -264,9 +269,9 @@ class Outlook:
 
     def _worked_out(self, number: int) -> float:
         found = self.best(number)
+        if self.no_way(number):
+            return self.failure
         if found is None:
-            if self._model.state(number) in self.hopeless:
-                return self.failure
             steps = self._longest() + 2
             works = 1 - self._rates.failure
             unchecked = steps * self._costs.action + (1 - works**steps) * self.failure

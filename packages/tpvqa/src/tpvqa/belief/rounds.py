@@ -23,11 +23,13 @@ class _Times:
     Attributes:
         whole: In all.
         last: At which step it was begun last.
+        led_on: Whether it led to another joint state then, itself or by being repeated.
         belief: What was believed then.
     """
 
     whole: int = 0
     last: int = 0
+    led_on: bool = False
     belief: Mapping[int, float] = field(default_factory=dict)
 
 
@@ -43,8 +45,10 @@ class Rounds:
         self._steps = self._in_vain = 0
         self._before: Action | None = None
         self._expected: tuple[int, ...] | None = None
-        self._fault = 0
+        self._fault = self._led_on = 0
+        self._paid = -1
         self._begun: dict[_Begun, _Times] = {}
+        self._latest: tuple[int, _Times] | None = None
 
     def acted(self, action: Action, ranked: Ranked, intended: int | None) -> None:
         """Note that an action is executed.
@@ -57,10 +61,15 @@ class Rounds:
         number = ranked[0][0]
         self._fault = self._last_fault(number)
         if action != self._before:
+            if self._latest is not None:
+                self._latest[1].led_on = self._latest[0] != number
+            self._led_on = self._last_led_on(number)
             times = self._begun.setdefault((number, action), _Times())
-            self._in_vain += self._idle(times, ranked)
+            if self._idle(times, ranked):
+                self._in_vain, self._paid = self._in_vain + 1, self._steps
             times.whole += 1
             times.last, times.belief = self._steps, dict(ranked)
+            self._latest = number, times
         self._before, self._steps = action, self._steps + 1
         self._expected = (number,) if intended is None else (number, intended)
 
@@ -72,7 +81,9 @@ class Rounds:
             there = self._begun.setdefault((numbers.get(number, -1), action), _Times())
             there.whole += times.whole
             if times.last >= there.last:
-                there.last, there.belief = times.last, kept
+                there.last, there.led_on, there.belief = times.last, times.led_on, kept
+            if self._latest is not None and self._latest[1] is times:
+                self._latest = numbers.get(number, -1), there
         if self._expected is not None:
             self._expected = tuple(numbers.get(number, -1) for number in self._expected)
 
@@ -83,7 +94,8 @@ class Rounds:
         was believed then, is going round in a circle. So often as faults explain it costs nothing:
         whatever was undone may have led back. They do not explain a round in which, as is believed,
         everything led where it was to lead, and after which nothing else is believed than before:
-        one more of these costs the more, the more there were of them, wherever.
+        one more of these costs the more, the more there were of them, wherever. It is paid by who
+        begins it anew, once, and not by what led nowhere then, and is only come back to.
 
         Args:
             action: It.
@@ -104,7 +116,17 @@ class Rounds:
         unexpected = self._expected is not None and number not in self._expected
         return self._steps if unexpected else self._fault
 
+    def _last_led_on(self, number: int) -> int:
+        """The step before which something last led to another joint state, where this one is the
+        most probable now."""
+        led = self._latest is not None and self._latest[0] != number
+        return self._steps if led else self._led_on
+
     def _idle(self, times: _Times, ranked: Ranked) -> bool:
-        """Whether what was done since something was begun last was a round in vain."""
-        on_purpose = times.whole > 0 and times.last >= self._last_fault(ranked[0][0])
-        return on_purpose and moved(ranked, times.belief) < NO_NEWS
+        """Whether what was done since something was begun last was a round in vain, which nothing
+        was paid for yet."""
+        number = ranked[0][0]
+        on_purpose = times.whole > 0 and times.last >= self._last_fault(number)
+        begun = times.led_on or self._last_led_on(number) <= times.last
+        unpaid = self._paid <= times.last
+        return on_purpose and begun and unpaid and moved(ranked, times.belief) < NO_NEWS

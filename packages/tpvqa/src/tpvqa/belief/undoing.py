@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache
 
-from tpvqa.belief.dead_ends import DeadEnds
+from tpvqa.belief.dead_ends import DeadEnds, dead_ends_of
 from tpvqa.belief.places import things
-from tpvqa.pddl import Atom, Condition, State, Task
+from tpvqa.pddl import Atom, State, Task
 from tpvqa.pddl.arithmetic import VALUE
 from tpvqa.pddl.likewise import numbers_likewise
 
@@ -116,7 +116,7 @@ class BackToBefore:
 
     @cached_property
     def _dead_ends(self) -> DeadEnds:
-        return _kept_dead_ends(self._task, self._task.besides, self._task.goal)
+        return dead_ends_of(self._task)
 
     def with_shares(
         self, atom: Atom, state: State, before: Callable[[int], Atom | None]
@@ -161,12 +161,7 @@ class BackToBefore:
 
 
 # The world's and the belief's, and those of a bench's trials, are one. Tasks that differ in what
-# may hold besides, or in the goal, are equal and have other actions, or ends.
-@lru_cache(maxsize=4)
-def _kept_dead_ends(task: Task, besides: State, goal: Condition) -> DeadEnds:
-    return DeadEnds(task)
-
-
+# may hold besides are equal and have other actions.
 @lru_cache(maxsize=4)
 def _kept_apart(task: Task, besides: State) -> Mapping[Atom, set[Atom]]:
     """What never holds together with an atom, as far as actions lead; nothing of a task of which

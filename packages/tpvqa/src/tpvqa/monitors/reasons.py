@@ -140,15 +140,16 @@ def _reason(
     there = _instead(grounds, missing[:SAID], state) or _news(grounds, state)
     if decision is Decision.REPEAT:
         if not facts and grounds.plan is not None:
-            facts = [f"{there} would be mended by it"]
+            facts = [f"{_listed(grounds, there)} would be mended by it"]
         facts = facts or _brought(grounds, action)
         return "; ".join((*facts, f"{said} again"))
     if decision is Decision.REPLAN:
-        return "; ".join((*facts, f"replanning from {there}"))
+        return "; ".join((*facts, f"replanning{_since(grounds, there, ' from')}"))
     if place is not None and place > grounds.next:
-        return "; ".join((*facts, f"on to {said}{number}, which can be done already: {there}"))
+        able = f"{said}{number}, which can be done already"
+        return "; ".join((*facts, f"on to {able}{_since(grounds, there)}"))
     undone = _undone(grounds, planned, state) or there
-    return "; ".join((*facts, f"back to {said}{number}: {undone}"))
+    return "; ".join((*facts, f"back to {said}{number}{_since(grounds, undone)}"))
 
 
 def _needs(grounds: Grounds) -> list[Literal]:
@@ -159,8 +160,9 @@ def _needs(grounds: Grounds) -> list[Literal]:
 
 
 def _brought(grounds: Grounds, action: Action) -> list[str]:
-    """The least probable of what an action brings about."""
-    effects = sorted({effect.literal for effect in action.effects}, key=grounds.probability)
+    """The least probable of what an action brings about, of what is needed where any of it is."""
+    brought, needed = {effect.literal for effect in action.effects}, {*_needs(grounds)}
+    effects = sorted(brought, key=lambda n: (n not in needed, grounds.probability(n), n.atom))
     return [_fact(grounds, each, needing=False) for each in effects[:1]]
 
 
@@ -247,7 +249,7 @@ def _end(grounds: Grounds, decision: Decision) -> str:
     if grounds.actions_left is not None and grounds.actions_left <= 0:
         why = "no action is left, and "
     elif decision is Decision.GIVE_UP and _too_few(grounds):
-        why = f"the {grounds.actions_left} actions left are too few, and "
+        why = f"too few actions are left ({grounds.actions_left}), and "
     elif not grounds.questions_left:
         why = "no question is left, and "
     if _stopped(grounds, decision) and grounds.risk is not None:
@@ -320,7 +322,7 @@ def _consumer(grounds: Grounds, plan: AnnotatedPlan, place: int) -> str:
     return f"{grounds.step.book.say(plan.actions[place])} (step {place + 1})"
 
 
-def _instead(grounds: Grounds, missing: Iterable[Literal], state: State) -> str:
+def _instead(grounds: Grounds, missing: Iterable[Literal], state: State) -> list[Literal]:
     """What holds where something that is needed does not: where the thing is that is not here."""
     task, found = (
         grounds.step.task,
@@ -333,10 +335,10 @@ def _instead(grounds: Grounds, missing: Iterable[Literal], state: State) -> str:
         ),
     )
     asked = [atom for atom in found if grounds.step.book.asked(Literal(atom))]
-    return _list(grounds, [atom for atom in asked if task.groups_of(atom)])
+    return [Literal(atom) for atom in asked if task.groups_of(atom)]
 
 
-def _undone(grounds: Grounds, action: Action, state: State) -> str:
+def _undone(grounds: Grounds, action: Action, state: State) -> list[Literal]:
     """What an action brings about that was believed, and is not any more."""
     lost = [
         effect.literal
@@ -344,29 +346,28 @@ def _undone(grounds: Grounds, action: Action, state: State) -> str:
         if effect.literal.holds(grounds.step.state) and not effect.literal.holds(state)
     ]
     asked = [each for each in lost if grounds.step.book.asked(Literal(each.atom))] or lost
-    return " and ".join(
-        f"{grounds.say(missing)} ({_figure(grounds.probability(missing))})"
-        for missing in (Literal(each.atom, not each.positive) for each in asked[:SAID])
-    )
+    return [Literal(each.atom, not each.positive) for each in asked]
 
 
-def _news(grounds: Grounds, state: State) -> str:
+def _news(grounds: Grounds, state: State) -> list[Literal]:
     """What is believed now that was not before."""
     new = sorted(state - grounds.step.state)
     shown = [atom for atom in new if grounds.step.book.asked(Literal(atom))] or new
-    if shown:
-        return _list(grounds, shown)
     lost = [Literal(atom, positive=False) for atom in sorted(grounds.step.state - state)]
-    if lost:
-        return f"{grounds.say(lost[0])} ({_figure(grounds.probability(lost[0]))})"
-    return "what was believed"
+    return [Literal(atom) for atom in shown] or lost[:1]
 
 
-def _list(grounds: Grounds, atoms: Sequence[Atom]) -> str:
-    return " and ".join(
-        f"{grounds.words.of(atom)} ({_figure(grounds.belief.probability(atom))})"
-        for atom in atoms[:SAID]
+def _since(grounds: Grounds, told: Sequence[Literal], since: str = ":") -> str:
+    """For what something is decided: what is believed, or what may be the case all the same."""
+    likely = all(grounds.probability(each) >= 0.5 for each in told[:SAID])
+    return f"{since if likely else ' in case'} {_listed(grounds, told)}"
+
+
+def _listed(grounds: Grounds, told: Sequence[Literal]) -> str:
+    figures = (
+        f"{grounds.say(each)} ({_figure(grounds.probability(each))})" for each in told[:SAID]
     )
+    return " and ".join(figures) or "what was believed"
 
 
 def _figure(probability: float) -> str:
