@@ -124,7 +124,12 @@ class PlannerError(TpvqaError):
 
 
 class GroundingTimedOut(PlannerError):  # noqa: N818
-    """Reading and grounding a task took longer than allowed."""
+    """Reading and grounding a task took longer than allowed; the message ends with "give it more
+    time"."""
+
+    def by(self, option: str) -> "GroundingTimedOut":
+        """The same, with the option that gives more."""
+        return GroundingTimedOut(f"{self} by {option}")
 
 
 class QuestionsError(PlacedError):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from tpvqa import __version__
 from tpvqa.assembly.answering import OF_TRIALS, answering, wanting
+from tpvqa.assembly.grounding import grounded
 from tpvqa.assembly.lasting import see_lasting, watching
 from tpvqa.assembly.numbers import see_numbers
 from tpvqa.assembly.simulating import simulate
@@ -32,7 +33,7 @@ from tpvqa.events.records import atoms
 from tpvqa.monitors import Monitor
 from tpvqa.monitors.capabilities import experience_of, never_asks
 from tpvqa.monitors.making import make_monitor
-from tpvqa.pddl import Task, literals, load_task
+from tpvqa.pddl import Task, literals
 from tpvqa.planning import Planner
 from tpvqa.planning.making import make_planner
 from tpvqa.plugins import Checked, Closing, Kind, load_spec, see_free, see_taken
@@ -105,7 +106,7 @@ class Trial:
         self._closing: list[Callable[[], None]] = []
         try:
             self._find_files()
-            self.task = task or load_task(self.domain, self.problem)
+            self.task = task or grounded(self.domain, self.problem, config.planner)
             self.book = (book or QuestionBook.load(self.questions, self.task)).worded(
                 config.wording
             )

@@ -96,7 +96,7 @@ def questions(
         wanted, notes = task_config(task, problem_file, domain, problem, questions_file)
         loaded, book = _load(wanted, timeout)
     except GroundingTimedOut as error:
-        _no_questions(str(error), TIMED_OUT)
+        _no_questions(str(error.by("--timeout")), TIMED_OUT)
     book = book.worded(wording)
     chosen = make_planner("fast-downward" if planner is None else planner)
     try:

@@ -251,7 +251,9 @@ def _beside_its_opposite(word: str, same: Sequence[str], asked: Sequence[str]) -
     "The lamp on the table is off" says "on" once, where it was asked twice.
     """
     excluded = {_stem(other) for other in _EXCLUDING[word] if other not in _EMPTIED}
-    counts = [(same.count(other), sum(_stem(each) == other for each in asked)) for other in excluded]
+    counts = [
+        (same.count(other), sum(_stem(each) == other for each in asked)) for other in excluded
+    ]
     return any(0 < often <= said for said, often in counts)
 
 
