@@ -213,8 +213,7 @@ def show(
     verbose: Verbose = False,
 ) -> None:
     """Print an episode again."""
-    from rich.console import Console
-
+    from tpvqa.cli.consoles import ResultConsole
     from tpvqa.cli.terminal import EpisodeView
     from tpvqa.episodes import read_episode
     from tpvqa.events import EVENT, Ended
@@ -227,7 +226,7 @@ def show(
             )
         )
         return
-    view = EpisodeView(Console(), live=False, verbose=verbose)
+    view = EpisodeView(ResultConsole(), live=False, verbose=verbose)
     for event in events:
         view(event)
     if not isinstance(events[-1], Ended):
@@ -258,11 +257,10 @@ def _new_folder(task: str, seed: int, episode: int) -> Path:
 def _view(  # type: ignore[no-untyped-def]
     *, as_json: bool, verbose: bool, book: "QuestionBook | None" = None
 ):
-    from rich.console import Console
-
+    from tpvqa.cli.consoles import PatientConsole
     from tpvqa.cli.terminal import EpisodeView
 
-    console = Console(stderr=as_json)
+    console = PatientConsole(stderr=as_json)
     return (
         nullcontext(_silent)
         if as_json and not console.is_terminal
@@ -343,10 +341,10 @@ def _can_be_kept(config: "TrialConfig") -> None:
     Raises:
         WriteError: It cannot.
     """
-    from tpvqa.belief.writing import writable
+    from tpvqa.files import see_writable
 
     if config.monitor.experience is not None:
-        writable(Path(config.monitor.experience), remedy="Name another file with --experience")
+        see_writable(Path(config.monitor.experience), remedy="Name another file with --experience")
 
 
 def _silent(_event: object) -> None:
