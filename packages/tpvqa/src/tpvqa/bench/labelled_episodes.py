@@ -76,7 +76,7 @@ class Labelled:
         notices = list(found.notices)
         if self.inferred:
             notices.append(_INFERRED)
-        notices += [*map(_says_nothing, self.idle), *self.stray]
+        notices += [*self.stray, *map(_says_nothing, self.idle)]
         if self.unused:
             said = "1 episode has" if self.unused == 1 else f"{self.unused} episodes have"
             notices.append(f"{said} neither labels nor the truth, and taught nothing.")
@@ -132,6 +132,7 @@ def label_episodes(
         useless = file.exists() and not answers_some(recorded)
         if useless:
             idle.append(file)
+            stray += _of_no_question(file, stray_labels(recorded))
         if file.exists() and not useless:
             labelled.append(recorded)
             stray += _of_no_question(file, stray_labels(recorded))
