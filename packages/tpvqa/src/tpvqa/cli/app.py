@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from itertools import pairwise
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -96,7 +97,8 @@ vlm.register(app)
 
 
 def _check_names(arguments: Sequence[str]) -> None:
-    """See that all that was typed, and where, is text: what is not could not be kept in a log.
+    """See that all that was typed, and where, is text: what is not could not be kept in a log. And
+    that nothing is written into this folder because a variable of a script was empty.
 
     Raises:
         TpvqaError: It is not.
@@ -105,6 +107,12 @@ def _check_names(arguments: Sequence[str]) -> None:
         here = os.getcwd()
     except OSError:
         raise TpvqaError("The folder that you are in is gone. Go to another.") from None
+    for before, argument in pairwise(("", *arguments)):
+        if argument == "--out=" or (before == "--out" and not argument):
+            raise TpvqaError(
+                "--out is empty, and would write here. Name a folder, or a file where one is "
+                "written; this folder is named by a full stop."
+            )
     for what, name in (("folder that you are in", here), *(("argument", a) for a in arguments)):
         try:
             name.encode()

@@ -1,7 +1,6 @@
 """`tpvqa run`, `resume`, `config`, `show` and `report`."""
 
 import json
-import shlex
 import sys
 from collections.abc import Sequence
 from contextlib import nullcontext
@@ -25,6 +24,7 @@ from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_opt
 from tpvqa.cli.plan import Problem, Task
 from tpvqa.cli.saying import tell
 from tpvqa.config.layers import NAMEABLE, Layer, as_yaml, settings
+from tpvqa.errors import pasted
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
@@ -230,7 +230,7 @@ def show(
     for event in events:
         view(event)
     if not isinstance(events[-1], Ended):
-        tell(f"unfinished; it can be gone on with: tpvqa resume {shlex.quote(str(episode))}")
+        tell(f"unfinished; it can be gone on with: tpvqa resume {pasted(episode)}")
 
 
 def report(
@@ -385,7 +385,7 @@ def _finish(ended: "Ended", folder: Path, lost: "WriteError | None", *, as_json:
             )
         )
     else:
-        named = shlex.quote(str(folder))
+        named = pasted(folder)
         tell(f"episode: {folder}  (tpvqa show {named} · tpvqa report {named})")
         if ended.because == "cancelled":
             tell(f"go on:   tpvqa resume {named}")
