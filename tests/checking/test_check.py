@@ -190,6 +190,18 @@ FAULTS = {
     "a precondition that is never true": (
         "domain.pddl", ":precondition (held ?p)\n",
         ":precondition (and (held ?p) (pressed lid_two))\n", "pddl", Severity.ERROR, "lid_two"),
+    "a fact that is added and deleted": (
+        "domain.pddl", ":effect (pressed ?p)",
+        ":effect (and (pressed ?p) (not (pressed ?p)))", "effects-contradict", Severity.WARNING,
+        "(not (pressed ?p))"),
+    "a fact that is added and deleted in one case": (
+        "domain.pddl", ":effect (pressed ?p)",
+        ":effect (and (when (held ?p) (pressed ?p)) (when (held ?p) (and (not (pressed ?p)))))",
+        "effects-contradict", Severity.WARNING, "(when (held ?p)"),
+    "an action without effect of another's name": (
+        "domain.pddl", ":effect (pressed ?p)))",
+        ":effect (pressed ?p))\n  (:action press :parameters () :effect (and)))", "pddl",
+        Severity.ERROR, "(:action press :parameters ()"),
     "a goal out of reach": (
         "problem.pddl", "(pressed lid)", "(held cap) (held lid)", "goal-unreachable",
         Severity.ERROR, "(:goal"),
@@ -205,6 +217,19 @@ def test_a_fault_is_found_and_placed(files: Files, fault: str) -> None:
     assert found[0].says
     if word:
         assert found[0].place == f"{files.folder / file}:{files.line(file, word)}"
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        "(and (pressed ?p) (when (held ?p) (not (pressed ?p))))",
+        "(and (when (free) (pressed ?p)) (when (held ?p) (not (pressed ?p))))",
+        "(and (pressed ?p) (forall (?o - part) (when (free) (not (pressed ?o)))))",
+    ],
+)
+def test_effects_of_different_cases_contradict_nothing(files: Files, effect: str) -> None:
+    files.change("domain.pddl", ":effect (pressed ?p)", f":effect {effect}")
+    assert not [each for each in files.found() if each.kind == "effects-contradict"]
 
 
 def test_all_mistakes_in_the_questions_are_told_at_once(files: Files) -> None:

@@ -88,6 +88,20 @@ def test_a_single_question_is_asked_in_the_same_ways(tpvqa: Run) -> None:
         (("--together",), "--together is for --vlm openai:MODEL, and this VLM is 'embedded'"),
         (("--max-requests", "3"), "--max-requests is for --vlm openai:MODEL"),
         (("--batch", "3"), "--batch is for --vlm hf:MODEL"),
+        (("--base-url", "http://x"), "--base-url is for --vlm openai:MODEL, and this VLM is"),
+        (("--majority", "strict", "--monitor", "belief"), "--majority is for --monitor tpvqa, or"),
+        (
+            ("--no-alternatives", "--monitor", "vote:3"),
+            "--no-alternatives is for --monitor tpvqa, and this monitor is 'vote:3'. Leave it out",
+        ),
+        (
+            ("--world", "symbolic", "--simulator", "paper", "--vlm", "oracle"),
+            "--simulator is for --world images, and this world is 'symbolic'. Leave it out",
+        ),
+        (
+            ("--world", "symbolic", "--pictures", "set", "--vlm", "oracle"),
+            "--pictures is for --world pictures:FOLDER, or for --world images, and this world",
+        ),
         (("--device", "banana"), "write auto, cpu, cuda, cuda:N or mps, not 'banana'"),
         (("--picture-quality", "101"), "a quality of JPEG from 1 to 100, or png, not '101'"),
     ],

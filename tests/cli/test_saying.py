@@ -99,8 +99,12 @@ def test_what_cannot_be_written_has_an_exit_code_of_its_own(tpvqa: Run, tmp_path
     with file_size(2000):
         code, _, err = tpvqa("report", "e")
     assert (code, "report.html: cannot be written" in err) == (6, True)
-    code, _, err = tpvqa(*trial, "--experience", "/sys/kernel/known.json", "--out", "f")
-    assert (code, "--experience" in err) == (6, True)
+    for place in ("/sys/kernel/known.json", "/proc/known.json"):
+        code, _, err = tpvqa(*trial, "--experience", place, "--out", "f")
+        assert (code, "--experience" in err) == (6, True), err
+        assert not Path("f").exists()  # it is told before anything moves
+    code, _, err = tpvqa(*trial, "--experience", "new/known.json", "--out", "e")
+    assert (code, "holds an episode" in err, Path("new").exists()) == (2, True, False)
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(
             [sys.executable, "-m", "tpvqa", "show", "e"], stdout=full, stderr=subprocess.PIPE

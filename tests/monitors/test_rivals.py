@@ -100,10 +100,19 @@ def test_the_goal_is_checked_at_the_end_and_what_is_denied_taken_out(
     assert asked.count("Is the plate clean?") == 2 * (3 if isinstance(sure, Votes) else 2)
 
 
+@pytest.mark.parametrize("spec", ["tpvqa:101", "tpvqa:1000000:strict"])
+def test_votes_end(spec: str) -> None:
+    with pytest.raises(PluginError, match=r"A vote over \d+ looks is too long; take 100 at"):
+        make(Kind.MONITOR, spec)
+    assert make(Kind.MONITOR, "tpvqa:100").name == "tpvqa:100"
+    assert make(Kind.MONITOR, "vote:100").name == "vote:100"
+
+
 @pytest.mark.parametrize(
     "spec",
-    ["blind", "blind:0", "blind:x", "vote", "vote:0", "vote:3:most", "lead:0", "lead", "lead:-1"],
-)
+    ["blind", "blind:0", "blind:x", "vote", "vote:0", "vote:3:most", "lead:0", "lead", "lead:-1",
+     "vote:101", "vote:1000000:strict", "lead:101", f"vote:{'9' * 5000}", f"lead:{'9' * 5000}"],
+)  # fmt: skip
 def test_arguments_that_mean_nothing_are_refused(spec: str) -> None:
     with pytest.raises(PluginError, match=f"'{spec.partition(':')[0]}:.*' is not understood"):
         make(Kind.MONITOR, spec)

@@ -120,7 +120,7 @@ def test_a_specification_says_how_many_looks_and_which_majority(
     assert (verdict.decision, looked) == (decision, looks)
 
 
-@pytest.mark.parametrize("spec", ["x", "3:x", "strict:3", "-1", "3.5"])
+@pytest.mark.parametrize("spec", ["x", "3:x", "strict:3", "-1", "3.5", "9" * 5000])
 def test_a_specification_that_is_not_understood(spec: str) -> None:
     with pytest.raises(PluginError, match=f"'tpvqa:{spec}' is not understood"):
         TPVQA.from_spec(spec)

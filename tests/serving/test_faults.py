@@ -1,10 +1,13 @@
 """Between client and server all goes wrong: no answer comes of that which the VLM did not give."""
 
+import socket
+from urllib.parse import urlsplit
+
 import pytest
 
 from tests.doubles import worded
 from tests.serving.faulty_proxy import Fault, FaultyProxy
-from tests.serving.running import Known, body, complete, picture, running
+from tests.serving.running import Known, body, call, complete, picture, running
 from tpvqa.errors import AnswerError
 from tpvqa.observation import Frame, Observation
 from tpvqa.serving.app import Limits
@@ -104,3 +107,24 @@ def test_a_served_vlm_may_be_another_server() -> None:
     assert [answer.reply for answer in found] == list(RIGHT.values())
     assert unknown.word == "unknown"
     assert "so says the table" in unknown.json["choices"][0]["message"]["refusal"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "length"),
+    [("application/json", 5000), ("text/plain", 5000), ("application/json", 2**40)],
+    ids=["wanted", "of another kind", "too large"],
+)
+def test_a_client_that_goes_while_it_sends_leaves_no_trace(
+    kind: str, length: int, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with running(Known(TABLE)) as serving:
+        place = urlsplit(serving.address)
+        with socket.create_connection((place.hostname or "", place.port or 0), 10) as going:
+            going.sendall(
+                f"POST /v1/chat/completions HTTP/1.1\r\nHost: {place.netloc}\r\n"
+                f"Content-Type: {kind}\r\nContent-Length: {length}\r\n\r\n".encode()
+                + b"{" * 100
+            )
+            assert call(serving, "GET", "/health").status == 200  # by now the body is waited for
+        assert complete(serving, body("Is it so?", picture())).word == "yes"
+    assert capfd.readouterr().err == ""

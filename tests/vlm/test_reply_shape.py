@@ -81,6 +81,35 @@ def test_that_what_is_asked_is_not_there_is_no(question: str, text: str) -> None
     assert read_words(text, question) is Reply.NO
 
 
+@pytest.mark.parametrize(
+    ("question", "text"),
+    [
+        ("Is the fridge open?", "No, the closed fridge is open"),
+        ("Is the fridge open?", "No, the fridge is shut open."),
+        ("Is the fridge open?", "No, the closed fridge is opened."),
+        ("Is the plate clean?", "No, the dirty plate is clean."),
+        ("Is the gripper holding the plate?", "No, the empty gripper is holding the plate."),
+    ],
+)
+def test_a_word_beside_what_it_excludes_says_nothing(question: str, text: str) -> None:
+    assert read_words(text, question) is Reply.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("question", "text"),
+    [
+        ("Is the fridge open?", "No, the fridge is closed."),
+        ("Is the fridge open?", "No, it is shut. It is closed."),
+        ("Is the lamp on the table on?", "No, the lamp on the table is off."),
+        ("Is the plate in the gripper?", "No, the gripper is empty."),
+        ("Is the gripper holding the plate?", "No, the gripper is empty."),
+        ("Is the open bottle full?", "No, the open bottle is empty."),
+    ],
+)
+def test_a_word_in_place_of_what_it_excludes_is_no(question: str, text: str) -> None:
+    assert read_words(text, question) is Reply.NO
+
+
 @pytest.mark.parametrize("question", ["", "?", "Ist die Tür auf?", "a" * 10_000, "Is\n\0it?", "1"])
 def test_whatever_is_asked_the_word_alone_counts(question: str) -> None:
     assert read_words("Yes", question) is Reply.YES

@@ -108,6 +108,53 @@ def test_the_answer_token_is_the_first_yes_or_no_after_any_reasoning(
     assert found == (None if at is None else tokens(*texts)[at])
 
 
+def reply_of(content: str, *texts: str, **more: object) -> Reply:
+    told = [{"token": text, "logprob": -0.1, "top_logprobs": []} for text in texts]
+    message = {"role": "assistant", "content": content, **more}
+    body = {"choices": [{"message": message, "logprobs": {"content": told}}]}
+    return read_completion(json.dumps(body)).reply
+
+
+@pytest.mark.parametrize(
+    ("content", "texts"),
+    [
+        ("No", ["unknown"]),
+        ("No", ["I do", " not know"]),
+        ("No", ["I can", "not"]),
+        ("Yes", ["Eyes closed"]),
+        ("Yes", ["Y", "es", "terday"]),
+    ],
+)
+def test_tokens_that_hold_the_word_only_inside_another_say_otherwise(
+    content: str, texts: list[str]
+) -> None:
+    assert reply_of(content, *texts) is Reply.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("content", "texts"),
+    [
+        ("No", ["N", "o"]),
+        ("Yes", ["Y", "es"]),
+        ("Yes", ["Y", "es", "<|im_end|>"]),
+        ("yes", ["ĠY", "ES", "."]),
+        ("Yes", ["▁Y", "es"]),
+        ("Yes", ["<", "think", ">", "unknown", "</", "think", ">", "Y", "es"]),
+        ("No", ["_N", "o_"]),
+        ("No", ["N"]),
+        ("**Yes**", ["**", "Y", "es", "**"]),
+    ],
+)
+def test_tokens_that_spell_the_word_in_parts_agree(content: str, texts: list[str]) -> None:
+    assert reply_of(content, *texts).value == content.strip("*").lower()
+
+
+@pytest.mark.parametrize("called", [{"tool_calls": [{"id": 1}]}, {"function_call": {"name": "x"}}])
+def test_a_word_beside_the_call_of_a_tool_is_no_answer(called: dict[str, object]) -> None:
+    assert reply_of("Yes") is Reply.YES
+    assert reply_of("Yes", **called) is Reply.UNKNOWN
+
+
 @given(st.binary() | st.text())
 def test_any_body_is_read_without_an_error(body: bytes | str) -> None:
     assert read_completion(body).reply is Reply.UNKNOWN

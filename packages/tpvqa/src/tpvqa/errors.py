@@ -55,6 +55,13 @@ def shown(text: object) -> str:
     return repr(cut(text))
 
 
+def pasted(path: object) -> str:
+    """A path as it can be pasted into a shell after a command, also one that looks like an
+    option: -x as ./-x."""
+    said = str(path)
+    return shlex.quote(f"./{said}" if said.startswith("-") else said)
+
+
 def a(noun: str) -> str:
     """A noun with its article: a lamp, an item."""
     return f"{'an' if noun[:1] in 'aeiou' else 'a'} {noun}"
@@ -124,7 +131,12 @@ class PlannerError(TpvqaError):
 
 
 class GroundingTimedOut(PlannerError):  # noqa: N818
-    """Reading and grounding a task took longer than allowed."""
+    """Reading and grounding a task took longer than allowed; the message ends with "give it more
+    time"."""
+
+    def by(self, option: str) -> "GroundingTimedOut":
+        """The same, with the option that gives more."""
+        return GroundingTimedOut(f"{self} by {option}")
 
 
 class QuestionsError(PlacedError):
@@ -227,7 +239,7 @@ class NotNamedError(EpisodeError):
         super().__init__(
             f"{place}: the log names what only you may name, as an episode may be a stranger's. "
             f"Where you agree with all of it, go on with:\n"
-            f"tpvqa resume {shlex.quote(place)} {words}"
+            f"tpvqa resume {pasted(place)} {words}"
         )
 
 

@@ -117,6 +117,36 @@ def write_whole(path: Path | str, data: bytes, *, remedy: str, durable: bool = F
         raise WriteError.of(path, error, remedy) from error
 
 
+def see_writable(path: Path, *, remedy: str) -> None:
+    """See that `write_whole` can write a file, folders above it included; nothing is left behind.
+
+    Permissions alone do not tell: of a read-only disk, or of /proc, they say that it can.
+
+    Args:
+        path: The file.
+        remedy: What the user can do where it cannot be written; a sentence without its full stop.
+
+    Raises:
+        WriteError: It cannot.
+    """
+    above = next(each for each in path.absolute().parents if os.path.lexists(each))
+    try:
+        if not above.is_dir():
+            raise NotADirectoryError(errno.ENOTDIR, f"{above} is no folder")
+        with suppress(FileNotFoundError):
+            _see_replaceable(path.lstat().st_mode)
+        beside = above / f".{secrets.token_hex(8)}.part"
+        os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666))
+        beside.unlink()
+    except OSError as error:
+        raise WriteError.of(path, error, remedy) from error
+
+
+def _see_replaceable(mode: int) -> None:
+    if not stat.S_ISREG(mode) and not stat.S_ISLNK(mode):
+        raise OSError(errno.EINVAL, "there is a folder, a pipe or a device in its place")
+
+
 def write_whole_at(folder: int, name: str, data: bytes, *, durable: bool = False) -> None:
     """As `write_whole`, in a folder that is open already.
 
@@ -124,9 +154,7 @@ def write_whole_at(folder: int, name: str, data: bytes, *, durable: bool = False
         OSError: It cannot be written; nothing is left behind.
     """
     with suppress(FileNotFoundError):
-        there = os.stat(name, dir_fd=folder, follow_symlinks=False).st_mode
-        if not stat.S_ISREG(there) and not stat.S_ISLNK(there):
-            raise OSError(errno.EINVAL, "there is a folder, a pipe or a device in its place")
+        _see_replaceable(os.stat(name, dir_fd=folder, follow_symlinks=False).st_mode)
     beside = f".{secrets.token_hex(8)}.part"
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
     descriptor = os.open(beside, flags, 0o666, dir_fd=folder)

@@ -28,7 +28,7 @@ def film(
     """
     from tpvqa import Trial, TrialConfig
     from tpvqa.episodes import EpisodeWriter
-    from tpvqa.errors import TpvqaError
+    from tpvqa.errors import TpvqaError, pasted
     from tpvqa_robots.film.recorder import RATE, Recorder
     from tpvqa_robots.film.writing import write_gif, write_mp4
     from tpvqa_robots.world import ToysWorld
@@ -44,8 +44,8 @@ def film(
             ended = trial.run(writer, folder=out, listeners=[recorder])
         except KeyboardInterrupt:
             print(
-                f"{out} holds the episode without a film: `tpvqa resume {out}` ends the trial and "
-                "films nothing; for a film begin anew in another folder",
+                f"{out} holds the episode without a film: `tpvqa resume {pasted(out)}` ends the "
+                "trial and films nothing; for a film begin anew in another folder",
                 file=sys.stderr,
             )
             raise

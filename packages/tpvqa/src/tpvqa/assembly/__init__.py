@@ -7,11 +7,13 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from tpvqa import __version__
-from tpvqa.assembly.answering import OF_TRIALS, answering, wanting
+from tpvqa.assembly.answering import answering
+from tpvqa.assembly.grounding import grounded
 from tpvqa.assembly.lasting import see_lasting, watching
 from tpvqa.assembly.numbers import see_numbers
 from tpvqa.assembly.simulating import simulate
 from tpvqa.assembly.told import read_told, see_fitting, stated_bound
+from tpvqa.assembly.wanting import see_wanted
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
 from tpvqa.belief.priors import Priors, load_priors
@@ -32,10 +34,10 @@ from tpvqa.events.records import atoms
 from tpvqa.monitors import Monitor
 from tpvqa.monitors.capabilities import experience_of, never_asks
 from tpvqa.monitors.making import make_monitor
-from tpvqa.pddl import Task, literals, load_task
+from tpvqa.pddl import Task, literals
 from tpvqa.planning import Planner
 from tpvqa.planning.making import make_planner
-from tpvqa.plugins import Checked, Closing, Kind, load_spec, see_free, see_taken
+from tpvqa.plugins import Checked, Closing, Kind, load_spec, see_free
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import domain_and_problem, find_task
 from tpvqa.text_files import kept_text
@@ -105,7 +107,7 @@ class Trial:
         self._closing: list[Callable[[], None]] = []
         try:
             self._find_files()
-            self.task = task or load_task(self.domain, self.problem)
+            self.task = task or grounded(self.domain, self.problem, config.planner)
             self.book = (book or QuestionBook.load(self.questions, self.task)).worded(
                 config.wording
             )
@@ -198,8 +200,7 @@ class Trial:
         made, by_vlm = answering(self, vlm, context)
         see_fitting(self, made, world, self._begun_as)
         if self._every_option:
-            taken = by_world | by_monitor | by_vlm
-            see_taken(options, taken, context, whose=OF_TRIALS, wanting=wanting(self.vlm_spec))
+            see_wanted(self, options, by_world | by_monitor | by_vlm, context)
         if made is not vlm and isinstance(made, Closing):
             self._closing.append(made.close)
         self.parts = Parts(self.task, self.book, planner, world, made, person)

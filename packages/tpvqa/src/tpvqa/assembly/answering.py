@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.config import SimulationConfig, TrialConfig
-from tpvqa.config.layers import settings
-from tpvqa.errors import TpvqaError, shown
+from tpvqa.errors import TpvqaError
 from tpvqa.plugins import Kind, class_of, load_spec, see_taken, takes
 from tpvqa.vlm import VLM
 from tpvqa.vlm.capabilities import is_noise_model, kind_of
@@ -17,9 +16,6 @@ from tpvqa.vlm.prompt import load_prompt
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
-
-OF_TRIALS = "this world, monitor and VLM"
-"""Who takes the options of a trial."""
 
 
 def answering(
@@ -132,24 +128,6 @@ def _asked_so(config: TrialConfig) -> dict[str, str]:
     if config.vlm.prompt is not None:
         said["prompt"] = load_prompt(Path(config.vlm.prompt)).digest
     return said
-
-
-def wanting(vlm: str) -> dict[str, str]:
-    """What is said of the settings of one kind of VLM where another was taken, by their names.
-
-    Args:
-        vlm: The specification of the one that was.
-    """
-    found = {}
-    for each in settings():
-        kind, colon, _ = each.says.partition(":")
-        if colon and kind in ("openai", "hf"):
-            name = each.option.removeprefix("--").replace("-", "_")
-            found[name] = (
-                f"{each.option} is for --vlm {kind}:MODEL, and this VLM is {shown(vlm)}. Leave it "
-                "out, or take such a VLM."
-            )
-    return found
 
 
 def identity(trial: "Trial") -> bytes:

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
+from tpvqa.assembly.grounding import grounded
 from tpvqa.assembly.told import read_told
 from tpvqa.belief.priors import load_priors
 from tpvqa.belief.risk import RiskCalibration
 from tpvqa.config import TrialConfig
 from tpvqa.errors import TpvqaError
-from tpvqa.pddl import load_task
 from tpvqa.pddl.state_file import read_state
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import domain_and_problem, find_task
@@ -37,7 +37,7 @@ def see_files(config: TrialConfig) -> None:
         return
     if domain is None or problem is None:
         raise TpvqaError("Name a shipped task, or give both --domain and --problem.")
-    task = load_task(domain, problem)
+    task = grounded(domain, problem, config.planner)
     QuestionBook.load(named.questions or (files.questions if files else None), task)
     load_world_file(named.world_file or (files.world if files else None), task)
     load_priors(task, config.start.priors, config.start.what)

@@ -15,7 +15,7 @@ from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
-from tpvqa.errors import CalibrationError
+from tpvqa.errors import CalibrationError, pasted
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.events import Acted, Waited
 from tpvqa.labelling import LABELS, RecordedEpisode, check_apart, read_recorded
@@ -76,7 +76,7 @@ class Labelled:
         notices = list(found.notices)
         if self.inferred:
             notices.append(_INFERRED)
-        notices += [*map(_says_nothing, self.idle), *self.stray]
+        notices += [*self.stray, *map(_says_nothing, self.idle)]
         if self.unused:
             said = "1 episode has" if self.unused == 1 else f"{self.unused} episodes have"
             notices.append(f"{said} neither labels nor the truth, and taught nothing.")
@@ -132,6 +132,7 @@ def label_episodes(
         useless = file.exists() and not answers_some(recorded)
         if useless:
             idle.append(file)
+            stray += _of_no_question(file, stray_labels(recorded))
         if file.exists() and not useless:
             labelled.append(recorded)
             stray += _of_no_question(file, stray_labels(recorded))
@@ -172,14 +173,14 @@ def _of_no_question(file: Path, labels: Sequence[tuple[int, str]]) -> list[str]:
         f"{file}: {said} of no question that was asked, and count{'' if others else 's'} for "
         f'nothing: "{text}" (stretch {stretch})'
         + (", …" if others else "")
-        + f". Label anew (`tpvqa label {file.parent}`), or remove the lines."
+        + f". Label anew (`tpvqa label {pasted(file.parent)}`), or remove the lines."
     ]
 
 
 def _says_nothing(file: Path) -> str:
     return (
         f"{file} answers none of the episode's questions with yes or no, so it counts for nothing. "
-        f"Label some (`tpvqa label {file.parent}`), or remove it."
+        f"Label some (`tpvqa label {pasted(file.parent)}`), or remove it."
     )
 
 
@@ -214,7 +215,7 @@ def _tells_truth(event: Event) -> bool:
 def _untold(name: str) -> CalibrationError:
     return CalibrationError(
         f"{name}: the log says of some actions what was true, and of others not. Label it "
-        f"(`tpvqa label {name}`), or leave it out"
+        f"(`tpvqa label {pasted(name)}`), or leave it out"
     )
 
 

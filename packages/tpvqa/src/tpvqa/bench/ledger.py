@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.published import differences, read_published
 from tpvqa.bench.row import EpisodeRow
+from tpvqa.episodes.log import LOG
 from tpvqa.errors import BenchError, WriteError
 from tpvqa.files import make_folder, open_plain, write_all, write_whole
 from tpvqa.told import first_fault
@@ -32,14 +33,16 @@ class Ledger:
         published: Rows of the same bench that count as finished, see `published`.
 
     Raises:
-        BenchError: Another bench lies there, it is being written by another process, or it is
-            damaged.
+        BenchError: Another bench, or an episode, lies there, it is being written by another
+            process, or it is damaged.
         WriteError: The folder cannot be written to.
     """
 
     def __init__(self, folder: Path, settings: Mapping[str, Any], published: Path | None = None):
         others = [] if published is None else list(read_published(published, settings))
         self.folder = Path(folder)
+        if (self.folder / LOG).exists():
+            raise BenchError(f"{folder} holds an episode; name another folder with --out")
         try:
             make_folder(self.folder)
             flags = os.O_RDWR | os.O_APPEND | os.O_CREAT

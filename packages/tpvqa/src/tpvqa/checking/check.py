@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tpvqa.checking import possible, wordings, world
+from tpvqa.checking.contradicting import of_effects
 from tpvqa.checking.finding import Finding, Severity, of_error
 from tpvqa.checking.priors import of_priors
 from tpvqa.checking.seeing import Telling
@@ -82,6 +83,7 @@ def _findings(
     yield from possible.of_metric(task)
     yield from possible.of_actions(task, _undone(rules))
     yield from possible.of_predicates(task)
+    yield from of_effects(task)
     yield from wordings.in_vain(task, given, questions)
     yield from wordings.doubled(given, questions)
     if questions is None:

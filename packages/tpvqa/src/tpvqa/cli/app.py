@@ -5,8 +5,8 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from io import TextIOWrapper
-from typing import Annotated, Any
+from itertools import pairwise
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -26,17 +26,22 @@ from tpvqa.cli import (
 )
 from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.cli.saying import tell
+from tpvqa.cli.streams import all_printed, check_output, end_notes, give_up, print_anything
 from tpvqa.errors import TpvqaError, WriteError, cut
 
 NOT_WRITTEN = 6
 """Exit code: the disk is full, say. What was written before is whole."""
 
 
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO, errno.EPIPE)
 
 
 class _Interrupted(Exception):  # noqa: N818 — Ctrl-C, not an error
     """Ctrl-C, in a form that Typer leaves alone: it would end the process without a word."""
+
+
+class _NobodyReads(Exception):  # noqa: N818
+    """A pipe whose reader is gone, in such a form, too: Typer would say "not reached", code 1."""
 
 
 class _Commands(PluggedGroup):
@@ -45,6 +50,8 @@ class _Commands(PluggedGroup):
             return super().invoke(ctx)
         except KeyboardInterrupt:
             raise _Interrupted from None
+        except BrokenPipeError as error:
+            raise _NobodyReads from error
 
 
 app = typer.Typer(
@@ -89,15 +96,9 @@ cache.register(app)
 vlm.register(app)
 
 
-def _print_anything() -> None:
-    """Let letters that a terminal or a pipe has no code for be escaped, instead of an error."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
-
-
 def _check_names(arguments: Sequence[str]) -> None:
-    """See that all that was typed, and where, is text: what is not could not be kept in a log.
+    """See that all that was typed, and where, is text: what is not could not be kept in a log. And
+    that nothing is written into this folder because a variable of a script was empty.
 
     Raises:
         TpvqaError: It is not.
@@ -106,6 +107,12 @@ def _check_names(arguments: Sequence[str]) -> None:
         here = os.getcwd()
     except OSError:
         raise TpvqaError("The folder that you are in is gone. Go to another.") from None
+    for before, argument in pairwise(("", *arguments)):
+        if argument == "--out=" or (before == "--out" and not argument):
+            raise TpvqaError(
+                "--out is empty, and would write here. Name a folder, or a file where one is "
+                "written; this folder is named by a full stop."
+            )
     for what, name in (("folder that you are in", here), *(("argument", a) for a in arguments)):
         try:
             name.encode()
@@ -122,27 +129,42 @@ def main() -> None:
     A `TpvqaError` becomes one clear message and exit code 2, or 6 where something could
     not be written; Ctrl-C, or SIGTERM, becomes "interrupted" and exit code 130.
     """
-    _print_anything()
+    print_anything()
+    try:
+        _main()
+    finally:
+        end_notes()
+
+
+def _main() -> None:
     try:
         try:
+            check_output(sys.argv[1:])
             _check_names(sys.argv[1:])
             app()
-        finally:
-            if sys.stdout is not None:  # None where it was closed before the program began
-                with suppress(BrokenPipeError):
-                    sys.stdout.flush()
-    except OSError as error:
-        if error.errno == errno.ENAMETOOLONG:
-            tell(f"error: the path '{cut(error.filename)}' is too long", error=True)
-            sys.exit(2)
-        if error.errno not in _FULL:
+        except SystemExit:  # how a command ends
+            all_printed()
             raise
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # what was not printed is not tried again
-        tell(f"error: standard output or a file cannot be written ({error.strerror})", error=True)
-        sys.exit(NOT_WRITTEN)
+        finally:
+            with suppress(BrokenPipeError):
+                all_printed()
+    except (OSError, _NobodyReads) as error:
+        _not_printed(error if isinstance(error, OSError) else BrokenPipeError(errno.EPIPE, ""))
     except TpvqaError as error:
         tell(f"error: {error}", error=True)
         sys.exit(NOT_WRITTEN if isinstance(error, WriteError) else 2)
     except (_Interrupted, KeyboardInterrupt):
-        print("interrupted", file=sys.stderr)
+        tell("interrupted", error=True)
         sys.exit(130)
+
+
+def _not_printed(error: OSError) -> NoReturn:
+    if error.errno == errno.ENAMETOOLONG:
+        tell(f"error: the path '{cut(error.filename)}' is too long", error=True)
+        sys.exit(2)
+    if error.errno not in _FULL:
+        raise error
+    give_up(sys.stdout)
+    why = os.strerror(error.errno)
+    tell(f"error: standard output or a file cannot be written ({why})", error=True)
+    sys.exit(NOT_WRITTEN)

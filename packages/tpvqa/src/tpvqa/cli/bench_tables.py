@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING
 from tpvqa.cli.saying import cell
 
 if TYPE_CHECKING:
-    from rich.console import Console
     from rich.table import Table
 
     from tpvqa.bench.report import Group, Results
+    from tpvqa.cli.consoles import ResultConsole
 
 
 def print_results(results: "Results") -> None:
     """Print completion, accuracy and decisions, a table for each VLM, world and condition."""
-    from rich.console import Console
+    from tpvqa.cli.consoles import ResultConsole
 
-    console = Console()
+    console = ResultConsole()
     if not console.is_terminal:
-        console = Console(width=150)
+        console = ResultConsole(width=150)
     for group in results.groups:
         table = _table(group.title)
         beside = f"vs {results.reference}"
@@ -57,7 +57,7 @@ def print_results(results: "Results") -> None:
         console.print()
 
 
-def _print_accuracy(console: "Console", results: "Results", group: "Group") -> None:
+def _print_accuracy(console: "ResultConsole", results: "Results", group: "Group") -> None:
     answers = _table("accuracy of answers")
     names = ("answers", "accuracy", "paper", "decision", "balanced", "AUROC", "ECE", "unanswered")
     _columns(answers, ("task", "asked", "on"), names)

@@ -61,8 +61,9 @@ def stats(
 def _print(title: str, groups: "Sequence[Kept]") -> None:
     from datetime import UTC, datetime
 
-    from rich.console import Console
     from rich.table import Table
+
+    from tpvqa.cli.consoles import ResultConsole
 
     table = Table(box=None)
     numbered = title == "VLM"
@@ -83,8 +84,8 @@ def _print(title: str, groups: "Sequence[Kept]") -> None:
             f"{each.seconds / each.answers:.3f}",
             datetime.fromtimestamp(each.last, UTC).strftime("%Y-%m-%d"),
         )
-    console = Console()
-    (console if console.is_terminal else Console(width=120)).print(table)
+    console = ResultConsole()
+    (console if console.is_terminal else ResultConsole(width=120)).print(table)
 
 
 def prune(

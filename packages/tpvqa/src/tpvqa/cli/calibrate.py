@@ -1,7 +1,6 @@
 """`tpvqa calibrate`: learn what a VLM's answers are worth."""
 
 import json
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -178,7 +177,7 @@ def calibrate(
         )
         files = [each.origin for each in tasks_of_own.values()]
         for notice in about_own_files(files, questions=questions, world_file=world_file):
-            print(f"note: {notice}", file=sys.stderr)
+            tell(f"note: {notice}", error=True)
         with _progress("trials") as bar:
             rows = label_trials(
                 name,
@@ -211,9 +210,9 @@ def calibrate(
 def _check(out: Path, image: Path, *, force: bool) -> None:
     """What would end the work at its end is told before it."""
     from tpvqa.belief.platt import regression
-    from tpvqa.belief.writing import writable
     from tpvqa.bench.style import styled_pyplot
     from tpvqa.errors import CalibrationError
+    from tpvqa.files import see_writable
 
     regression()
     styled_pyplot()
@@ -225,7 +224,7 @@ def _check(out: Path, image: Path, *, force: bool) -> None:
             f"{out} is there, and may be what others go by; name another file with --out, or write "
             "over it with --force"
         )
-    writable(out, remedy="Name another file with --out")
+    see_writable(out, remedy="Name another file with --out")
 
 
 def _from_episodes(folders: Sequence[Path], vlm: str | None) -> "Labelled":

@@ -62,8 +62,9 @@ def plain(
 
 def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> None:
     """Print how reliable answers are, before and after."""
-    from rich.console import Console
     from rich.table import Table
+
+    from tpvqa.cli.consoles import ResultConsole
 
     printed = Table(title=cell(calibration.vlm), title_justify="left", title_style="bold", box=None)
     for name in ("asked as", "about"):
@@ -81,8 +82,8 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
             f"{_figure(line.error_before)} → {_figure(line.error_after)}",
             end_section=line is table[-2],
         )
-    console = Console()
-    (console if console.is_terminal else Console(width=120)).print(printed)
+    console = ResultConsole()
+    (console if console.is_terminal else ResultConsole(width=120)).print(printed)
     typer.echo(
         f"\nA further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
         f"the same view, {calibration.repeat_other_view:.2f} from another; of the rest "

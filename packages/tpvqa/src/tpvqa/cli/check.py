@@ -63,6 +63,7 @@ def check(
     """Find what does not fit in a domain, its questions, world file and priors, with remedies."""
     from tpvqa.checking import Severity
     from tpvqa.checking import check as found_in
+    from tpvqa.errors import GroundingTimedOut
     from tpvqa.planning.making import make_planner
 
     wanted, _ = task_config(task, problem_file, domain, problem, questions_file, world_file)
@@ -79,6 +80,8 @@ def check(
             planner=planner,
             timeout=timeout,
         )
+    except GroundingTimedOut as error:
+        raise error.by("--timeout") from None
     finally:
         planner.close()
     if as_json:

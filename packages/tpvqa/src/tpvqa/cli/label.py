@@ -12,6 +12,7 @@ import typer
 
 from tpvqa.cli.label_words import press, progress_line, question_lines
 from tpvqa.cli.saying import tell
+from tpvqa.errors import pasted
 
 if TYPE_CHECKING:
     from tpvqa.labelling import Asking, Session
@@ -166,10 +167,8 @@ def _summary(session: "Session") -> dict[str, object]:
 
 
 def _say_end(session: "Session", episodes: list[Path]) -> None:
-    import shlex
-
     progress = session.progress
     tell(f"{progress_line(progress)}; {'enough' if progress.standing.enough else 'not enough yet'}")
-    named = " ".join(shlex.quote(str(each)) for each in episodes[:8])
+    named = " ".join(pasted(each) for each in episodes[:8])
     more = " …" if len(episodes) > 8 else ""
     tell(f"next: tpvqa calibrate {named}{more}")

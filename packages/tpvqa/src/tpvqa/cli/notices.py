@@ -159,12 +159,12 @@ def lost_midway(error: "AnswerError", folder: Path, config: "TrialConfig") -> "A
         folder: The episode.
         config: Of the trial.
     """
-    from tpvqa.errors import AnswerError
+    from tpvqa.errors import AnswerError, pasted
 
-    words = ["tpvqa", "resume", str(folder)]
+    resumed = f"tpvqa resume {pasted(folder)}"
     if config.vlm.base_url is not None:
-        words += ["--base-url", config.vlm.base_url]
+        resumed += f" --base-url {shlex.quote(config.vlm.base_url)}"
     return AnswerError(
         f"{error}\nWhat was done until then is in {folder}. Once the VLM can be asked again, go on "
-        f"with:\n{shlex.join(words)}"
+        f"with:\n{resumed}"
     )

@@ -96,7 +96,7 @@ def questions(
         wanted, notes = task_config(task, problem_file, domain, problem, questions_file)
         loaded, book = _load(wanted, timeout)
     except GroundingTimedOut as error:
-        _no_questions(str(error), TIMED_OUT)
+        _no_questions(str(error.by("--timeout")), TIMED_OUT)
     book = book.worded(wording)
     chosen = make_planner("fast-downward" if planner is None else planner)
     try:
@@ -247,9 +247,10 @@ def _print_lines(book: "QuestionBook", steps: "list[tuple[Action, list[Question]
 
 def _print_table(book: "QuestionBook", steps: "list[tuple[Action, list[Question]]]") -> None:
     from rich import box
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
+
+    from tpvqa.cli.consoles import ResultConsole
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("Action", "Way of asking", "Question", "Expected"):
@@ -260,7 +261,7 @@ def _print_table(book: "QuestionBook", steps: "list[tuple[Action, list[Question]
             said = Text(f"{number}. {plain(book.say(action))}" if at == 0 else "", "bold")
             last = at == len(asked) - 1
             table.add_row(said, question.way.value, cell(question.text), answer, end_section=last)
-    Console().print(table)
+    ResultConsole().print(table)
 
 
 def _answer_as_json(answer: "Answer") -> dict[str, Any]:

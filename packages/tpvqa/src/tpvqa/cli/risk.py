@@ -106,8 +106,8 @@ def risk(
 
 def _check(monitor: str, out: Path) -> None:
     """What would end the work at its end is told before it."""
-    from tpvqa.belief.writing import writable
     from tpvqa.errors import CalibrationError, TpvqaError
+    from tpvqa.files import see_writable
     from tpvqa.monitors.stated_risk import BELIEF, split_risk
 
     if monitor.partition(":")[0] != BELIEF or split_risk(monitor)[1] is not None:
@@ -117,7 +117,7 @@ def _check(monitor: str, out: Path) -> None:
         )
     if out.is_dir():
         raise CalibrationError(f"{out} is a folder; name a file with --out")
-    writable(out, remedy="Name another file with --out")
+    see_writable(out, remedy="Name another file with --out")
 
 
 def _own(trial: "Trial") -> "OwnTask | None":
@@ -158,8 +158,9 @@ def _rows(known: "RiskCalibration") -> list[dict[str, float]]:
 
 
 def _print(known: "RiskCalibration", rows: Sequence[dict[str, float]]) -> None:
-    from rich.console import Console
     from rich.table import Table
+
+    from tpvqa.cli.consoles import ResultConsole
 
     tell(
         f"{known.trials} trials: {len(known.right)} ended in done, {len(known.wrong)} in done with "
@@ -175,6 +176,6 @@ def _print(known: "RiskCalibration", rows: Sequence[dict[str, float]]) -> None:
             f"{row['done']:.3f}",
             f"{row['wrong_done']:.3f}",
         )
-    Console().print(table)
+    ResultConsole().print(table)
     if not rows:
         tell(f"{known.trials} trials are too few for a risk of {_RISKS[-1]:g}: 4 are needed")

@@ -1,7 +1,6 @@
 """`tpvqa run`, `resume`, `config`, `show` and `report`."""
 
 import json
-import shlex
 import sys
 from collections.abc import Sequence
 from contextlib import nullcontext
@@ -25,6 +24,7 @@ from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_opt
 from tpvqa.cli.plan import Problem, Task
 from tpvqa.cli.saying import tell
 from tpvqa.config.layers import NAMEABLE, Layer, as_yaml, settings
+from tpvqa.errors import pasted
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
@@ -213,8 +213,7 @@ def show(
     verbose: Verbose = False,
 ) -> None:
     """Print an episode again."""
-    from rich.console import Console
-
+    from tpvqa.cli.consoles import ResultConsole
     from tpvqa.cli.terminal import EpisodeView
     from tpvqa.episodes import read_episode
     from tpvqa.events import EVENT, Ended
@@ -227,11 +226,11 @@ def show(
             )
         )
         return
-    view = EpisodeView(Console(), live=False, verbose=verbose)
+    view = EpisodeView(ResultConsole(), live=False, verbose=verbose)
     for event in events:
         view(event)
     if not isinstance(events[-1], Ended):
-        tell(f"unfinished; it can be gone on with: tpvqa resume {shlex.quote(str(episode))}")
+        tell(f"unfinished; it can be gone on with: tpvqa resume {pasted(episode)}")
 
 
 def report(
@@ -258,11 +257,10 @@ def _new_folder(task: str, seed: int, episode: int) -> Path:
 def _view(  # type: ignore[no-untyped-def]
     *, as_json: bool, verbose: bool, book: "QuestionBook | None" = None
 ):
-    from rich.console import Console
-
+    from tpvqa.cli.consoles import PatientConsole
     from tpvqa.cli.terminal import EpisodeView
 
-    console = Console(stderr=as_json)
+    console = PatientConsole(stderr=as_json)
     return (
         nullcontext(_silent)
         if as_json and not console.is_terminal
@@ -343,10 +341,10 @@ def _can_be_kept(config: "TrialConfig") -> None:
     Raises:
         WriteError: It cannot.
     """
-    from tpvqa.belief.writing import writable
+    from tpvqa.files import see_writable
 
     if config.monitor.experience is not None:
-        writable(Path(config.monitor.experience), remedy="Name another file with --experience")
+        see_writable(Path(config.monitor.experience), remedy="Name another file with --experience")
 
 
 def _silent(_event: object) -> None:
@@ -387,7 +385,7 @@ def _finish(ended: "Ended", folder: Path, lost: "WriteError | None", *, as_json:
             )
         )
     else:
-        named = shlex.quote(str(folder))
+        named = pasted(folder)
         tell(f"episode: {folder}  (tpvqa show {named} · tpvqa report {named})")
         if ended.because == "cancelled":
             tell(f"go on:   tpvqa resume {named}")

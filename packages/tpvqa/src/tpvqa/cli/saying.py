@@ -6,6 +6,7 @@ that others wrote is shown as it is spelled instead, and in bounds.
 
 import sys
 import unicodedata
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -72,7 +73,11 @@ def tell(text: object, *, error: bool = False) -> None:
         error: Whether it goes to standard error.
     """
     said = plain(text, longest=LONGEST_ERROR, lines=True)
-    print(said, file=sys.stderr if error else sys.stdout)
+    if not error:
+        print(said)
+    elif sys.stderr is not None:  # of None, `print` would make standard output
+        with suppress(OSError):  # a note that nobody takes stops nothing
+            print(said, file=sys.stderr)
 
 
 def _lines(text: str) -> str:

@@ -24,13 +24,12 @@ _HEADS = {
 
 def print_comparison(found: "Comparison") -> None:
     """Print all VLMs, then their parts, differences and wordings."""
-    from rich.console import Console
-
     from tpvqa.bench.vlms.comparing import NOT_KNOWN
     from tpvqa.bench.vlms.lasting import LEAST
+    from tpvqa.cli.consoles import ResultConsole
 
-    console = Console()
-    console = console if console.is_terminal else Console(width=150)
+    console = ResultConsole()
+    console = console if console.is_terminal else ResultConsole(width=150)
     intervals = "95% intervals over" if found.clusters >= LEAST else "too few for intervals:"
     tell(
         f"{found.of}: {found.looks:,} looks; {intervals} {found.clusters} groups of looks that "

@@ -152,7 +152,10 @@ class PlannerConfig(Part):
         "fast-downward",
     )
     timeout: float = setting(
-        "--planning-timeout", "Seconds for one call of the planner.", 30.0, ge=0.001
+        "--planning-timeout",
+        "Seconds for grounding, and for one call of the planner.",
+        30.0,
+        ge=0.001,
     )
 
 

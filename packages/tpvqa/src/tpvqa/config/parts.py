@@ -76,7 +76,7 @@ class VLMConfig(Part):
         "recorded:MODEL[:HALF][:fresh], flawed:KIND[:…].",
     )
     base_url: Annotated[str | None, AfterValidator(_address)] = setting(
-        "--base-url", "Address of an OpenAI-like server."
+        "--base-url", "openai: address of a server like OpenAI's."
     )
     cache: str | None = setting(
         "--cache",

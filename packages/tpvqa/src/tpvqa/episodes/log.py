@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from tpvqa import __version__
 from tpvqa.episodes.shape import LogShape
-from tpvqa.errors import EpisodeError
+from tpvqa.errors import EpisodeError, pasted
 from tpvqa.events import EVENT, Event
 from tpvqa.events.events import SCHEMA
 from tpvqa.files import opened_plain
@@ -110,9 +110,14 @@ def read_episode(folder: Path | str) -> list[Event]:
         with opened_plain(path) as descriptor:
             return events_in(path, descriptor)
     except OSError as error:
-        raise EpisodeError(
-            f"{path.parent} holds no episode: {LOG} cannot be read ({error.strerror})"
-        ) from error
+        raise no_episode(path.parent, error) from error
+
+
+def no_episode(folder: Path, error: OSError) -> EpisodeError:
+    """The error of a folder without a log, or of what is no folder."""
+    if folder.exists() and not folder.is_dir():
+        return EpisodeError(f"{folder} is no episode: a folder with {LOG} in it is expected")
+    return EpisodeError(f"{folder} holds no episode: {LOG} cannot be read ({error.strerror})")
 
 
 def events_in(path: Path, descriptor: int) -> list[Event]:
@@ -131,7 +136,7 @@ def events_in(path: Path, descriptor: int) -> list[Event]:
     if not events:
         raise EpisodeError(
             f"{path}: the episode has no beginning; it was killed before it started, and nothing "
-            f"is lost. Begin it anew in the same folder: tpvqa run … --out {path.parent}"
+            f"is lost. Begin it anew in the same folder: tpvqa run … --out {pasted(path.parent)}"
         )
     return events
 

@@ -10,9 +10,9 @@ from typing import Self
 
 from pydantic_core import PydanticSerializationError
 
-from tpvqa.episodes.log import LOG, events_in, whole_lines
+from tpvqa.episodes.log import LOG, events_in, no_episode, whole_lines
 from tpvqa.episodes.shape import FRAMES, is_frame
-from tpvqa.errors import EpisodeError, PluginError, WriteError
+from tpvqa.errors import EpisodeError, PluginError, WriteError, pasted
 from tpvqa.events import EVENT, Ended, Event
 from tpvqa.events.events import CAN_BE_GONE_ON_WITH
 from tpvqa.events.records import depth_file
@@ -24,14 +24,15 @@ from tpvqa.told.strict_json import LONGEST
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 _TORN = b'{"number":0,'
 """How the first event of a log begins."""
-_NONE_THERE = (errno.ENOENT, errno.ELOOP, errno.ENXIO, errno.EINVAL)
+_NONE_THERE = (errno.ENOENT, errno.ENOTDIR, errno.ELOOP, errno.ENXIO, errno.EINVAL)
 _NO_ENDS = tuple(f'"because":"{each}"'.encode() for each in CAN_BE_GONE_ON_WITH)
 
 
 class EpisodeWriter:
     """Appends events, each on disk before `append` returns.
 
-    Where an event cannot be written, the log stays as it was: whole, to be gone on with.
+    Where an event cannot be written, the log stays as it was: whole, to be gone on with. Where the
+    first cannot, nothing stays.
 
     Args:
         folder: The episode's folder. It is made; it must not hold an episode already, unless
@@ -101,6 +102,7 @@ class EpisodeWriter:
         """Open the log and let no other writer at it: the lock ends with this process."""
         self.folder, self._durable, self.begun_anew = Path(folder), durable, False
         self._file = self._frames = -1
+        self._begun, self._made = not new, [self.folder / FRAMES]
         flags = os.O_RDWR | os.O_APPEND | (os.O_CREAT if new else 0)
         if new:
             self._make_folder()
@@ -110,12 +112,13 @@ class EpisodeWriter:
                 (self.folder / FRAMES).mkdir()
             self._frames = self._opened_frames()
         except OSError as error:
+            if new:
+                self._leave_nothing()
             self.close()
-            if new or error.errno not in _NONE_THERE:
+            linked = self.folder.is_dir() and error.errno == errno.ENOTDIR  # frames/ is a link
+            if new or linked or error.errno not in _NONE_THERE:
                 raise self._unwritten(error) from error
-            raise EpisodeError(
-                f"{self.folder} holds no episode: {LOG} cannot be read ({error.strerror})"
-            ) from error
+            raise no_episode(self.folder, error) from error
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
@@ -128,11 +131,24 @@ class EpisodeWriter:
             ) from None
 
     def _make_folder(self) -> None:
+        missing = [each for each in (self.folder, *self.folder.parents) if not each.exists()]
+        self._made += missing
         try:
             make_folder(self.folder)
         except OSError as error:
             remedy = "Nothing was begun: name another folder with --out"
             raise WriteError.of(self.folder, error, remedy) from error
+
+    def _leave_nothing(self) -> None:
+        """Take away the empty log, and what folders were made for it."""
+        if self._file >= 0:
+            with suppress(OSError):
+                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)  # it may be another's
+                if not os.fstat(self._file).st_size:
+                    (self.folder / LOG).unlink()
+        for each in self._made:
+            with suppress(OSError):
+                each.rmdir()
 
     def _opened_frames(self) -> int:
         try:
@@ -143,7 +159,7 @@ class EpisodeWriter:
 
     def _go_on_from(self, count: int, size: int, time: float) -> None:
         self._count, self._size, self._began = count, size, monotonic() - time
-        self._cut = False
+        self._cut, self._begun = False, self._begun or count > 0
 
     def _nothing_there(self) -> int:
         """See that the log is empty, or torn before anything was in it."""
@@ -156,7 +172,7 @@ class EpisodeWriter:
             return 0
         raise EpisodeError(
             f"{self.folder} holds an episode already; name another folder with --out, or, where it "
-            f"has not ended, go on with it: tpvqa resume {self.folder}"
+            f"has not ended, go on with it: tpvqa resume {pasted(self.folder)}"
         )
 
     def _kept(self, count: int) -> int:
@@ -197,11 +213,13 @@ class EpisodeWriter:
             write_all(self._file, line)
             if self._durable:
                 os.fsync(self._file)
-            self._size, self._count = self._size + len(line), self._count + 1
+            self._size, self._count, self._begun = self._size + len(line), self._count + 1, True
         except BaseException as error:  # Ctrl-C, too: what is in the log has been counted
             with suppress(OSError):
                 os.ftruncate(self._file, self._size)
             if isinstance(error, OSError):
+                if not self._begun:
+                    self._leave_nothing()
                 raise self._unwritten(error) from error
             raise
         return event
@@ -235,9 +253,11 @@ class EpisodeWriter:
 
     @property
     def _remedy(self) -> str:
+        if not self._begun:
+            return "Nothing was begun: make room, or name another folder with --out"
         return (
-            "What was written is whole: make room, or name another folder with --out; an episode "
-            f"that was begun is gone on with by: tpvqa resume {self.folder}"
+            "What was written is whole: make room, and go on with it: tpvqa resume "
+            f"{pasted(self.folder)}"
         )
 
     def _unwritten(self, error: OSError) -> WriteError:

@@ -52,7 +52,8 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
     A line that was torn by a kill is left out.
 
     Raises:
-        CalibrationError: The file is damaged, of another version, or of another episode.
+        CalibrationError: The file is damaged, of another version, or of another episode, or a
+            label is of a time after its end.
     """
     path = episode.folder / LABELS
     try:
@@ -71,6 +72,12 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
             raise CalibrationError(
                 f"{path}:{number}: labels of another episode. Put them beside the log that they "
                 f"are of, or remove them and label {episode.folder} anew"
+            )
+        if label.stretch > len(episode.actions):
+            raise CalibrationError(
+                f"{path}:{number}: a label of stretch {label.stretch}, and the episode's last is "
+                f"{len(episode.actions)}. Put the labels beside the log that they are of, or "
+                "remove the line"
             )
         found[label.stretch, label.text] = label.label
     return found

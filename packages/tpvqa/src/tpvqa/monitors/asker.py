@@ -3,7 +3,7 @@
 from collections.abc import Generator, Sequence
 from typing import Any, Protocol
 
-from tpvqa.errors import PluginError
+from tpvqa.errors import PluginError, cut
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.majority import Majority
 from tpvqa.monitors.protocol import Check, Step
@@ -13,6 +13,8 @@ from tpvqa.monitors.vote import vote
 from tpvqa.questions import Question
 from tpvqa.vlm import Answer
 
+MOST = 100
+"""Looks of a vote, at most."""
 Asking = Generator[Request, Any, tuple[bool | None, list[Answer]]]
 Telling = Generator[Request, Any, list[Answer]]
 
@@ -36,7 +38,7 @@ class Asker:
         votes: Looks at which every question is asked; each question's answer is the vote.
 
     Raises:
-        PluginError: There are fewer votes than one, or there is no such majority.
+        PluginError: There are fewer votes than one or more than 100, or there is no such majority.
     """
 
     def __init__(
@@ -44,6 +46,8 @@ class Asker:
     ):
         if votes < 1:
             raise PluginError(f"A vote over {votes} looks decides nothing; it takes one or more.")
+        if votes > MOST:
+            raise PluginError(f"A vote over {cut(votes)} looks is too long; take {MOST} at most.")
         self.majority, self.looks, self.votes = Majority.named(majority), looks, votes
 
     @property

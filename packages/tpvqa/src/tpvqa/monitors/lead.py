@@ -3,6 +3,7 @@
 That is Wald's sequential test of every fact by itself, without a calibration and without a memory.
 """
 
+import re
 from collections.abc import Sequence
 
 from tpvqa.errors import PluginError
@@ -43,7 +44,7 @@ class Lead(CorrectingMonitor):
         Raises:
             PluginError: M is not a number of answers.
         """
-        if not arguments.isdecimal() or not 1 <= int(arguments) <= MOST:
+        if not re.fullmatch(r"[0-9]{1,9}", arguments) or not 1 <= int(arguments) <= MOST:
             raise PluginError(
                 f"'lead:{arguments}' is not understood. Write lead:M for M answers ahead, "
                 f"e.g. lead:3; at most {MOST}."

@@ -1,5 +1,7 @@
 """The paper's monitor: ask all preconditions before an action, all effects after it, and count."""
 
+import re
+
 from tpvqa.errors import PluginError
 from tpvqa.monitors.asker import Asker
 from tpvqa.monitors.correcting import CorrectingMonitor
@@ -54,7 +56,7 @@ class TPVQA(CorrectingMonitor, PlainArguments):
             PluginError: The arguments are others.
         """
         words = arguments.split(":") if arguments else []
-        votes = words.pop(0) if words and words[0].isdecimal() else "1"
+        votes = words.pop(0) if words and re.fullmatch(r"[0-9]{1,9}", words[0]) else "1"
         rule = words.pop(0) if words and words[0] in set(Majority) else majority
         if words not in ([], [PLAIN]):
             raise PluginError(

@@ -1,10 +1,14 @@
 """The paper's monitor, improved by nothing but looking more often: votes wherever it asks."""
 
+import re
+
 from tpvqa.errors import PluginError
-from tpvqa.monitors.asker import Asker
+from tpvqa.monitors.asker import MOST, Asker
 from tpvqa.monitors.correcting import CorrectingMonitor
 from tpvqa.monitors.majority import Majority
 from tpvqa.plugins import PlainArguments
+
+_NUMBER = re.compile(r"[0-9]{1,9}")  # of more digits Python makes no number
 
 
 class Votes(CorrectingMonitor, PlainArguments):
@@ -29,12 +33,14 @@ class Votes(CorrectingMonitor, PlainArguments):
             PluginError: The arguments are others.
         """
         votes, _, rule = arguments.partition(":")
-        if not votes.isdecimal() or int(votes) < 1 or rule not in ("", *Majority):
+        looks = int(votes) if _NUMBER.fullmatch(votes) else 0
+        if not 1 <= looks <= MOST or rule not in ("", *Majority):
             raise PluginError(
                 f"'vote:{arguments}' is not understood. Write vote:K for votes over K looks, "
-                "e.g. vote:5, or with the majority tie, strict or any at its end: vote:5:strict."
+                f"{MOST} at most, e.g. vote:5, or with the majority tie, strict or any at its end: "
+                "vote:5:strict."
             )
-        return cls(int(votes), majority=rule or majority)
+        return cls(looks, majority=rule or majority)
 
     @property
     def name(self) -> str:

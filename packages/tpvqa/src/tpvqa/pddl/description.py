@@ -68,8 +68,8 @@ def described(
         )
     except WorkerTimedOut:
         raise GroundingTimedOut(
-            f"grounding the task took more than {timeout:g} s; give it more time "
-            "(timeout=…), or make the problem smaller"
+            f"grounding the task took more than {timeout:g} s; make the problem smaller, or give "
+            "it more time"
         ) from None
     if "error" in reply:
         message, part, line = reply["error"]

@@ -1,5 +1,6 @@
 """PDDL files, or a logic program, → `Task`. The text is read once, here; the worker grounds it."""
 
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from pathlib import Path
 from typing import Any
 
@@ -166,6 +167,8 @@ def _program(path: Path, timeout: float | None, memory: int | None) -> Task:
 
 def _text(path: Path, part: str) -> str:
     data = read_bytes(path, PDDLError, what=f"{part} file")
+    if data.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
+        raise PDDLError("this is UTF-16, not UTF-8 text; save the file as UTF-8", file=path)
     # Comments may hold anything; Latin-1 reads what is not UTF-8.
     try:
         return data.decode("utf-8-sig")

@@ -12,6 +12,7 @@ from random import Random
 from fastapi import FastAPI, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 
 from tpvqa.chance import chance
 from tpvqa.serving.asked import question_in
@@ -213,6 +214,8 @@ def _answered(place: _Place) -> _Place:
             return await place(request)
         except Refusal as refused:
             refusal = refused
+        except ClientDisconnect:
+            return Response(status_code=400)  # nobody reads it
         except Exception as error:  # noqa: BLE001 — whoever asks hears of it in the usual form
             traceback.print_exception(error, file=sys.stderr)
             refusal = Refusal(500, "The server broke; its log says where.", code="server_broke")

@@ -15,7 +15,7 @@ from tpvqa.vlm.answer import Reply
 from tpvqa.vlm.prompt import Prompt
 from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.reply_shape import read_words, still_thinking
-from tpvqa.vlm.yes_no import Token, answer_token, mass, meaning, spelt
+from tpvqa.vlm.yes_no import Token, answer_token, mass, meaning, says, spelt
 
 _ROOM_TO_THINK = 2048
 _TOKENS_OF_AN_ANSWER = 12  # in JSON, key and all
@@ -182,6 +182,12 @@ class _Message(ToldModel):
     content: str | None = None
     refusal: str | None = None
     tool_calls: Any = None
+    function_call: Any = None  # what tool calls were before; some servers still send it
+
+    @property
+    def calls(self) -> bool:
+        """Whether it asks for a tool, and so says nothing to a person."""
+        return bool(self.tool_calls or self.function_call)
 
 
 class Choice(ToldModel):
@@ -250,7 +256,7 @@ def _read_choice(choice: Choice, question: str | None) -> Reading:
         return Reading(Reply.UNKNOWN, text="cut short" if cut else "empty reply", cut_short=cut)
     if not cut and ended not in ENDED_BY_ITSELF:
         return Reading(Reply.UNKNOWN, text=f"ended by {ended[:40]!r}: {said}")
-    if message.tool_calls or message.role not in (None, "assistant"):
+    if message.calls or message.role not in (None, "assistant"):
         return Reading(Reply.UNKNOWN, text=f"not said by the model as an answer: {said}")
     word = read_words(said, question, cut=cut)
     if word is Reply.UNKNOWN:
@@ -264,7 +270,7 @@ def weighed(word: Reply, said: str, tokens: Sequence[Token]) -> Reading:
     token = answer_token(tokens)
     if token is None:
         other = spelt(tokens)
-        if other and not said.strip().startswith(other) and word.value not in other.lower():
+        if other and not said.strip().startswith(other) and not says(word.value, other):
             return Reading(Reply.UNKNOWN, text=f"its tokens say otherwise ({other[:40]!r}): {said}")
         return Reading(word, text=said)
     found = mass(token.alternatives.items())

@@ -15,7 +15,8 @@ code fences around the whole; reasoning before the answer (`<think>…</think>`)
    third person and such verbs holds only words of the question, in the question's order.
    - After *yes* it denies nothing.
    - After *no* it denies that with exactly one "not" or "no" ("there is no plate in the sink"), or
-     has in place of a word of the question exactly one that excludes it: *closed* for *open*.
+     has in place of a word of the question exactly one that excludes it: *closed* for *open*. With
+     both it contradicts itself: "the closed fridge is open".
    - That something is there, or not there, answers a question that asks that ("Is there …?");
      elsewhere it does with all that the question names: "there is no fridge" says nothing of
      whether it is open. Of the picture itself it answers nothing: "there is no image".
@@ -102,6 +103,8 @@ _EXCLUDING = {
     "unlit": ("lit",),
 }
 """A word, and those which cannot be true of a thing that it is true of."""
+_EMPTIED = frozenset(["hand", "gripper"])
+"""What may itself be said to be empty, where it was asked what it holds."""
 _EXISTING = frozenset(["there", "has", "have"])
 _ABOUT_THE_REPLY = frozenset(
     ["answer", "question", "image", "picture", "photo", "information", "idea", "way", "problem"]
@@ -185,6 +188,8 @@ def _answers(clause: str, yes: bool, question: str | None) -> bool:
         return False
     excluding = [word for word in told if word not in asked and _excludes(word, asked)]
     same = [_stem(word) for word in told if word not in excluding]
+    if question is not None and any(_beside_its_opposite(word, same, asked) for word in excluding):
+        return False
     if question is None:
         fits = set(same) <= set(map(_stem, asked))
         return fits and (denials == 0 if yes else denials == 1 or (denials == 0 and bool(told)))
@@ -238,6 +243,18 @@ def _ends(words: Sequence[str], question: str | None) -> bool:
 
 def _excludes(word: str, asked: Sequence[str]) -> bool:
     return any(other in asked for other in _EXCLUDING.get(word, ()))
+
+
+def _beside_its_opposite(word: str, same: Sequence[str], asked: Sequence[str]) -> bool:
+    """Whether what a word excludes is said as often as it was asked, and so denied by nothing.
+
+    "The lamp on the table is off" says "on" once, where it was asked twice.
+    """
+    excluded = {_stem(other) for other in _EXCLUDING[word] if other not in _EMPTIED}
+    counts = [
+        (same.count(other), sum(_stem(each) == other for each in asked)) for other in excluded
+    ]
+    return any(0 < often <= said for said, often in counts)
 
 
 def _without_stop(text: str) -> str:

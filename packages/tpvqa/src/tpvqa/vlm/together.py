@@ -54,7 +54,7 @@ def _read(choice: Choice, count: int) -> list[Reading]:
         return none(f"refused: {message.refusal[:200]}")
     if ended == "length":
         return none("cut short", cut=True)
-    if ended not in ENDED_BY_ITSELF or message.tool_calls:
+    if ended not in ENDED_BY_ITSELF or message.calls:
         return none(f"ended by {ended[:40]!r}: {said[:200]}")
     if message.role not in (None, "assistant"):
         return none(f"not said by the model as an answer: {said[:200]}")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tpvqa.vlm.reply_shape import read_words
 
-__all__ = ["Token", "YesNoMass", "answer_token", "mass", "meaning", "read_words", "spelt"]
+__all__ = ["Token", "YesNoMass", "answer_token", "mass", "meaning", "read_words", "says", "spelt"]
 
 _ROUNDING = 1e-3  # how far above 0 rounding may lift the logarithm of a probability
 # Byte-level and sentencepiece vocabularies write a leading space as one of these.
@@ -56,6 +56,12 @@ class YesNoMass:
 def spelt(tokens: Sequence[Token]) -> str:
     """What tokens say together, as far as they are there."""
     return "".join(token.text.translate(_SPACE_MARKS) for token in tokens).strip()
+
+
+def says(word: str, text: str) -> bool:
+    """Whether a text has a word as a whole, in whatever case: no "no" is in "unknown"."""
+    letter = r"[^\W\d_]"
+    return re.search(rf"(?<!{letter}){word}(?!{letter})", text, re.IGNORECASE) is not None
 
 
 def answer_token(tokens: Sequence[Token]) -> Token | None:

@@ -11,7 +11,7 @@ from tpvqa.bench.vlms.looks import Labelled, LabelledLook, named
 from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
-from tpvqa.errors import CalibrationError
+from tpvqa.errors import CalibrationError, pasted
 from tpvqa.events import Started
 from tpvqa.events.events import Asked, Observed, QuestionRecord
 from tpvqa.events.records import observation_from
@@ -79,8 +79,8 @@ def looks_of_episodes(
         told = label_episodes([folder])
         if told.inferred or not told.rows:
             raise CalibrationError(
-                f"{folder}: nobody knows what was right in it. Label it (`tpvqa label {folder}`), "
-                "or leave it out"
+                f"{folder}: nobody knows what was right in it. Label it "
+                f"(`tpvqa label {pasted(folder)}`), or leave it out"
             )
         found += _looks(_read(folder), told.rows, wordings or {})
     if not found:

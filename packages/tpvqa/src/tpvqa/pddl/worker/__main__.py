@@ -133,7 +133,7 @@ class Worker:
         than = "there is" if memory is None else f"{memory / 1024:.3g} GB"
         reason = (
             f"grounding needs more memory than {than}; make the problem smaller (fewer objects, "
-            "fewer parameters of an action), or allow more (memory=…)"
+            "fewer parameters of an action)"
         )
         return {"outcome": _as_json(SearchOutcome("memory", reason=reason))}
 

@@ -72,7 +72,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         task.durative, task.numeric, task.metric = durative, numeric, metric
         _check_types(task, blocks)
         _check_derived(task)
-        _check_names(task)
+        _check_names(task, blocks["domain"])
         check_costs(task, _function_names(blocks["domain"]))
     except _LocatedError as error:
         raise _explained(error, blocks) from None
@@ -310,9 +310,13 @@ def _check_derived(task: Any) -> None:
             )
 
 
-def _check_names(task: Any) -> None:
-    """Two actions, predicates or parameters of one name would be ambiguous."""
-    _check_unique("actions", (action.name for action in task.actions))
+def _check_names(task: Any, domain: Block) -> None:
+    """Two actions, predicates or parameters of one name would be ambiguous.
+
+    Actions are those of the text, as the translator drops the ones without an effect.
+    """
+    written = (action[1] for action in sections(domain, ":action"))
+    _check_unique("actions", (name for name in written if isinstance(name, str)))
     _check_unique("predicates", (each.name for each in task.predicates if each.name != "="))
     for action in task.actions:
         _check_unique(
