@@ -27,6 +27,8 @@ def test_from_trials(tpvqa: Run) -> None:
     assert "ECE before → after" in out
     assert "effect        clean" in out
     assert "from the same view" in out
+    rows = Calibration.load(Path("made/c.json")).rows
+    assert f" of {rows} answers, the first to the same words" in out
     assert "wrote made/c.json and made/c.png" in out
     assert "trials" in err
     with Image.open("made/c.png") as picture:

@@ -84,8 +84,14 @@ def print_calibration(calibration: "Calibration", table: "Sequence[Line]") -> No
         )
     console = ResultConsole()
     (console if console.is_terminal else ResultConsole(width=120)).print(printed)
+    typer.echo()
+    if table[-1].answers < calibration.rows:
+        tell(
+            f"{table[-1].answers} of {calibration.rows} answers, the first to the same words since "
+            "a fact changed, tell how often it is right; the others how further looks go."
+        )
     typer.echo(
-        f"\nA further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
+        f"A further look repeats the last answer (ρ): {calibration.repeat_same_view:.2f} from "
         f"the same view, {calibration.repeat_other_view:.2f} from another; of the rest "
         f"{calibration.lasting_share:.2f} are one draw for all looks at a scene (lasting share)."
     )
