@@ -11,7 +11,7 @@ from tpvqa.belief import Calibration
 from tpvqa.config import Limits
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
-from tpvqa.errors import TpvqaError, UnknownNameError
+from tpvqa.errors import PluginError, TpvqaError, UnknownNameError
 from tpvqa.events import Started
 from tpvqa.pddl import Atom, Literal
 from tpvqa.planning import Planner
@@ -36,7 +36,7 @@ def symbolic(**changes: object) -> TrialConfig:
 def test_an_option_that_nothing_takes_is_refused(planner: Planner) -> None:
     with pytest.raises(UnknownNameError, match=r"'majorty'.*Did you mean 'majority'"):
         Trial(symbolic(options={"majorty": "strict"}), planner=planner)
-    with pytest.raises(UnknownNameError, match="simulator"):
+    with pytest.raises(PluginError, match="--simulator is for --world images"):
         Trial(symbolic(options={"simulator": "paper"}), planner=planner)
     with Trial(symbolic(options={"majority": "strict"}), planner=planner):
         pass

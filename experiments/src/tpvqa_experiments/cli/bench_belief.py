@@ -156,8 +156,9 @@ def belief(
 
 
 def _print(checks: "Sequence[Check]") -> None:
-    from rich.console import Console
     from rich.table import Table
+
+    from tpvqa.cli.consoles import ResultConsole
 
     table = Table(title="targets", title_justify="left", title_style="bold", box=None)
     for name in ("condition", "figure"):
@@ -178,8 +179,8 @@ def _print(checks: "Sequence[Check]") -> None:
             {True: "yes", False: "no", None: ""}[check.reached],
         )
         last = check.condition
-    console = Console()
-    (console if console.is_terminal else Console(width=150)).print(table)
+    console = ResultConsole()
+    (console if console.is_terminal else ResultConsole(width=150)).print(table)
     missing = sum(check.measured is None for check in checks)
     if missing:
         print(f"\n{missing} of {len(checks)} figures were not measured")

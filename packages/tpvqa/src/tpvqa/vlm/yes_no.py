@@ -61,7 +61,8 @@ def spelt(tokens: Sequence[Token]) -> str:
 def says(word: str, text: str) -> bool:
     """Whether a text has a word as a whole, in whatever case: no "no" is in "unknown"."""
     letter = r"[^\W\d_]"
-    return re.search(rf"(?<!{letter}){word}(?!{letter})", text, re.IGNORECASE) is not None
+    # Not `IGNORECASE`, to which other letters are an s.
+    return re.search(rf"(?<!{letter}){word}(?!{letter})", text.lower()) is not None
 
 
 def answer_token(tokens: Sequence[Token]) -> Token | None:
