@@ -1,8 +1,6 @@
 """What is learned is written whole or not at all, and read as strictly."""
 
-import errno
 import json
-import os
 from pathlib import Path
 
 from pydantic import BaseModel
@@ -11,21 +9,6 @@ from tpvqa.errors import PlacedError, WriteError
 from tpvqa.files import make_folder, write_whole
 from tpvqa.text_files import read_text
 from tpvqa.told import check_names
-
-
-def writable(path: Path, *, remedy: str) -> None:
-    """See that a file can be written, as far as that can be known before it is.
-
-    Raises:
-        WriteError: It cannot.
-    """
-    above = next(each for each in (path, *path.parents) if each.exists())
-    if above != path and not above.is_dir():
-        raise WriteError.of(
-            path, NotADirectoryError(errno.ENOTDIR, f"{above} is no folder"), remedy
-        )
-    if not os.access(above, os.W_OK):
-        raise WriteError.of(path, PermissionError(errno.EACCES, os.strerror(errno.EACCES)), remedy)
 
 
 def write_json(path: Path, model: BaseModel, *, remedy: str) -> None:

@@ -1,6 +1,8 @@
 """A rival of all perception: every action so many times, and not a single look."""
 
-from tpvqa.errors import PluginError
+import re
+
+from tpvqa.errors import PluginError, cut
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.capabilities import NeverAsks
 from tpvqa.monitors.protocol import Check, Step
@@ -25,10 +27,10 @@ class Blind(NeverAsks):
         Raises:
             PluginError: K is not a number of times.
         """
-        if not arguments.isdecimal() or int(arguments) < 1:
+        if not re.fullmatch(r"0*[1-9][0-9]{0,3}", arguments):
             raise PluginError(
-                f"'blind:{arguments}' is not understood. Write blind:K for every action K times, "
-                "e.g. blind:5."
+                f"'blind:{cut(arguments)}' is not understood. Write blind:K for every action K "
+                "times, e.g. blind:5; at most 9999."
             )
         return cls(int(arguments))
 
