@@ -79,6 +79,39 @@ def test_where_what_nothing_brings_about_holds_nothing_is_said() -> None:
     assert after == facts("locked d")
 
 
+def test_where_what_nothing_ends_does_not_hold_nothing_is_said() -> None:
+    """The door is stuck for ever, so that no ground action goes through it."""
+    task = task_from_text(
+        """(define (domain hall) (:predicates (stuck) (lit) (through))
+        (:action light :parameters () :precondition (and) :effect (lit))
+        (:action enter :parameters () :precondition (and (lit) (not (stuck)))
+          :effect (through)))""",
+        "(define (problem p) (:domain hall) (:init (stuck)) (:goal (through)))",
+    )
+    assert DeadEnds(task).holds(task.init)
+    assert not DeadEnds(task).holds(frozenset())
+
+
+def test_what_is_said_of_a_state_does_not_depend_on_who_asked_before() -> None:
+    """Without a key a door that closes is closed for good; where it stood open that is no worse, as
+    it may be said to have come from there."""
+    task = task_from_text(
+        """(define (domain vault) (:predicates (open) (key) (rich))
+        (:action lock :parameters () :precondition (open) :effect (not (open)))
+        (:action drop :parameters () :precondition (key) :effect (not (key)))
+        (:action unlock :parameters () :precondition (key) :effect (open))
+        (:action take :parameters () :precondition (and (open) (key)) :effect (rich))
+        (:action pull :parameters () :precondition (not (open)) :effect (open)))""",
+        "(define (problem p) (:domain vault) (:init (open) (key)) (:goal (rich)))",
+    )
+    shut, before = frozenset[Atom](), facts("open")
+    fresh = {given: DeadEnds(task).holds(shut, given) for given in (frozenset[Atom](), before)}
+    assert len({*fresh.values()}) == 2
+    for order in (tuple(fresh), tuple(reversed(fresh))):
+        asked = DeadEnds(task)
+        assert {given: asked.holds(shut, given) for given in order} == fresh
+
+
 def test_a_task_that_was_opened_is_another() -> None:
     closed = lamps("unlocked")
     opened = closed.opened_to([Atom.parse("(locked d)")])

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Run
+from tpvqa.assembly.grounding import grounded
+from tpvqa.config import PlannerConfig
 
 PARAMETERS = " ".join(f"?x{n} - room" for n in range(60))
 DOMAIN = f"""(define (domain lamps)
@@ -44,3 +46,18 @@ def test_grounding_ends_in_time_and_names_the_option(
     assert "grounding the task took more than 1 s" in said
     assert f"give it more time by {option}" in said
     assert "=…" not in said
+
+
+def test_what_a_planner_is_allowed_by_default_does_not_bound_grounding(tmp_path: Path) -> None:
+    (tmp_path / "d.pddl").write_text(DOMAIN)
+    (tmp_path / "p.pddl").write_text(PROBLEM)
+    allowed: list[float | None] = []
+
+    def load(*_: Path | str, timeout: float | None) -> None:
+        allowed.append(timeout)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("tpvqa.assembly.grounding.load_task", load)
+        for planner in (PlannerConfig(), PlannerConfig(timeout=7.0)):
+            grounded(tmp_path / "d.pddl", tmp_path / "p.pddl", planner)
+    assert allowed == [300.0, 7.0]

@@ -117,6 +117,9 @@ SAID = {
     "(cup-connected-to ?c - cup ?t - table)": "Is the mug connected to the desk?",
     "(cup-in-drawer ?c - cup ?d - drawer)": "Is the mug in the top drawer?",
     "(carrying-key ?k - key)": "Is the robot carrying key 1?",
+    "(cup-standing ?c - cup)": "Is the mug standing?",
+    "(door-closing ?d - door)": "Is the front door closing?",
+    "(key-inserted-in-door ?k - key ?d - door)": "Is key 1 inserted in the front door?",
 }  # fmt: skip
 
 
@@ -224,11 +227,15 @@ TOWER = """(define (domain tower) (:types lift room floor can slot tote shelf - 
     :effect (can-in-slot ?c ?s))
   (:action drop-in-tote :parameters (?c - can ?t - tote) :precondition (held ?c)
     :effect (and (in-tote ?c ?t) (not (held ?c))))
+  (:action enter-room :parameters (?from ?to - room) :precondition (robot-in ?from)
+    :effect (and (robot-in ?to) (not (robot-in ?from))))
+  (:action pick-by-hand :parameters (?c - can ?s - shelf) :precondition (stored ?c ?s)
+    :effect (and (held ?c) (not (stored ?c ?s))))
   (:action push-through-hatch :parameters (?t - tote) :effect (delivered ?t)))"""
 
 
 def test_what_a_name_says_of_its_arguments_is_said_once() -> None:
-    problem = """(define (problem p) (:domain tower) (:objects north-lift - lift hall - room
+    problem = """(define (problem p) (:domain tower) (:objects north-lift - lift hall yard - room
         low high - floor cola - can upper-slot - slot red-tote - tote steel-shelf - shelf)
       (:init (robot-in hall) (held cola)) (:goal (delivered red-tote)))"""
     written = yaml.safe_load(draft(task_from_text(TOWER, problem)))
@@ -236,6 +243,8 @@ def test_what_a_name_says_of_its_arguments_is_said_once() -> None:
     assert said["call-lift"] == "call the {l} from the {from} to the {to}"
     assert said["board-lift"].startswith("board the {l}")
     assert said["leave-lift"].startswith("leave the {l}")
+    assert said["enter-room"] == "enter the {to}"
+    assert said["pick-by-hand"] == "pick up the {c} from the {s} by hand"
     assert said["put-down"] == "put down the {c} on the {s}"
     assert said["drop-in-tote"] == "drop the {c} into the {t}"
     assert said["push-through-hatch"] == "push the {t} through the hatch"

@@ -129,7 +129,7 @@ def see_writable(path: Path, *, remedy: str) -> None:
     Raises:
         WriteError: It cannot.
     """
-    above = next(each for each in path.parents if os.path.lexists(each))
+    above = next((each for each in path.parents if os.path.lexists(each)), path)
     try:
         if not above.is_dir():
             raise NotADirectoryError(errno.ENOTDIR, f"{above} is no folder")

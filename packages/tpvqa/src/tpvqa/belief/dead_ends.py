@@ -26,7 +26,7 @@ class DeadEnds:
     def __init__(self, task: Task):
         self._task = task
         self._bits: dict[Atom, int] = {}
-        self._known: dict[State, bool] = {}
+        self._known: dict[tuple[State, State], bool] = {}
         plain = not task.left_out and task.numeric is None and task.lasting is None
         self._fluents = task.fluents - task.derived
         self._goal = self._needs([task.goal]) if plain else None
@@ -39,16 +39,21 @@ class DeadEnds:
             before: From where something led there; of that it is not asked whether it is one. Where
                 all that went can come back at once, and all that came can go, nothing is worse.
         """
-        if self._goal is None or not state <= self._possible:
-            return False  # of what nothing brings about the actions are not known
-        found = self._known.get(state)
+        if self._goal is None or not self._always <= state <= self._possible:
+            return False  # of what nothing brings about, or ends, the actions are not known
+        found = self._known.get((state, before))
         if found is None:
             if len(self._known) >= KEPT:
                 self._known.clear()
             true = self._numbered(atom for atom in state if atom.predicate in self._fluents)
             mended = bool(before) and self._mended(state, before, true)
-            found = self._known[state] = not (mended or self._reaches(true, self._goal))
+            found = self._known[state, before] = not (mended or self._reaches(true, self._goal))
         return found
+
+    @cached_property
+    def _always(self) -> State:
+        changing = self._task.fluents | self._task.derived
+        return frozenset(each for each in self._task.init if each.predicate not in changing)
 
     @cached_property
     def _possible(self) -> State:

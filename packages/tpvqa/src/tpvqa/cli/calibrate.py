@@ -155,6 +155,8 @@ def calibrate(
     if any((domain, problems, questions, world_file)):
         _check_own(domain, problems, world_file, pictures=pictures is not None, trials=trials)
     own = (domain, problems[0] if problems else None, questions)
+    if not out.name:
+        raise TpvqaError(f"{out} is a folder; name a file with --out")
     image = curves or out.with_suffix(".png")
     _check(out, image, force=force)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"

@@ -30,7 +30,8 @@ _DIRECT = word_set("board enter leave exit cross reach visit")
 _WAYS = word_set("up down left right forward forwards backward backwards north south east west")
 _UNSAID = word_set("first second third half not")
 """Words of names that are left out, and may be what matters."""
-_NO_ARTICLE = word_set("the a an place order use service operation motion action half two pieces")
+_PASSING = word_set("through over under across around behind past along beyond")
+"""What stands before a thing, not before how something is done: by hand, on foot, with care."""
 _IN = word_set("in on at into onto")
 _SEEKING = word_set("find search seek look detect")
 
@@ -162,7 +163,9 @@ class Actions:
             and (end.source == (verb in ("leave", "exit")) and self._things.act(nouns[n].objects))
         ]
         entered = [n for n in nouns if any(self._names(word, {n: nouns[n]}) for word in rest)]
-        if verb in _DIRECT and entered:  # board-lift
+        left = verb in ("leave", "exit")
+        entered = [n for n in entered if n not in ends or ends[n].source == left]
+        if verb in _DIRECT - {"cross"} and entered:  # board-lift
             direct, tools = entered[:1], [n for n in tools if n not in entered]
             patients = [n for n in patients if n not in entered]
         elif verb in _DIRECT and tools and not direct and not patients:
@@ -273,9 +276,8 @@ def _verb_first(words: list[str]) -> tuple[str, list[str]]:
 def _with_article(words: str) -> str:
     """A preposition and a thing: through hatch, through the hatch."""
     preposition, _, thing = words.partition(" ")
-    if preposition not in PREPOSITIONS or not thing or thing.split()[0] in _NO_ARTICLE:
-        return words
-    return f"{preposition} the {thing}"
+    named = preposition in _PASSING and thing and thing.split()[0] not in ("the", "a", "an")
+    return f"{preposition} the {thing}" if named else words
 
 
 def _particles(verb: str) -> frozenset[str]:

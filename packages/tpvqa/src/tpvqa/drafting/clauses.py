@@ -136,3 +136,12 @@ class Phrases:
         if clause.subject.plural:
             word = {"is": "are", "has": "have", "does": "do"}.get(word, word)
         return " ".join(f"Is it true that {clause.subject.said} {word} not {clause.rest}?".split())
+
+
+def unknown(words: list[str], nouns: list[Noun]) -> Clause:
+    """Where a name does not tell what it means: something to be rewritten."""
+    said = " ".join(words)
+    if not nouns:
+        return Clause("is", Noun("it"), f"true that {said}")
+    rest = " and ".join(noun.said for noun in nouns[1:])
+    return Clause("is", nouns[0], f"{said}{f' with {rest}' if rest else ''}")

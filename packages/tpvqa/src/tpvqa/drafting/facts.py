@@ -4,9 +4,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from tpvqa.drafting import lexicon
-from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases
+from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, unknown
 from tpvqa.drafting.facts_tables import ROADS, SAME
-from tpvqa.drafting.forms import Form, does, ing, participle, stands, verb_form
+from tpvqa.drafting.forms import (
+    Form,
+    does,
+    does_verb,
+    ing,
+    is_ing,
+    participle,
+    stands,
+    verb_form,
+)
 from tpvqa.drafting.lexicon import ADJECTIVES, PREPOSITIONS
 from tpvqa.drafting.of_nothing import WEATHER, of_nothing
 from tpvqa.drafting.predicates import of_noun, of_verb, without_kind
@@ -57,7 +66,7 @@ class Facts:
             clauses = [Clause("does", nouns[0], f"have {some(words[1:])}")]
         unsure = not clauses
         if unsure:
-            clauses = [_unknown(words[1:] if denied else words, nouns)]
+            clauses = [unknown(words[1:] if denied else words, nouns)]
         if self._may_end(predicate):  # what has been bolted may be loose again
             now = [c for c in clauses if not (c.auxiliary == "has" and c.rest.startswith("been "))]
             clauses = now or clauses
@@ -121,7 +130,14 @@ class Facts:
         if len(words) > 1 and (words[0] in ("is", "are", "was", "being") or stands(words)):
             words = words[1:]
         if nouns:
-            words = without_kind(words, self._named(nouns[0]), alone=len(nouns) == 1)
+            first, alone = self._named(nouns[0]), len(nouns) == 1
+            if alone and len(words) > 1 and words[0] in first and is_ing(words[1]):
+                yield Clause("is", nouns[0], " ".join(words[1:]))  # bottle-standing
+                return
+            acts = self._things.act(nouns[0].objects)
+            words = without_kind(words, first, alone=alone, acts=acts)
+            if not alone and words[-1] in self._named(nouns[-1]) and len(words) > 2:
+                words = words[:-1] if words[-2] in PREPOSITIONS else words  # inserted-in-slot
         if words[-1] == "top" and words[0] in PREPOSITIONS and len(nouns) > 1:
             words = [*words, "of"]
         if words[-1] == "of" and len(words) > 1 and len(nouns) > 1 and words[-2] != "top":
@@ -132,7 +148,7 @@ class Facts:
         elif (
             len(words) > 1
             and words[0] in lexicon.AGENTS | lexicon.HANDS
-            and (words[1] in ("has", "have") or _is_verb(words[1]))
+            and (words[1] in ("has", "have") or does_verb(words[1]))
         ):
             yield from self._of_agent(words, nouns)
         elif len(words) == 2 and words[-1] in ("has", "have") and words[0] not in PREPOSITIONS:
@@ -380,18 +396,3 @@ class Facts:
 def _is_done(word: str) -> bool:
     form = verb_form(word)
     return form is not None and form[1] is Form.PARTICIPLE
-
-
-def _is_verb(word: str) -> bool:
-    """Whether a word says what somebody does: holding, holds."""
-    form = verb_form(word)
-    return form is not None and form[1] in (Form.ING, Form.THIRD)
-
-
-def _unknown(words: list[str], nouns: list[Noun]) -> Clause:
-    """Where a name does not tell what it means: something to be rewritten."""
-    said = " ".join(words)
-    if not nouns:
-        return Clause("is", Noun("it"), f"true that {said}")
-    rest = " and ".join(noun.said for noun in nouns[1:])
-    return Clause("is", nouns[0], f"{said}{f' with {rest}' if rest else ''}")

@@ -110,6 +110,16 @@ def _doubles(base: str) -> bool:
     return short and re.search(r"[^aeiou][aeiou][^aeiouwxy]$", stem) is not None
 
 
+def is_ing(word: str) -> bool:
+    """Whether a word says what goes on: standing."""
+    return (verb_form(word) or ("", None))[1] is Form.ING
+
+
+def does_verb(word: str) -> bool:
+    """Whether a word says what somebody does: holding, holds."""
+    return (verb_form(word) or ("", None))[1] in (Form.ING, Form.THIRD)
+
+
 def does(words: list[str]) -> bool:
     """Whether words say what something does, and where: lies on, fits in."""
     return len(words) == 2 and (verb_form(words[0]) or ("", None))[1] is Form.THIRD

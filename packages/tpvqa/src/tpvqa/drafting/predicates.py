@@ -13,7 +13,7 @@ Others = Callable[[list[Noun]], list[str]]
 """Says further things with their prepositions."""
 
 
-def without_kind(words: list[str], kinds: frozenset[str], *, alone: bool) -> list[str]:
+def without_kind(words: list[str], kinds: frozenset[str], *, alone: bool, acts: bool) -> list[str]:
     """The words of a predicate without what its first argument is, where they say that again:
     wheel-mounted(wheel), hose-connected-to(hose, valve), can-in-slot(can, slot),
     carrying-card(card).
@@ -22,10 +22,12 @@ def without_kind(words: list[str], kinds: frozenset[str], *, alone: bool) -> lis
         words: Of its name.
         kinds: What the argument is called.
         alone: Whether there is no other argument.
+        acts: Whether it acts by itself: then person-served(person, drink) is no served(…).
     """
-    form = verb_form(words[-2 if len(words) > 2 and words[-1] in PREPOSITIONS else -1])
+    joined = len(words) > 2 and words[-1] in PREPOSITIONS
+    form = verb_form(words[-2 if joined else -1])
     if len(words) > 1 and words[0] in kinds:
-        done = form is not None and form[1] in (Form.PARTICIPLE, Form.ING)
+        done = form is not None and form[1] is Form.PARTICIPLE and (alone or joined or not acts)
         placed = len(words) > 2 and words[1] in PREPOSITIONS and not alone
         second = verb_form(words[1])
         begun = len(words) > 2 and second is not None and second[1] is Form.PARTICIPLE

@@ -103,8 +103,8 @@ _EXCLUDING = {
     "unlit": ("lit",),
 }
 """A word, and those which cannot be true of a thing that it is true of."""
-_EMPTIED = frozenset(["hand", "gripper"])
-"""What may itself be said to be empty, where it was asked what it holds."""
+_STATES = frozenset(word for each in _EXCLUDING.values() for word in each) - {"hand", "gripper"}
+"""What is said of a thing. A hand may itself be empty, where it was asked what it holds."""
 _EXISTING = frozenset(["there", "has", "have"])
 _ABOUT_THE_REPLY = frozenset(
     ["answer", "question", "image", "picture", "photo", "information", "idea", "way", "problem"]
@@ -246,15 +246,16 @@ def _excludes(word: str, asked: Sequence[str]) -> bool:
 
 
 def _beside_its_opposite(word: str, same: Sequence[str], asked: Sequence[str]) -> bool:
-    """Whether what a word excludes is said as often as it was asked, and so denied by nothing.
+    """Whether what a word excludes, and was asked for, is said as often, and so denied by nothing.
 
-    "The lamp on the table is off" says "on" once, where it was asked twice.
+    Of states what is asked for stands last: "the cut apple is whole" denies "Is the cut apple
+    halved?". And "the lamp on the table is off" says "on" once, where it was asked twice.
     """
-    excluded = {_stem(other) for other in _EXCLUDING[word] if other not in _EMPTIED}
-    counts = [
-        (same.count(other), sum(_stem(each) == other for each in asked)) for other in excluded
-    ]
-    return any(0 < often <= said for said, often in counts)
+    wanted = next((each for each in reversed(asked) if each in _STATES), None)
+    if wanted not in _EXCLUDING[word]:
+        return False
+    stem = _stem(wanted)
+    return same.count(stem) >= sum(_stem(each) == stem for each in asked)
 
 
 def _without_stop(text: str) -> str:

@@ -315,7 +315,8 @@ def _check_names(task: Any, domain: Block) -> None:
 
     Actions are those of the text, as the translator drops the ones without an effect.
     """
-    written = (action[1] for action in sections(domain, ":action"))
+    kinds = (":action", ":durative-action")
+    written = (action[1] for kind in kinds for action in sections(domain, kind))
     _check_unique("actions", (name for name in written if isinstance(name, str)))
     _check_unique("predicates", (each.name for each in task.predicates if each.name != "="))
     for action in task.actions:
