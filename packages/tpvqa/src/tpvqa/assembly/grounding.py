@@ -1,4 +1,4 @@
-"""The task of a trial, grounded in the time that the trial allows its planner."""
+"""The task of a trial, grounded in the time that is allowed."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ from tpvqa.errors import GroundingTimedOut
 from tpvqa.pddl import Task, load_task
 
 LONG = 300.0
-"""Seconds that grounding may take where nobody says how long planning may."""
+"""Seconds that grounding may take where planning may take what it usually may."""
 
 
 def grounded(domain: Path | str, problem: Path | str, planner: PlannerConfig) -> Task:

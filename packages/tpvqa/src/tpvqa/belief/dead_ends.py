@@ -17,7 +17,8 @@ class DeadEnds:
     That is the delete relaxation (Bonet and Geffner 2001), a literal and its contrary each by
     itself: the goal may be out of reach where it says nothing. What is no conjunction is taken to
     hold. Nothing is told of large tasks of which a part was left out, of numbers and time, nor of
-    states with facts that no action brings about: what they allow was not grounded.
+    states with facts that no action brings about, or without some that none ends: what they allow
+    was not grounded.
 
     Args:
         task: Gives actions and goal.

@@ -153,7 +153,7 @@ class PlannerConfig(Part):
     )
     timeout: float = setting(
         "--planning-timeout",
-        "Seconds for grounding, and for one call of the planner.",
+        "Seconds for one call of the planner; other than 30 for grounding, too.",
         30.0,
         ge=0.001,
     )

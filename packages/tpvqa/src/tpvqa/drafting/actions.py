@@ -99,7 +99,7 @@ class Actions:
             name: noun
             for name, noun in nouns.items()
             if not (len(noun.objects) == 1 and self._things.act(noun.objects))
-            or any(self._names(word, {name: noun}) for word in rest)
+            or self._said_in(rest, noun)
         }
         return left or nouns
 
@@ -111,9 +111,7 @@ class Actions:
             people = bool(self._things.nouns(noun.objects) & lexicon.PEOPLE)
             alone = verb in lexicon.INTRANSITIVE and self._things.act(noun.objects)
             alone = alone and verb not in ("move", "sail", "fly", "turn", "drive")
-            alone = alone and not any(
-                self._names(word, {name: noun}) for word in rest
-            )  # board-lift
+            alone = alone and not self._said_in(rest, noun)  # board-lift
             passive = roles.moved == name and verb not in lexicon.INTRANSITIVE | {"go", "drive"}
             if name not in roles.ends and (alone or (people and not passive)):
                 several = len(noun.objects) > 1 or alone
@@ -162,7 +160,7 @@ class Actions:
             if verb in _DIRECT
             and (end.source == (verb in ("leave", "exit")) and self._things.act(nouns[n].objects))
         ]
-        entered = [n for n in nouns if any(self._names(word, {n: nouns[n]}) for word in rest)]
+        entered = [n for n in nouns if self._said_in(rest, nouns[n])]
         left = verb in ("leave", "exit")
         entered = [n for n in entered if n not in ends or ends[n].source == left]
         if verb in _DIRECT - {"cross"} and entered:  # board-lift
@@ -190,6 +188,10 @@ class Actions:
         return word in ("object", "obj") or any(
             word in (noun.parameter, *self._things.nouns(noun.objects)) for noun in nouns.values()
         )
+
+    def _said_in(self, words: list[str], noun: Noun) -> bool:
+        """Whether the name says what a parameter is."""
+        return any(self._names(word, {noun.parameter: noun}) for word in words)
 
     def _object(
         self,
@@ -254,10 +256,8 @@ class Actions:
         for name, end in ends.items():
             if end.source:
                 continue
-            if verb in _MOVING:
-                yield f"to {nouns[name].said}"
-                continue
-            if nouns[name].parameter == "to" and any(e.source for e in ends.values()):
+            both = nouns[name].parameter == "to" and any(e.source for e in ends.values())
+            if verb in _MOVING or both:
                 yield f"to {nouns[name].said}"
                 continue
             place = self._phrases.placed(nouns[name], preposition or end.preposition)
