@@ -35,3 +35,21 @@ def test_a_new_plan_begins_with_what_was_chosen() -> None:
     found = ways.plan(task.init, other)
     assert found is not None
     assert (found.actions, found.planner) == ((other, *plan.actions), UNSEEN)
+
+
+def test_what_an_action_needs_is_doubted_the_more_the_longer_it_fails() -> None:
+    """Once as soon as it looks as if it never worked, and again after several tries in vain."""
+    task = load_task("eat_apple")
+    model = FaultModel(task)
+    belief = Belief(model)
+    chances = Learned(Chances(), belief, trusts=False)
+    ways = Ways(task, Chooser(model, Costs()), chances, Costs())
+    fails = next(each for each in task.ground_actions() if each.name == "open")
+    told = []
+    for _ in range(12):
+        chances.likeliest.learn({"failure": 1.0}, fails)
+        told.append(ways.suspects(fails))
+    given = [each for each in told if each]
+    assert len(given) == 3
+    assert given == sorted(given)
+    assert given[0] < 0.05 < given[-1] < 0.4

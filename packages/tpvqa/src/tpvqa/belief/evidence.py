@@ -20,6 +20,7 @@ from tpvqa.belief.readings import Readings
 from tpvqa.belief.repeats import learn_repeats
 from tpvqa.belief.reports import Reports
 from tpvqa.belief.sight import Sight
+from tpvqa.belief.skills import SUSPECTED
 from tpvqa.belief.told_apart import ToldApart
 from tpvqa.belief.trust import Trust
 from tpvqa.belief.weighed import Weighed
@@ -32,8 +33,8 @@ UNEXPLAINED = 0.002
 """Chance that a fact that an answer speaks against has changed without the action model."""
 SURPRISING = 0.25
 """An answer less probable than this makes that chance be taken in."""
-SUSPECTED = 0.02
-"""That chance where an action that rests on the fact seems never to work."""
+ANSWERED = 0.2
+"""The share of a doubt that is left where an answer was about the fact."""
 MANY = 48
 """Joint states from which on it saves time to leave out of them what is next to impossible."""
 ANYWAY = 0.25
@@ -164,8 +165,21 @@ class Evidence(Expected):
             elsewhere = self._doubts.taken(atoms, held=held) if self._doubts else 0.0
             self._weighed.open(atoms, max(self._unexplained, elsewhere))
 
-    def rests_on(self, action: Action) -> None:
-        """Take in that a thing may never have been where an action needs it, before it is done."""
+    def rests_on(self, action: Action, sight: Sight, *, doubt: float = 0.0) -> None:
+        """Take in that what an action needs may not be so, before it is done.
+
+        Args:
+            action: It.
+            sight: What can be seen.
+            doubt: The chance of that with each fact, as it has failed again and again; less counts
+                where answers have said that it holds.
+        """
+        fluents, asked = self._belief.model.task.fluents, self._hearing.asked if doubt else ()
+        for literal in literals(action.precondition):
+            atom = literal.atom
+            if doubt and atom.predicate in fluents and sight.sees(atom):
+                chance = max(SUSPECTED, ANSWERED * doubt) if atom in asked else doubt
+                self._belief.open((atom,), chance)
         if self._doubts is None:
             return
         for literal in literals(action.precondition):
@@ -174,14 +188,6 @@ class Evidence(Expected):
                 chance = self._doubts.gone(atom)
                 if chance:
                     self._belief.open((atom,), chance)
-
-    def doubt(self, action: Action, sight: Sight) -> None:
-        """Take in that an action which fails again and again may need what does not hold."""
-        task = self._belief.model.task
-        for literal in literals(action.precondition):
-            atom = literal.atom
-            if atom.predicate in task.fluents and sight.sees(atom):
-                self._belief.open((atom,), SUSPECTED)
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action: once more is worth

@@ -1,7 +1,7 @@
 """What was heard of every question, as it counts now: carried along when it is asked for."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import Protocol
 
 from tpvqa.belief.heard import Heard
@@ -101,6 +101,11 @@ class Hearing:
                 heard.tell_apart(taken)
         led = [each and each.told_apart(columns, taken) for each in self._led]
         self._led = deque(led, maxlen=REMEMBERED)
+
+    @property
+    def asked(self) -> Set[Atom]:
+        """The facts that some answer was about."""
+        return {atom for last in self.last.values() for atom in last.atoms}
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action."""

@@ -27,6 +27,8 @@ DEAD_WITH = 0.02
 or with just these together, one as probable as the other."""
 SUSPECT = 0.1
 """Where an action is dead with this probability, what it needs is doubted first."""
+SUSPECTED = 0.02
+"""Chance beforehand of each of these that it is not so."""
 CLOSELY = 0.3
 """Where an action is dead with this probability, should it have failed until now, it is looked more
 closely at how it comes out."""

@@ -35,6 +35,7 @@ from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.scrutiny import unknown
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated, bound_for
+from tpvqa.monitors.telltales import Telltales
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.monitors.ways import Ways
 from tpvqa.pddl import Action, Task
@@ -104,6 +105,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self.evidence = Evidence(*given, skill=settings.skill, doubts=doubts, words=words)
         self.chances = Learned(known, self.belief, trusts=self.trust is not None)
         self._sight = Sight(self.belief.model)
+        self._telltales = Telltales(self._sight)
         chooser = Chooser(self.belief.model, self.costs, self._sight)
         self._task_ways = Ways(task, chooser, self.chances, self.costs)
         self._errands = Errands(task, () if rules is None else rules.shown, self.costs)
@@ -269,9 +271,8 @@ class BeliefMonitor(Learning, PlainArguments):
             for chooser in self._choosers:
                 chooser.renumbered(self.belief.model, numbers)
             self._inquirer.renumbered(self.belief.model)
-        if self._ways.suspects(step.action):
-            self.evidence.doubt(step.action, self._sight)
-        self.evidence.rests_on(step.action)
+        self.evidence.rests_on(step.action, self._sight, doubt=self._ways.suspects(step.action))
+        self._telltales.acted(step.action)
         for chooser in self._choosers:
             chooser.acted(self.belief, step.action)
         self.belief.act(step.action, self.chances.rates_of(step.action))
@@ -357,8 +358,8 @@ class BeliefMonitor(Learning, PlainArguments):
         return found
 
     def _about_needs(self, book: QuestionBook) -> list[FactQuestion]:
-        """Questions about what the plans need: nothing else can change a decision."""
-        atoms = self._ways.atoms
+        """Questions about what the plans need, or tells of it: no other changes a decision."""
+        atoms = self._ways.atoms | self._telltales.of(self.belief, self._ways.atoms)
         if self._asks_all:
             atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
         return self._now.about(atoms, book)

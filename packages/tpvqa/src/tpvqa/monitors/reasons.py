@@ -294,7 +294,8 @@ def _fact(grounds: Grounds, need: Literal, *, needing: bool = True) -> str:
         by += [] if told is None else [f"after {words(told.replies)}"]
         text += f" {' and '.join(by)}"
         if told is not None and noticed is None and _against(grounds, told):
-            text += ", by what else was answered"
+            others = any(need.atom not in each.atoms for each in grounds.told.values())
+            text += f", {'by what else was answered' if others else 'which seem to be misread'}"
     elif not grounds.step.book.asked(Literal(need.atom)):
         pass  # bookkeeping that nothing shows
     elif not grounds.questions_left:

@@ -11,7 +11,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.learned import Learned
 from tpvqa.belief.outlook import KNOWN
 from tpvqa.belief.seeking import LIKELY
-from tpvqa.belief.skills import CLOSELY, NAMED, SUSPECT
+from tpvqa.belief.skills import CLOSELY, DEAD, DEAD_WITH, NAMED, SUSPECT, SUSPECTED
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.inspection import Inspection
 from tpvqa.monitors.protocol import Step
@@ -20,6 +20,8 @@ from tpvqa.pddl import Action, Atom, State, Task
 from tpvqa.planning import Plan, Unsolvable
 from tpvqa.planning.regression import regress
 
+SEVERAL = 4.0
+"""Tries in vain after which what an action needs is doubted again."""
 UNSEEN = "followed unseen"
 """Who has planned what is followed without a look, whatever is true."""
 
@@ -54,7 +56,7 @@ class Ways:
         self._annotated: dict[State, AnnotatedPlan] = {}
         self._followed: Plan | None = None
         self._dead: tuple[tuple[int, int], frozenset[Action]] = ((0, 0), frozenset())
-        self._suspected: set[Action] = set()
+        self._suspected: dict[Action, float] = {}
         self._sought: set[tuple[State, frozenset[Action]]] = set()
 
     def follow(self, step: Step) -> None:
@@ -133,12 +135,18 @@ class Ways:
         way = self.chooser.way(state)
         return way is not None and not dead.isdisjoint(way[1].actions[way[0] :])
 
-    def suspects(self, action: Action) -> bool:
-        """Whether an action begins to look as if it never worked; said once of each."""
-        if action in self._suspected or self._chances.skill(action).dead <= SUSPECT:
-            return False
-        self._suspected.add(action)
-        return True
+    def suspects(self, action: Action) -> float:
+        """How probable it is that something an action needs is not so, where it begins to look as
+        if it never worked, and again after several tries in vain and each time twice as many; else
+        0. That explains them as well as that it never works, and has its share of what that has
+        come to by then."""
+        skill = self._chances.skill(action)
+        if skill.dead <= SUSPECT or skill.vain < self._suspected.get(action, 0.0):
+            return 0.0
+        again = action in self._suspected
+        self._suspected[action] = max(2 * skill.vain, SEVERAL)
+        share = SUSPECTED / (SUSPECTED + DEAD + DEAD_WITH)
+        return max(SUSPECTED, skill.dead * share) if again else SUSPECTED
 
     def learns_now(self, now: Inspection) -> bool:
         """Whether what the last action came to counts for what is decided now, as it may never
