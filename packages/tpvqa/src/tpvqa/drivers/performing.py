@@ -249,6 +249,8 @@ class Performer:
             raise malformed(world, "execute", ValueError(f"no Report: {execution.report!r:.80}"))
         facts = checked(execution.facts, self.parts.task, world, "execute")
         try:
+            if execution.seconds < 0:
+                raise ValueError(f"seconds: {execution.seconds:g}, less than none")
             outcome = self._last_outcome()
             acted = Acted(
                 report=execution.report,

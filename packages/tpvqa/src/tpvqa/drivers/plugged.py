@@ -73,7 +73,11 @@ def views_of(world: World) -> tuple[str, ...]:
     Raises:
         PluginError: It broke, or returned something else.
     """
-    return tuple(called(world, "views", _VIEWS))
+    views = called(world, "views", _VIEWS)
+    if isinstance(views, str) or not all(isinstance(each, str) and each for each in views):
+        where = _where(world, "views")
+        raise PluginError(f"{where} has to return a list of names, not {short(views)}")
+    return tuple(views)
 
 
 def put_back(part: Restorable, name: str, snapshot: Mapping[str, Any]) -> None:
