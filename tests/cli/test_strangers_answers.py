@@ -65,7 +65,7 @@ SAID = {
     "text": "each question in its place",
     "breaks": "broke: ValueError: out of order",
     "leaves": "broke: SystemExit: 0",
-    "closes": "broke: GeneratorExit",
+    "closes": "broke: GeneratorExit (",
 }
 
 

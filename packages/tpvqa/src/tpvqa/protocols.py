@@ -108,8 +108,9 @@ def called_at(where: str, call: Callable[[], T], *, then: str = "Mend it") -> T:
         raise
     except BaseException as error:
         place = traceback.extract_tb(error.__traceback__)[-1]
-        broke = f"{where} broke: {type(error).__name__}: {error} ({place.filename}:{place.lineno})"
-        raise PluginError(f"{broke}. {then}") from error
+        said = f": {error}" if str(error) else ""
+        broke = f"{where} broke: {type(error).__name__}{said}"
+        raise PluginError(f"{broke} ({place.filename}:{place.lineno}). {then}") from error
 
 
 def short(value: object) -> str:
