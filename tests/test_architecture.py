@@ -176,3 +176,13 @@ def test_no_script_hides_a_module_of_the_standard_library_from_those_beside_it()
     scripts = [path for room in ("benchmarks", "tools") for path in (ROOT / room).glob("*.py")]
     assert len(scripts) > 20
     assert not [path for path in scripts if path.stem in sys.stdlib_module_names]
+
+
+def test_every_vlm_is_asked_where_its_answers_are_checked() -> None:
+    """It may be anybody's; the others that are asked there are no VLMs."""
+    asking = {
+        str(path.relative_to(ROOT))
+        for path in (*FILES, *(ROOT / "experiments").rglob("*.py"))
+        if re.search(r"\b(?:vlm|model|inner)\.ask\(", path.read_text())
+    }
+    assert asking == {"packages/tpvqa/src/tpvqa/vlm/checking.py"}

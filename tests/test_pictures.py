@@ -17,7 +17,15 @@ from PIL import Image
 
 from tpvqa.errors import PictureError
 from tpvqa.observation import Frame
-from tpvqa.pictures import MOST_BYTES, decoded, in_colour, picture_type, read_file, read_picture
+from tpvqa.pictures import (
+    MOST_BYTES,
+    decoded,
+    in_colour,
+    picture_type,
+    read_file,
+    read_picture,
+    upright,
+)
 
 
 def encoded(kind: str, size: tuple[int, int] = (4, 3)) -> bytes:
@@ -157,3 +165,41 @@ def test_the_folder_itself_may_be_a_link(tmp_path: Path) -> None:
     (tmp_path / "set" / "p.png").write_bytes(encoded("png"))
     (tmp_path / "here").symlink_to(tmp_path / "set")
     assert read_picture("p.png", inside=tmp_path / "here")
+
+
+def _phone(kind: str, size: tuple[int, int] = (60, 40), orientation: int = 6) -> bytes:
+    """A picture that is red at its left, blue at its right, and says how it is to be turned."""
+    picture = Image.new("RGB", size, "red")
+    picture.paste("blue", (size[0] // 2, 0, *size))
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    file = BytesIO()
+    picture.save(file, kind, exif=exif)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize("kind", ["JPEG", "PNG", "WEBP"])
+def test_a_picture_of_a_phone_is_upright_to_everybody(kind: str) -> None:
+    data = _phone(kind)
+    for picture in (decoded(data), decoded(upright(data)), Image.open(BytesIO(upright(data)))):
+        assert picture.size == (40, 60)
+        above, below = (np.asarray(picture.convert("RGB"))[row, 20] for row in (10, 50))
+        assert above[0] > 200 > 50 > above[2]
+        assert below[2] > 200 > 50 > below[0]
+        assert not dict(picture.getexif()).get(0x0112)
+    assert Frame("a", "front", data).pixels.shape == (60, 40, 3)
+    assert picture_type(upright(data)) == picture_type(data)
+
+
+@pytest.mark.parametrize("orientation", [1, 9, 0])
+def test_what_is_not_turned_keeps_every_byte(orientation: int) -> None:
+    data = _phone("JPEG", orientation=orientation)
+    assert upright(data) is data
+    assert decoded(data).size == (60, 40)
+
+
+def test_exif_data_that_are_nonsense_turn_nothing() -> None:
+    data = _phone("JPEG")
+    broken = data.replace(b"Exif\0\0MM\0*", b"Exif\0\0XX\0*")
+    assert broken != data
+    assert decoded(broken).size == (60, 40)

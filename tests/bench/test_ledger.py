@@ -1,5 +1,6 @@
 """Finished episodes on disk: never run again, never lost, never mixed with others."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -47,4 +48,19 @@ def test_a_damaged_row_is_named(tmp_path: Path) -> None:
     with (tmp_path / ROWS).open("ab") as file:
         file.write(b'{"nonsense": 1}\n')
     with pytest.raises(BenchError, match=r"episodes\.jsonl:2"):
+        Ledger(tmp_path, {})
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("actions", "-7"), ("seconds", "-1.5"), ("named", "-1"), ("answers", '{"a": -1}')],
+)
+def test_a_row_of_impossible_numbers_is_named(tmp_path: Path, name: str, value: str) -> None:
+    ledger = Ledger(tmp_path, {})
+    ledger.add([row(episode=0)])
+    ledger.close()
+    told = json.loads((tmp_path / ROWS).read_text()) | {name: json.loads(value)}
+    with (tmp_path / ROWS).open("a") as file:
+        file.write(f"{json.dumps(told)}\n")
+    with pytest.raises(BenchError, match=rf"episodes\.jsonl:2: .*{name}.*greater than or equal"):
         Ledger(tmp_path, {})

@@ -39,6 +39,14 @@ def test_what_has_no_effect_is_told(tpvqa: Run, arguments: tuple[object, ...], s
     assert said in err
 
 
+def test_a_file_of_defaults_names_nothing(tpvqa: Run) -> None:
+    _, printed, _ = tpvqa("config", "eat_apple")
+    Path("trial.yaml").write_text(printed)
+    _, _, err = tpvqa("run", "--config", "trial.yaml", "--monitor", "tp", "--world", "symbolic")
+    assert "true_start" in printed
+    assert "--true-start" not in err
+
+
 def test_what_has_an_effect_is_not_told(tpvqa: Run) -> None:
     Path("world.yaml").write_text(WORLD)
     for arguments in (

@@ -16,6 +16,7 @@ import pytest
 
 import tpvqa_household.calibrations
 from tests.cli.conftest import Run
+from tests.conftest import Install
 from tests.doubles import worded
 from tests.serving.faulty_proxy import Fault, FaultyProxy
 from tpvqa.episodes import read_episode
@@ -270,3 +271,14 @@ def test_without_the_extra_it_says_what_to_install(
     code, _, err = tpvqa("serve-vlm")
     assert code == 2
     assert "packages/tpvqa[serve]" in err
+
+
+def test_a_vlm_of_ones_own_is_called_as_the_option_calls_it(
+    install: Install, tmp_path: Path
+) -> None:
+    source = "class Own:\n    name = 'of the class'\n    def ask(self, observation, questions):\n"
+    answers = "        return [Answer(each, Reply.YES) for each in questions]\n"
+    install("own", f"from tpvqa.vlm import Answer, Reply\n{source}{answers}", "mine = own:Own")
+    path = os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH"))))
+    with serving("--vlm", "mine", PYTHONPATH=path) as served:
+        assert served.model == "mine"

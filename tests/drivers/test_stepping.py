@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Event as Flag
+from typing import Any
 
 import pytest
 
@@ -12,7 +13,7 @@ from tpvqa.assembly import Trial
 from tpvqa.drivers.performing import Performed
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
-from tpvqa.errors import EpisodeError, PluginError
+from tpvqa.errors import EpisodeError, PluginError, TpvqaError
 from tpvqa.events import Decision, Ended, Event, Limits
 from tpvqa.events.events import Answered, AnswerRecord, ListenerDropped, PlanMade
 from tpvqa.monitors import Ask, Check, Look, PlanFrom, Step, Verdict
@@ -34,6 +35,24 @@ def planner() -> Iterator[Planner]:
 
 
 CONFIG = configured(task="build_tower", world="symbolic", vlm="oracle", monitor="tpvqa")
+
+
+def test_what_came_of_nothing_is_refused(planner: Planner) -> None:
+    writer = MemoryWriter()
+    rubbish: Any = "rubbish"
+    with Trial(CONFIG, planner=planner) as trial:
+        steps, performer = trial.stepping(writer), trial.performer(writer)
+        steps.begin()
+        with pytest.raises(TpvqaError, match=r"goes on with a Performed.*not str 'rubbish'"):
+            steps.send(rubbish)
+        assert steps.pending is not None
+        performed = performer.perform(steps.pending)
+        steps.send(performed)
+        while steps.pending is not None:
+            steps.send(performer.perform(steps.pending))
+        with pytest.raises(TpvqaError, match="Nothing is pending"):
+            steps.send(performed)
+        assert steps.end().because == "goal"
 
 
 def test_what_is_pending_is_there_to_be_seen_before_it_is_done(planner: Planner) -> None:

@@ -75,6 +75,8 @@ def test_a_vlm_that_answers_strangely(ask: Any, tmp_path: Path) -> None:
     ("method", "result"),
     [
         ("execute", Execution(Report.DONE, math.nan)),
+        ("execute", Execution(Report.DONE, -5.0)),
+        ("execute", Execution(Report.DONE, "5")),  # type: ignore[arg-type]
         ("execute", Execution(Report.DONE, 0.0, "\ud800")),
         ("execute", Execution("done", 0.0)),  # type: ignore[arg-type]
         ("execute", Execution(Report.DONE, 0.0, facts=(SensedFact(ON, math.nan),))),
@@ -99,6 +101,13 @@ def test_a_world_that_says_strange_things(method: str, result: object, tmp_path:
 def test_a_world_that_senses_what_is_no_predicate(told: Any, monkeypatch: Any) -> None:
     monkeypatch.setattr("tpvqa.worlds.symbolic.SymbolicWorld.senses", lambda world: told)
     with pytest.raises(PluginError, match=r"SymbolicWorld\.senses (has to )?return"):
+        _trial()
+
+
+@pytest.mark.parametrize("views", ["front", [1], [""], None])
+def test_views_that_are_no_list_of_names(views: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("tpvqa.worlds.symbolic.SymbolicWorld.views", lambda world: views)
+    with pytest.raises(PluginError, match=r"SymbolicWorld\.views has to return"):
         _trial()
 
 

@@ -363,6 +363,7 @@ def test_data_that_are_missing_or_damaged_are_told(
     assert code == 2
     assert told in error
     assert "--data" in error
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_model_that_nobody_recorded_is_told(tmp_path: Path, tpvqa: Command) -> None:

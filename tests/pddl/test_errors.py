@@ -48,6 +48,23 @@ BROKEN_DOMAINS = [
     ("(not (lit ?l))", "(not (lit (?l)))", 7, r"cannot be read: '\(lit \(\?l\)\)' .*switch_on"),
     ("(not (lit ?l))", "(not ((lit) ?l))", 7, "predicate name.*switch_on"),
     ("(?l - lamp)\n", "((?l) - lamp)\n", 6, "cannot be read.*switch_on"),
+    ("(?l - lamp)\n", "(?l - (either lamp tv))\n", 6, "either lamp tv.*declare a type above"),
+    (
+        ":effect (lit ?l)",
+        ":effect (and (lit ?l)\n(= ?l ?l))",
+        9,
+        r"'\(= \?l \?l\)'.*leave",
+    ),
+    (":effect (lit ?l)", ":effect (not (= ?l ?l))", 8, "is an equality"),
+    ("(:action", "(:derived (= ?a ?b - lamp) (lit ?a))\n(:action", 5, "derives an equality"),
+    *(
+        (":effect (lit ?l)", f":effect (and (lit ?l)\n(when (lit ?l)\n{effect}))", 10, outside)
+        for outside in (r"write it outside.*\(forall \(\?k - lamp\) \(when \(lit \?l\) …\)\)",)
+        for effect in (
+            "(and (forall (?k - lamp) (lit ?k)))",
+            "(forall (?k - lamp) (and (lit ?k) (mended ?k)))",
+        )
+    ),
     (
         ":precondition (not",
         ":precondition (and (not",

@@ -159,6 +159,20 @@ def test_pictures_are_made_smaller_once_to_the_size_that_is_stated() -> None:
     assert same.size == (100, 50)
 
 
+@pytest.mark.parametrize("longest", [1024, 30])
+def test_a_picture_of_a_phone_is_sent_upright_whatever_its_size(longest: int) -> None:
+    exif, file = Image.Exif(), BytesIO()
+    exif[0x0112] = 6
+    Image.open(BytesIO(picture((60, 40)))).save(file, "JPEG", exif=exif)
+    with ChatServer(lambda *_: 0.9) as server:
+        vlm = OpenAICompatibleVLM("test", base_url=server.url, picture_size=longest)
+        vlm.ask(look(0, file.getvalue()), [worded(TEXTS[0])])
+        vlm.close()
+    sent = Image.open(BytesIO(server.requests[0].pictures[0]))
+    assert sent.size == ((40, 60) if longest > 60 else (20, 30))
+    assert not sent.getexif()
+
+
 def test_a_prompt_of_ones_own_with_an_example(tmp_path: Path) -> None:
     (tmp_path / "open.png").write_bytes(picture())
     file = tmp_path / "prompt.yaml"

@@ -18,6 +18,7 @@ from tpvqa.planning import Plan, Planner
 from tpvqa.questions import ActionQuestion, FactQuestion, Question, QuestionBook, Way
 from tpvqa.tasks import find_task
 from tpvqa.vlm import VLM, Reply
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.metrics import Scored
 from tpvqa_household.images.manifest import OUTCOMES, Picture, PictureSet, load_pictures
 from tpvqa_household.images.reachable import kind, say_kind
@@ -129,7 +130,8 @@ def _ask(
     seen: _Seen,
     asked: list[tuple[Way, Sequence[Question], bool]],
 ) -> Iterator[Judged]:
-    answers = iter(vlm.ask(observation, [q for _, questions, _ in asked for q in questions]))
+    every = [q for _, questions, _ in asked for q in questions]
+    answers = iter(ask_checked(vlm, observation, every))
     for way, questions, truth in asked:
         own = [next(answers) for _ in questions]
         for question, answer in zip(questions, own, strict=True):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tpvqa.bench.ledger import REMEDY
 from tpvqa.chance import chance_array
-from tpvqa.errors import BenchError, UnknownNameError, WriteError
+from tpvqa.errors import BenchError, TpvqaError, UnknownNameError, WriteError
 from tpvqa_experiments.scenes.arrangements import arrangements
 from tpvqa_experiments.scenes.judged import Judged, Reading
 from tpvqa_experiments.scenes.likelihood import Encoder, evidence, learn
@@ -52,12 +52,17 @@ def run_scenes_bench(bench: ScenesBench, out: Path, *, progress: Progress) -> li
         UnknownNameError: There is no such VLM among them.
         WriteError: The folder cannot be written to.
     """
+    scenes, new = _of_models(read_scenes(bench.data), bench.models), not out.exists()
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise WriteError.of(out, error, REMEDY) from error
-    scenes = _of_models(read_scenes(bench.data), bench.models)
-    halves = judge(scenes, bench.seed, progress)
+    try:
+        halves = judge(scenes, bench.seed, progress)
+    except TpvqaError:
+        if new:
+            out.rmdir()
+        raise
     judged = [each for half in halves for each in half.judged]
     write_results(out, judged, [half.weighing for half in halves], bench.seed)
     return judged

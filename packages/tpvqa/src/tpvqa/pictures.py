@@ -3,6 +3,8 @@
 Everything that reads a picture goes through here. A file is read if it is a regular one and not too
 large; where a folder is given it has to lie inside it, and no link on the way is followed. Only
 JPEG, PNG and WebP are decoded, by Pillow, after their headers have said how many pixels there are.
+Pixels are upright, as every viewer shows them: phones write them as the sensor lay, and in the EXIF
+data how they are to be turned.
 """
 
 import errno
@@ -24,6 +26,7 @@ MOST_BYTES = 32 * 2**20
 """Of a file."""
 MOST_PIXELS = 50_000_000
 """Of a picture: as many as the largest photos of phones."""
+_QUALITY = 95  # of a picture that is encoded again, in percent
 _MOST_SCANS = 100  # of a JPEG; each is decoded over the whole picture, photos have some ten
 
 
@@ -86,17 +89,46 @@ def picture_type(data: bytes) -> str:
 
 
 def decoded(data: bytes) -> "Image.Image":
-    """The pixels of an encoded picture.
+    """The pixels of an encoded picture, upright.
 
     Raises:
         PictureError: It is no JPEG, PNG or WebP, is damaged, or has too many pixels.
     """
+    from PIL import ImageOps
+
     picture = _opened(data)
     try:
         picture.load()
     except Exception as error:  # decoders raise of every kind
         raise PictureError(f"is a damaged picture ({error})") from error
+    if _is_turned(picture):
+        ImageOps.exif_transpose(picture, in_place=True)
     return picture
+
+
+def upright(data: bytes) -> bytes:
+    """An encoded picture for whoever may not know that EXIF data turn it: the same bytes where they
+    do not, or else encoded again.
+
+    Raises:
+        PictureError: As `decoded` does.
+    """
+    opened = _opened(data)
+    if not _is_turned(opened):
+        return data
+    file = BytesIO()
+    kind = "JPEG" if opened.format == "MPO" else opened.format
+    in_colour(data).save(file, kind, quality=_QUALITY)
+    return file.getvalue()
+
+
+def _is_turned(picture: "Image.Image") -> bool:
+    from PIL import ExifTags
+
+    try:
+        return picture.getexif().get(ExifTags.Base.Orientation, 1) in range(2, 9)
+    except Exception:  # noqa: BLE001 — what a camera wrote there may be anything; viewers go on
+        return False
 
 
 def in_colour(data: bytes) -> "Image.Image":

@@ -148,9 +148,9 @@ def load(kind: Kind, name: str) -> Callable[..., Any]:
     (point,) = found.values()
     try:
         target = point.load()
-    except TpvqaError:
+    except (TpvqaError, KeyboardInterrupt):
         raise
-    except Exception as error:
+    except BaseException as error:
         raise _cannot_import(kind, point, error) from error
     if not callable(target):
         raise PluginError(
@@ -290,9 +290,9 @@ def _construct(
         ) from None
     try:
         made = function(*given, **wanted)
-    except TpvqaError:
+    except (TpvqaError, KeyboardInterrupt):
         raise
-    except (Exception, SystemExit) as error:
+    except BaseException as error:
         where = traceback.extract_tb(error.__traceback__)[-1]
         said = " ".join(str(error).split())[:300]
         raise PluginError(
@@ -315,7 +315,7 @@ def _package(point: EntryPoint) -> str:
     return point.dist.name if point.dist is not None else point.value
 
 
-def _cannot_import(kind: Kind, point: EntryPoint, error: Exception) -> Exception:
+def _cannot_import(kind: Kind, point: EntryPoint, error: BaseException) -> Exception:
     missing = (getattr(error, "name", None) or "").partition(".")[0]
     if isinstance(error, ModuleNotFoundError) and missing != _root(point):
         for distribution in dict.fromkeys((_package(point), "tpvqa") if missing else ()):

@@ -1,7 +1,15 @@
-"""What a plug-in lacks of the protocol of its kind; seen when it is made, not when it is used."""
+"""What a plug-in lacks of the protocol of its kind, seen when it is made, not when it is used; and
+calls into it, which may raise anything."""
 
 import inspect
+import traceback
+from collections.abc import Callable
 from difflib import get_close_matches
+from typing import TypeVar
+
+from tpvqa.errors import PluginError, TpvqaError
+
+T = TypeVar("T")
 
 _ANY = object()
 
@@ -79,3 +87,33 @@ def _meant(thing: object, name: str) -> str:
     known = [each for each in dir(thing) if not each.startswith("__")]
     near = get_close_matches(name, known, n=1)
     return f". Did you mean it by {near[0]!r}?" if near else ""
+
+
+def called_at(where: str, call: Callable[[], T], *, then: str = "Mend it") -> T:
+    """What a call into a plug-in returns.
+
+    Args:
+        where: What is called, for messages.
+        call: Calls it.
+        then: What to do where it broke.
+
+    Raises:
+        TpvqaError: What it raised itself.
+        KeyboardInterrupt: Ctrl-C.
+        PluginError: It raised something else; says where.
+    """
+    try:
+        return call()
+    except (TpvqaError, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        said = f": {error}" if str(error) else ""
+        broke = f"{where} broke: {type(error).__name__}{said}"
+        raise PluginError(f"{broke} ({place.filename}:{place.lineno}). {then}") from error
+
+
+def short(value: object) -> str:
+    """A value for a message, with its type."""
+    text = repr(value)
+    return f"{type(value).__name__} {text if len(text) <= 60 else text[:57] + '…'}"

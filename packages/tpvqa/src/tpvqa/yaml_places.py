@@ -18,7 +18,8 @@ _STRING = "tag:yaml.org,2002:str"
 
 
 class _Loader(yaml.SafeLoader):
-    """Composes plain trees: no aliases, which make small files huge, and no key given twice."""
+    """Composes plain trees: no anchors and aliases, which make small files
+    huge, and no key given twice."""
 
     _depth = 0
 
@@ -30,6 +31,9 @@ class _Loader(yaml.SafeLoader):
                 "stands for",
                 mark,
             )
+        anchor = getattr(self._next(), "anchor", None)
+        if anchor is not None:
+            raise _Refused(f"the anchor &{cut(anchor)} is not read here; leave it out", mark)
         tag = getattr(self._next(), "tag", None)
         if tag is not None:
             raise _Refused(f"the tag {shown(tag)} is not read here; leave it out", mark)

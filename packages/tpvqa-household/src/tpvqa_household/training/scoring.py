@@ -11,6 +11,7 @@ from tpvqa.pddl import Action, Atom, Conjunction, literals
 from tpvqa.questions.question import ActionQuestion, FactQuestion, Question, Way
 from tpvqa.vlm import VLM
 from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.metrics import Metrics, Scored, measure
 from tpvqa.vlm.sight import ask_seeing
 from tpvqa_household.training.asking import Asking
@@ -168,9 +169,8 @@ def no_household_answers(vlm: VLM, observations: Iterable[Observation], asking: 
     counts: dict[str, list[Answer]] = {}
     for observation in observations:
         texts = {s: next(iter(wordings(s))).text for s in asking.subjects}
-        answers = vlm.ask(
-            observation, [_question(text, subject) for subject, text in texts.items()]
-        )
+        asked = [_question(text, subject) for subject, text in texts.items()]
+        answers = ask_checked(vlm, observation, asked)
         for subject, answer in zip(texts, answers, strict=True):
             name = subject.name if subject.form == "fact" else subject.form
             counts.setdefault(name, []).append(answer)

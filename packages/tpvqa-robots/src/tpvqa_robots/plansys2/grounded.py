@@ -11,7 +11,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Action
 from tpvqa.questions import FactQuestion
 from tpvqa.vlm import Answer
-from tpvqa.vlm.checking import checked_answers
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.worlds import Execution, Report
 
@@ -80,7 +80,7 @@ class Grounded:
         shown, why = seen_by(vlm, replace(seen, look=next(self._numbers)))
         if why:
             return cannot_see(questions, why)
-        return checked_answers(vlm, called(vlm, "ask", list, shown, questions), questions)
+        return ask_checked(vlm, shown, questions)
 
 
 def _named(answers: Sequence[Answer]) -> str:

@@ -11,9 +11,8 @@ from tpvqa.errors import TpvqaError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom, Literal
 from tpvqa.questions import FactQuestion, QuestionBook
-from tpvqa.vlm import Answer
 from tpvqa.vlm.capabilities import may_be_asked_side_by_side
-from tpvqa.vlm.checking import checked_answers
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa_robots.bridges.jobs import turn
 from tpvqa_robots.ros2.typed import stamped
@@ -71,12 +70,7 @@ class Asking:
         busy = turn("ask", vlm).waited_for(PATIENCE, "the VLM")
         with nullcontext() if may_be_asked_side_by_side(vlm) else busy:
             shown, why = seen_by(vlm, seen)
-            given: list[Answer]
-            if why:
-                given = cannot_see([question], why)
-            else:
-                told = called(vlm, "ask", list, shown, [question])
-                given = checked_answers(vlm, told, [question])
+            given = cannot_see([question], why) if why else ask_checked(vlm, shown, [question])
         answer = given[0]
         response.answered, response.question = True, question.text
         response.reply, response.text = answer.reply.value, answer.text

@@ -83,9 +83,11 @@ class Ledger:
             try:
                 yield EpisodeRow.model_validate_json(line)
             except ValidationError as error:
+                first = first_fault(error)
+                said = ": ".join((".".join(map(str, first["loc"])), first["msg"]))
                 raise BenchError(
                     f"{self.folder / ROWS}:{number}: not a row of this version "
-                    f"({first_fault(error)['msg']}). Remove the folder, or name another"
+                    f"({said.removeprefix(': ')}). Remove the folder, or name another"
                 ) from None
 
     def missing(self, cell: Cell, episodes: int) -> list[int]:

@@ -1,10 +1,14 @@
 """What is kept of an episode: one line of a file, and later one row of a table."""
 
+from typing import Annotated
+
 from pydantic import ConfigDict, Field
 
 from tpvqa.bench.cell import Cell
 from tpvqa.events.events import BELIEVED
 from tpvqa.told import ToldModel
+
+Count = Annotated[int, Field(ge=0)]
 
 
 class EpisodeRow(ToldModel):
@@ -43,32 +47,32 @@ class EpisodeRow(ToldModel):
     world: str
     condition: str = ""
     seed: int
-    episode: int
+    episode: Count
     completed: bool = False
     because: str = "error"
     believed_goal: bool = False
     reached: bool = False
-    actions: int = 0
-    questions: int = 0
-    looks: int = 0
-    repeats: int = 0
-    replans: int = 0
-    longest_repeat: int = 0
-    failures: int = 0
-    wasted: int = 0
-    dead: int = 0
-    named: int | None = None
-    misnamed: int = 0
-    first_plan: int = 0
-    seconds: float = 0.0
+    actions: Count = 0
+    questions: Count = 0
+    looks: Count = 0
+    repeats: Count = 0
+    replans: Count = 0
+    longest_repeat: Count = 0
+    failures: Count = 0
+    wasted: Count = 0
+    dead: Count = 0
+    named: Count | None = None
+    misnamed: Count = 0
+    first_plan: Count = 0
+    seconds: float = Field(default=0.0, ge=0, allow_inf_nan=False)
     trust: float | None = None
     goal: float | None = None
-    requests: int | None = None
-    prompt_tokens: int | None = None
-    completion_tokens: int | None = None
+    requests: Count | None = None
+    prompt_tokens: Count | None = None
+    completion_tokens: Count | None = None
     error: str = ""
-    answers: dict[str, int] = Field(default_factory=dict)
-    decisions: dict[str, int] = Field(default_factory=dict)
+    answers: dict[str, Count] = Field(default_factory=dict)
+    decisions: dict[str, Count] = Field(default_factory=dict)
 
     @property
     def cell(self) -> Cell:

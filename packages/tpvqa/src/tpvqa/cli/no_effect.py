@@ -28,6 +28,8 @@ def without_effect(trial: "Trial", given: Collection[Key]) -> list[str]:
     simulation = trial.simulation
     notices = []
     for name in named:
+        if getattr(trial.config.simulation, name, None) is None:  # as a file of defaults has it
+            continue
         why = _why(trial, simulation, name)
         if why:
             notices.append(f"{options['simulation', name]} has no effect: {why}")

@@ -85,10 +85,13 @@ def serve_vlm(
     options = dict(map(pair, option or ()))
     context = {**options, "base_url": base_url, "remember": _REMEMBERED}
     see_free(options, context)
-    model, taken = make_vlm(vlm or default_vlm(), context)
+    spec = vlm or default_vlm()
+    model, taken = make_vlm(spec, context)
     see_taken(options, taken, context)
     limits = Limits(waiting=waiting, patience=patience)
-    with Serving(model, model=name, host=host, port=port, token=token, limits=limits) as serving:
+    with Serving(
+        model, model=name or spec, host=host, port=port, token=token, limits=limits
+    ) as serving:
         _try(model)
         serving.run(ready=lambda: _say_ready(serving, token=token, as_json=as_json))
         counts = serving.counts
@@ -110,14 +113,16 @@ def _try(vlm: "VLM") -> None:
     from tpvqa.observation import Observation
     from tpvqa.pddl import Atom
     from tpvqa.plugins import Checked
+    from tpvqa.protocols import called_at
     from tpvqa.questions import FactQuestion, Way
+    from tpvqa.vlm.checking import ask_checked
     from tpvqa.vlm.pictures import grey_frame
 
     if isinstance(vlm, Checked):
-        vlm.check()
+        called_at(f"check of {vlm.name}", vlm.check)
         return
     question = FactQuestion("Is there an apple in the image?", Way.PRECONDITION, Atom("asked"))
-    vlm.ask(Observation(frames={"front": grey_frame()}), [question])
+    ask_checked(vlm, Observation(frames={"front": grey_frame()}), [question])
 
 
 def _say_ready(serving: "Serving", *, token: str | None, as_json: bool) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from tpvqa.drivers.freshness import Freshness
 from tpvqa.drivers.halting import unless_halted
-from tpvqa.drivers.plugged import MALFORMED, called, malformed, planning_result
+from tpvqa.drivers.plugged import MALFORMED, THEN, called, malformed, planning_result
 from tpvqa.drivers.sensed import checked
 from tpvqa.errors import PlannerError
 from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade, Waited
@@ -29,7 +29,7 @@ from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending, Wait
 from tpvqa.vlm import VLM, Answer, Reply
 from tpvqa.vlm.capabilities import metered, sees_before
-from tpvqa.vlm.checking import checked_answers
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.vlm.usage import Usage
 from tpvqa.worlds import Execution, Report, Restorable, World
@@ -202,8 +202,12 @@ class Performer:
             seen = replace(seen, before=self._earlier(seen.before))
         if self._metered is not None:
             self._counted = self._metered.usage
-        answers = cannot_see(questions, why) if why else _answers(self.parts.vlm, seen, questions)
-        return Performed(answers, self._answered(self.parts.vlm, answers))
+        vlm = self.parts.vlm
+        if why:
+            answers = cannot_see(questions, why)
+        else:
+            answers = ask_checked(vlm, seen, questions, then=THEN)
+        return Performed(answers, self._answered(vlm, answers))
 
     def _earlier(self, before: Observation | None) -> Observation | None:
         """What is shown of the look before the latest action, where anything is to be seen."""
@@ -217,7 +221,7 @@ class Performer:
         if person is None:
             answer = Answer(question, Reply.UNKNOWN, text="nobody is there")
             return Performed(answer, self._answered(self.parts.vlm, [answer]))
-        answers = _answers(person, seen, (question,))
+        answers = ask_checked(person, seen, (question,), then=THEN)
         return Performed(answers[0], self._answered(person, answers))
 
     def _answered(self, asked: VLM, answers: Sequence[Answer]) -> Answered:
@@ -245,6 +249,8 @@ class Performer:
             raise malformed(world, "execute", ValueError(f"no Report: {execution.report!r:.80}"))
         facts = checked(execution.facts, self.parts.task, world, "execute")
         try:
+            if execution.seconds < 0:
+                raise ValueError(f"seconds: {execution.seconds:g}, less than none")
             outcome = self._last_outcome()
             acted = Acted(
                 report=execution.report,
@@ -290,8 +296,3 @@ def _less(one: float | None, other: float | None) -> float | None:
 def _named(frames: Mapping[str, Frame], look: int) -> dict[str, Frame]:
     """The frames of a look, each with the name of the file that it is saved as."""
     return {view: frame.named(f"{look:04d}-{frame.view}") for view, frame in frames.items()}
-
-
-def _answers(vlm: VLM, seen: Observation | None, questions: Sequence[Question]) -> list[Answer]:
-    """One answer to each question, in order."""
-    return checked_answers(vlm, called(vlm, "ask", list, seen, questions), questions)

@@ -1,6 +1,5 @@
 """Calls into planners, worlds and VLMs: what plug-ins raise or return may be anything."""
 
-import traceback
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar, cast
 
@@ -9,11 +8,14 @@ from pydantic import ValidationError
 from tpvqa.errors import EpisodeError, PluginError, TpvqaError
 from tpvqa.pddl import State, Task
 from tpvqa.planning import Planner, PlanningResult
+from tpvqa.protocols import called_at, short
 from tpvqa.told import first_fault
 from tpvqa.vlm.capabilities import kind_of
 from tpvqa.worlds import Restorable, World
 
 T = TypeVar("T")
+THEN = "Mend it; the episode can be gone on with"
+"""What to do where a part broke."""
 _VIEWS = cast("type[Sequence[str]]", Sequence)
 
 
@@ -32,16 +34,9 @@ def called(part: object, method: str, wanted: type[T], /, *given: object, **name
         PluginError: It raised something else, or returned something else; says where.
     """
     where = _where(part, method)
-    try:
-        result = getattr(part, method)(*given, **named)
-    except TpvqaError:
-        raise
-    except (Exception, SystemExit) as error:
-        raise PluginError(
-            f"{_broke(where, error)}. Mend it; the episode can be gone on with"
-        ) from error
+    result = called_at(where, lambda: getattr(part, method)(*given, **named), then=THEN)
     if not isinstance(result, wanted):
-        raise PluginError(f"{where} has to return {wanted.__name__}, not {_short(result)}")
+        raise PluginError(f"{where} has to return {wanted.__name__}, not {short(result)}")
     return result
 
 
@@ -54,12 +49,9 @@ def planned(
         TpvqaError: What it raised itself.
         PluginError: It raised something else, or returned something else.
     """
-    try:
-        return planning_result(planner, planner.plan(task, state, timeout=timeout))
-    except TpvqaError:
-        raise
-    except (Exception, SystemExit) as error:
-        raise PluginError(f"{_broke(_where(planner, 'plan'), error)}. Mend it") from error
+    where = _where(planner, "plan")
+    result = called_at(where, lambda: planner.plan(task, state, timeout=timeout))
+    return planning_result(planner, result)
 
 
 def planning_result(planner: Planner, result: object) -> PlanningResult:
@@ -71,8 +63,7 @@ def planning_result(planner: Planner, result: object) -> PlanningResult:
     if isinstance(result, PlanningResult):
         return result
     raise PluginError(
-        f"{planner.name} has to return a Plan, Unsolvable, TimedOut or Crashed, not "
-        f"{_short(result)}"
+        f"{planner.name} has to return a Plan, Unsolvable, TimedOut or Crashed, not {short(result)}"
     )
 
 
@@ -82,7 +73,11 @@ def views_of(world: World) -> tuple[str, ...]:
     Raises:
         PluginError: It broke, or returned something else.
     """
-    return tuple(called(world, "views", _VIEWS))
+    views = called(world, "views", _VIEWS)
+    if isinstance(views, str) or not all(isinstance(each, str) and each for each in views):
+        where = _where(world, "views")
+        raise PluginError(f"{where} has to return a list of names, not {short(views)}")
+    return tuple(views)
 
 
 def put_back(part: Restorable, name: str, snapshot: Mapping[str, Any]) -> None:
@@ -116,16 +111,6 @@ MALFORMED = (ValidationError, AttributeError, KeyError, TypeError, ValueError)
 """What is raised where something of a plug-in is put into the log that does not belong there."""
 
 
-def _broke(where: str, error: BaseException) -> str:
-    place = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{where} broke: {type(error).__name__}: {error} ({place.filename}:{place.lineno})"
-
-
 def _where(part: object, method: str) -> str:
     kind = kind_of(part)
     return f"{kind.__module__}.{kind.__qualname__}.{method}"
-
-
-def _short(value: object) -> str:
-    text = repr(value)
-    return f"{type(value).__name__} {text if len(text) <= 60 else text[:57] + '…'}"

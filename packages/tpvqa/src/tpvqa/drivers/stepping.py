@@ -6,8 +6,9 @@ from typing import Any
 from tpvqa.drivers.journal import Journal
 from tpvqa.drivers.performing import Performed
 from tpvqa.drivers.replaying import Recording
-from tpvqa.errors import EpisodeError
+from tpvqa.errors import EpisodeError, TpvqaError
 from tpvqa.events import Ended, Event, Resumed, TrialState
+from tpvqa.protocols import short
 from tpvqa.trial import Conclusion, Pending, Result, Steps, Unwatched
 from tpvqa.vlm.usage import Usage
 
@@ -79,7 +80,18 @@ class SteppingTrial:
         self._announced = True
 
     def send(self, performed: Performed) -> None:
-        """Go on with what came of what was pending, to the next thing that is to be done."""
+        """Go on with what came of what was pending, to the next thing that is to be done.
+
+        Raises:
+            TpvqaError: It is something else, or nothing is pending.
+        """
+        if not isinstance(performed, Performed):
+            raise TpvqaError(
+                "A trial goes on with a Performed, as `Performer.perform` gives it, not "
+                f"{short(performed)}"
+            )
+        if self.pending is None:
+            raise TpvqaError("Nothing is pending: begin the trial first, or end it.")
         self.begun()
         self.journal.write(performed.event)
         self._advance(Result(performed.value, self.state))

@@ -20,7 +20,7 @@ from tpvqa.pddl import Atom
 from tpvqa.questions.question import FactQuestion, Way
 from tpvqa.serving.refusal import Refusal
 from tpvqa.serving.sent import Key
-from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.answer import Answer
 from tpvqa.vlm.capabilities import may_be_asked_side_by_side
 from tpvqa.vlm.protocol import VLM
 from tpvqa.vlm.sight import ask_seeing
@@ -204,7 +204,7 @@ class Desk:
             try:
                 answers = self._answers(entries[0].frames, texts)
                 outcome = dict(zip(texts, answers, strict=True))
-            except Exception as error:  # noqa: BLE001 — a plug-in may raise anything
+            except BaseException as error:  # noqa: BLE001 — a plug-in may raise anything
                 outcome = _failure(error)
             seconds = time.perf_counter() - began
             with self._changed:
@@ -235,11 +235,7 @@ class Desk:
         seen = Observation(look, time.monotonic(), {frame.view: frame for frame in frames})
         # A VLM that looks at pictures goes by the words alone.
         asked = [FactQuestion(text, Way.PRECONDITION, Atom("asked")) for text in texts]
-        answers = ask_seeing(self.vlm, seen, asked)
-        in_place = [isinstance(each, Answer) and each.question for each in answers] == asked
-        if not in_place or not all(isinstance(each.reply, Reply) for each in answers):
-            raise PluginError(f"{self.vlm.name} has to answer each question in its place.")
-        return answers
+        return ask_seeing(self.vlm, seen, asked)
 
     def _deliver(
         self, entries: list[_Waiting], outcome: dict[str, Answer] | Refusal, seconds: float
@@ -257,12 +253,14 @@ class Desk:
                 entry.answer.set_result(outcome[entry.text])
 
 
-def _failure(error: Exception) -> Refusal:
-    if isinstance(error, TpvqaError):
+def _failure(error: BaseException) -> Refusal:
+    broke = error.__cause__ if isinstance(error, PluginError) else None
+    if isinstance(error, TpvqaError) and broke is None:
         return Refusal(500, str(error), code="vlm_failed")
-    traceback.print_exception(error, file=sys.stderr)
+    broke = broke or error
+    traceback.print_exception(broke, file=sys.stderr)
     return Refusal(
         500,
-        f"The VLM broke with {type(error).__name__}; the server's log says where.",
+        f"The VLM broke with {type(broke).__name__}; the server's log says where.",
         code="vlm_broke",
     )

@@ -11,7 +11,7 @@ from tpvqa.pictures import decoded, picture_type, read_picture
 def observe_file(path: str | Path) -> Observation:
     """One look at a picture in a file.
 
-    JPEG and PNG are taken as they are, WebP, which few servers read, is turned into PNG.
+    JPEG and PNG are taken as they are, WebP, which few servers read, is made a PNG.
 
     Raises:
         PictureError: It is no regular file, no JPEG, PNG or WebP, damaged, or too large.

@@ -11,7 +11,7 @@ import yaml
 
 from tpvqa.errors import PictureError, PromptError
 from tpvqa.observation import Frame
-from tpvqa.pictures import picture_type, read_picture
+from tpvqa.pictures import picture_type, read_picture, upright
 from tpvqa.text_files import read_text
 from tpvqa.yaml_places import Place, read_yaml
 
@@ -151,7 +151,7 @@ def _example(place: Place, folder: Path) -> Example:
     for number, each in enumerate(parts["pictures"].texts()):
         name = each.text()
         try:
-            data = read_picture(folder / name)
+            data = upright(read_picture(folder / name))
             frames.append(Frame(name, f"example{number}", data, picture_type(data)))
         except PictureError as error:
             raise each.wrong(f"{error} (paths are relative to this file)") from error

@@ -7,7 +7,7 @@ from io import BytesIO
 
 from tpvqa.errors import PictureError
 from tpvqa.observation import Frame
-from tpvqa.pictures import as_colour, decoded
+from tpvqa.pictures import as_colour, decoded, upright
 
 LONGEST = 1024
 """Pixels of the longest side where none is named: models look at tiles of 336 to 768 pixels."""
@@ -19,8 +19,9 @@ _KEPT = 64
 class SentPictures:
     """Makes pictures fit to be sent; each picture once.
 
-    A picture that is not larger is sent as it is, byte by byte, unless a quality is named. What is
-    no picture that can be decoded is left to the server.
+    A picture that is not larger is sent as it is, byte by byte, unless a quality is named, or its
+    EXIF data say that it is to be turned: servers differ in whether they do. What is no picture
+    that can be decoded is left to the server.
 
     Args:
         longest: Pixels that the longest side may have.
@@ -51,7 +52,7 @@ class SentPictures:
             return frame
         larger = max(picture.size) > self.longest
         if not larger and self.quality is None:
-            return frame
+            return replace(frame, data=upright(frame.data))
         picture = as_colour(picture)
         if larger:
             picture.thumbnail((self.longest, self.longest), Image.Resampling.LANCZOS)

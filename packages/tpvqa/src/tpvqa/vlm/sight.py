@@ -23,6 +23,7 @@ from tpvqa.pictures import in_colour, picture_type
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer, Reply
 from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.protocol import VLM
 
 if TYPE_CHECKING:
@@ -44,9 +45,10 @@ def ask_seeing(vlm: VLM, observation: Observation, questions: Sequence[Question]
 
     Raises:
         AnswerError: The VLM cannot be asked at all.
+        PluginError: It broke, or gave what it must not.
     """
     seen, why = seen_by(vlm, observation)
-    return cannot_see(questions, why) if why else vlm.ask(seen, questions)
+    return cannot_see(questions, why) if why else ask_checked(vlm, seen, questions)
 
 
 def seen_by(

@@ -5,7 +5,7 @@ from io import BytesIO
 from PIL import Image, ImageOps
 
 from tpvqa.errors import PictureError
-from tpvqa.pictures import as_colour, decoded
+from tpvqa.pictures import in_colour
 
 LONGEST = 512
 """Pixels of the longer side at most. Photos tell where they were taken; that is left out too."""
@@ -19,11 +19,9 @@ def read_picture(data: bytes) -> Image.Image:
         ValueError: It is no picture, or a broken one; says which.
     """
     try:
-        return as_colour(ImageOps.exif_transpose(decoded(data)))
+        return in_colour(data)
     except PictureError as error:
         raise ValueError(str(error)) from error
-    except Exception as error:  # what a camera wrote into it may be anything
-        raise ValueError(f"is a damaged picture ({error})") from error
 
 
 def as_jpeg(image: Image.Image) -> bytes:

@@ -13,7 +13,7 @@ from tpvqa.pddl import Action, Literal, State
 from tpvqa.questions import FactQuestion, QuestionBook
 from tpvqa.vlm import VLM, Answer
 from tpvqa.vlm.capabilities import may_be_asked_side_by_side
-from tpvqa.vlm.checking import checked_answers
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.worlds import World
 from tpvqa_robots.bridges.jobs import Job, turn
@@ -163,7 +163,7 @@ class Check(Behaviour):
         shown, why = seen_by(vlm, seen)
         if why:
             return cannot_see(questions, why)
-        return checked_answers(vlm, called(vlm, "ask", list, shown, questions), questions)
+        return ask_checked(vlm, shown, questions)
 
 
 def _about(literals: Sequence[Literal], book: QuestionBook, name: str) -> tuple[FactQuestion, ...]:

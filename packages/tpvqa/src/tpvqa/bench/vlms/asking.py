@@ -13,6 +13,7 @@ from tpvqa.plugins import Closing, Kind, load_spec, see_taken, takes
 from tpvqa.questions import Way
 from tpvqa.vlm import VLM, Answer, Reply
 from tpvqa.vlm.capabilities import is_deterministic, is_noise_model
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.making import in_full, make_vlm
 from tpvqa.vlm.sight import ask_seeing
 
@@ -171,7 +172,7 @@ def _asked(
     found = []
     for each in asked:
         truth.now = each
-        found.append((each, vlm.ask(seen, [each.question])[0]))
+        found.append((each, ask_checked(vlm, seen, [each.question])[0]))
     return found
 
 

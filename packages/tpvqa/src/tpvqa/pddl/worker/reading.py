@@ -12,6 +12,7 @@ from tpvqa.errors import shown, suggestion_or_list
 from tpvqa.pddl.worker.blocks import sections
 from tpvqa.pddl.worker.costs import check_costs
 from tpvqa.pddl.worker.durative import taken_apart
+from tpvqa.pddl.worker.effects import check_equality, misplaced_forall
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
 from tpvqa.pddl.worker.metric import passed_over
 from tpvqa.pddl.worker.numeric import taken_out as numbers_taken_out
@@ -71,6 +72,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
         task = parsing_functions.parse_task(blocks["domain"], blocks["problem"])
         task.durative, task.numeric, task.metric = durative, numeric, metric
         _check_types(task, blocks)
+        check_equality(task)
         _check_derived(task)
         _check_names(task, blocks["domain"])
         check_costs(task, _function_names(blocks["domain"]))
@@ -140,6 +142,9 @@ def _not_understood(error: Exception) -> ReadingError:
         for name in ("entry", "alist", "fact", "exp", "item"):
             item = names[name] if line_of(names.get(name)) is not None else item
         trace = trace.tb_next
+    forall = misplaced_forall(item) if isinstance(error, AssertionError) else None
+    if forall is not None:
+        return ReadingError(f"{forall[0]}{_in(layers)}", part, forall[1] or line)
     if isinstance(error, RecursionError):
         message = "this is nested too deeply"
     else:
@@ -161,11 +166,16 @@ def _explained(error: _LocatedError, blocks: dict[str, Block]) -> ReadingError:
         message = f"the object {shown(name)} is declared twice; expected it once"
         return ReadingError(message, part, line)
     message = " ".join(error.message.replace("Reason: ", "").split()).rstrip(".")
+    remedy = ""
+    if message.startswith("Type value") and isinstance(error.item, list):
+        remedy = (
+            "; declare a type above these in (:types …), such as 'truck van - vehicle', and name it"
+        )
     if error.item is not None and not isinstance(error.item, ParseError):
         message += f": got {_shown(error.item)}"
     if error.syntax:
         message += f"; expected {error.syntax}"
-    message += _in(error.layers) + _names_that_exist(error)
+    message += remedy + _in(error.layers) + _names_that_exist(error)
     part, line = _innermost(error.__traceback__)
     if "does not match the name specified" in error.message:
         part, line = _place_of(":domain", blocks)

@@ -11,7 +11,7 @@ from tpvqa.plugins import Checked, Closing
 from tpvqa.questions.question import Question
 from tpvqa.vlm.answer import Answer
 from tpvqa.vlm.capabilities import StandsIn, is_deterministic
-from tpvqa.vlm.checking import checked_answers
+from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.kept.file import ANYBODY, AnswerFile, Asking
 from tpvqa.vlm.kept.fingerprint import picture_of
 from tpvqa.vlm.protocol import VLM
@@ -120,7 +120,7 @@ class KeptVLM(StandsIn):
         if self.inner is None:
             raise self._unseen(observation, picture, draw, missing)
         self.asked += len(missing)
-        given = checked_answers(self.inner, self.inner.ask(observation, missing), missing)
+        given = ask_checked(self.inner, observation, missing)
         if self.use is Use.CACHE:
             return found | self._kept(asking, given)
         self.file.write(asking, given, append=self._trial is None and not self._fixed)
