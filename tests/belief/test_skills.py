@@ -128,6 +128,7 @@ def test_what_is_not_known_of_a_try_is_counted_by_halves() -> None:
     chances.learn({"failure": 0.25, "success": 0.25, "achieved": 0.5}, action)
     # Of four such, one failed twice, one the first time, and two worked at once.
     assert chances.skills.times(action) == pytest.approx((0.5 * 2 + 0.5, 0.25 * 2 + 0.25))
+    assert chances.skills.tries(action) == 2
 
 
 def test_tries_are_not_forgotten_once_an_action_could_not_be_done() -> None:

@@ -151,6 +151,34 @@ def test_no_decision_is_longer_than_a_line(parts: list[str]) -> None:
     assert said == reason or len(reason) > 88 or MORE not in said
 
 
+@pytest.mark.parametrize(
+    ("reason", "said"),
+    [
+        (
+            "bow line coiled 0.00 (not worth asking); stern line coiled 0.00 (not worth asking); "
+            "no change of plan is left, and the goal holds with only 0.00",
+            "bow line coiled 0.00; …; no change of plan is left, and the goal holds with only 0.00",
+        ),
+        (
+            "put the halter on Bess failed 32 times of 32; Bess sound 0.00; girth tight 0.00 (not "
+            "worth asking); no other way is known, and the goal holds with only 0.00",
+            "put the halter on Bess failed 32 times of 32; …; no other way is known, and the goal "
+            "holds with only 0.00",
+        ),
+    ],
+)
+def test_what_a_trial_is_ended_for_is_never_left_out(reason: str, said: str) -> None:
+    assert brief(reason, 86) == said
+
+
+def test_what_was_sensed_is_not_cut_amid_a_phrase() -> None:
+    reason = (
+        "windlass in hand 0.93 → 0.02 as sensed and after two noes, which lay down the windlass at "
+        "the top gate (step 2) needs; on to push open the top gate (step 3), which can be done"
+    )
+    assert brief(reason, 84) == "windlass in hand 0.93 → 0.02 as sensed; …"
+
+
 def test_the_whole_reason_is_there_on_request_and_wraps(tpvqa: Run) -> None:
     lines = _in_terminal(decision(REASON), verbose=True)
     assert max(map(len, lines)) <= 80

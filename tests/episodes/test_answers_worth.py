@@ -15,6 +15,7 @@ from tpvqa.episodes import MemoryWriter
 from tpvqa.episodes.answers_worth import AnswersWorth, calibration_used
 from tpvqa.episodes.report import render_report
 from tpvqa.events import Ended, Event, Started
+from tpvqa.events.events import Decided
 
 CONFIG = configured(
     task="clean_dishes", world="symbolic", vlm="oracle:0.9", monitor="belief", episode=1
@@ -71,9 +72,10 @@ def test_the_default_is_named_and_what_it_costs() -> None:
         events = events_of(CONFIG.but(episode=episode))
         assert calibration_used(started(events)) == "default: nothing was known of this VLM"
         told = saves(events)
-        agreed = re.match(r"([01]\.\d\d) of the answers agreed", told)
+        agreed = re.match(r"(\d+) of (\d+) answers agreed .* action, ([01]\.\d\d), and", told)
         assert agreed is not None
-        assert abs(float(agreed[1]) - 0.9) < 0.15
+        assert abs(float(agreed[3]) - 0.9) < 0.15
+        assert float(agreed[3]) == round(int(agreed[1]) / int(agreed[2]), 2)
         told_asked, told_less = asked_and_less(told)
         assert told_asked == questions(events)
         asked, less = asked + told_asked, less + told_less
@@ -98,7 +100,28 @@ def test_answers_that_are_worse_than_believed_are_told() -> None:
     told = [saves(events_of(CONFIG.but(vlm="oracle:0.7", episode=n), known)) for n in range(5)]
     assert any("labels would say how far not to trust them" in each for each in told)
     for each in told:  # seldom they happen to agree as often as believed
-        assert ("questions less" in each) <= (float(each.partition(" of ")[0] or 0) > 0.9)
+        share = re.search(r"action, ([01]\.\d\d), and", each)
+        assert ("questions less" in each) <= (share is not None and float(share[1]) > 0.9)
+
+
+def test_nothing_is_saved_by_answers_that_mostly_settled_nothing() -> None:
+    """Ended in doubt: the few answers that were counted as right are those that were believed."""
+    events = events_of(CONFIG)
+    half = len(events) // 2
+    events = [*events[:half], *map(_in_doubt, events[half:])]
+    told = saves(events)
+    counted = re.match(r"(\d+) of (\d+) answers agreed .* and (\d+) more were about", told)
+    assert counted is not None, told
+    assert int(counted[2]) < int(counted[3])
+    assert "questions less" not in told
+    assert "cannot be told" in told
+
+
+def _in_doubt(event: Event) -> Event:
+    """An event that leaves in doubt what it believes."""
+    if not isinstance(event, Decided):
+        return event
+    return event.model_copy(update={"belief": dict.fromkeys(event.belief, 0.6)})
 
 
 @pytest.mark.parametrize("monitor", ["tpvqa", "tp"])

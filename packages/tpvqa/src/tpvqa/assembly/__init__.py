@@ -11,6 +11,7 @@ from tpvqa.assembly.answering import answering
 from tpvqa.assembly.grounding import grounded
 from tpvqa.assembly.lasting import see_lasting, watching
 from tpvqa.assembly.numbers import see_numbers
+from tpvqa.assembly.reach import asking
 from tpvqa.assembly.simulating import simulate
 from tpvqa.assembly.told import read_told, see_fitting, stated_bound
 from tpvqa.assembly.wanting import see_wanted
@@ -108,12 +109,11 @@ class Trial:
         try:
             self._find_files()
             self.task = task or grounded(self.domain, self.problem, config.planner)
-            self.book = (book or QuestionBook.load(self.questions, self.task)).worded(
-                config.wording
-            )
+            book = book or QuestionBook.load(self.questions, self.task)
             self.rules = rules or load_world_file(self.world_file, self.task)
             self.priors = priors or load_priors(self.task, config.start.priors, config.start.what)
             known, self.task = self.task, opened(self.task, self.priors)
+            self.book = asking(book.worded(config.wording), self.task, self.rules, self.priors)
             model = model if self.task is known else None  # that of what was reachable before
             if reading:
                 calibration, experience = read_told(config.monitor, calibration, experience)

@@ -103,6 +103,10 @@ class Learned:
         """See `Skills.times`."""
         return self.likeliest.skills.times(self._as_skill(action))
 
+    def tries(self, action: Action) -> int:
+        """See `Skills.tries`."""
+        return self.likeliest.skills.tries(self._as_skill(action))
+
     @property
     def learned(self) -> tuple[int, int]:
         """Another one whenever something was learned, or what was learned counts otherwise."""

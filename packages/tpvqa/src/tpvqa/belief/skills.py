@@ -122,13 +122,20 @@ class Skills:
         return self._tried.get(action.name, {}).get(action)
 
     def times(self, action: Action) -> tuple[float, float]:
-        """How often a skill was tried, whatever with, and failed; with what it fails at alone
-        where it works with others."""
+        """How often a skill was tried where it could have worked, whatever with, and failed; with
+        what it fails at alone where it works with others."""
+        told = self._told_of(action)
+        return sum(each.times for each in told), sum(each.failed for each in told)
+
+    def tries(self, action: Action) -> int:
+        """How often a skill was tried in all, see `times`."""
+        return sum(run.tries for each in self._told_of(action) for run in each.runs)
+
+    def _told_of(self, action: Action) -> list[Tried]:
         own = self._tried.get(action.name, {})
         if any(each.works for each in own.values()):
             own = {each: tried for each, tried in own.items() if each == action}
-        told = own.values()
-        return sum(each.times for each in told), sum(each.failed for each in told)
+        return [*own.values()]
 
     def all(self) -> list[Action]:
         """The actions that were tried."""

@@ -12,7 +12,7 @@ from tpvqa.pddl import Action
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import Simulation
 
-_CALLED_DEAD = re.compile(r"[^;]+ failed \d+ times of \d+(;|$)")
+_CALLED_DEAD = re.compile(r"[^;]+ failed \d+ times of \d+(?: that could[^;]*)?(;|$)")
 """How a monitor says first of all that a skill seems never to work."""
 
 

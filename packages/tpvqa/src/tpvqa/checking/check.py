@@ -65,7 +65,8 @@ def _findings(
     planner: Planner,
     timeout: float,
 ) -> Iterator[Finding]:
-    into = str(questions) if questions is not None else QUESTIONS
+    folder = Path("") if task.problem_path is None else task.problem_path.parent
+    into = str(questions or folder / QUESTIONS)
     given, wrong = Wordings(), list[QuestionsError]()
     try:
         if questions is not None:
@@ -78,7 +79,7 @@ def _findings(
         rules = load_world_file(world_file, task)
     except WorldFileError as error:
         yield of_error("world", error)
-    rules_into = str(world_file) if world_file is not None else WORLD
+    rules_into = str(world_file or folder / WORLD)
     yield from possible.of_goal(task, planner, timeout)
     yield from possible.of_metric(task)
     yield from possible.of_actions(task, _undone(rules))
@@ -86,6 +87,7 @@ def _findings(
     yield from of_effects(task)
     yield from wordings.in_vain(task, given, questions)
     yield from wordings.doubled(given, questions)
+    yield from wordings.still_marked(questions)
     if questions is None:
         yield Finding(
             "no-questions",

@@ -13,7 +13,7 @@ from tpvqa.checking.places import (
     line_of_predicate,
 )
 from tpvqa.checking.possible import atoms_of
-from tpvqa.drafting import Words
+from tpvqa.drafting import LOOK, Words
 from tpvqa.pddl import Action, Atom, Literal, Task
 from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import QuestionBook
@@ -44,12 +44,13 @@ def without_words(task: Task, given: Wordings, drafted: Words, into: str) -> Ite
                 "Give it one, or list it under never_asked where no camera shows it.",
                 named(task.domain_path),
                 line_of_predicate(task, name),
-                ("predicates:", f'  {_key(name)}: "{said}"'),
+                ("predicates:", f'  {_key(name)}: "{said}"{drafted.unsure.get(name, "")}'),
                 into,
             )
     for schema in whole_actions(task):
         if schema.name not in given.say:
             say, done = drafted.actions[schema.name]
+            look = drafted.unsure.get(schema.name, "")
             yield Finding(
                 "action-without-words",
                 Severity.NOTE,
@@ -57,7 +58,7 @@ def without_words(task: Task, given: Wordings, drafted: Words, into: str) -> Ite
                 "Give it some: questions about whole actions, and reports, are made of them.",
                 named(task.domain_path),
                 line_of_action(task, schema.name),
-                ("actions:", f'  {_key(schema.name)}: {{say: "{say}", done: "{done}"}}'),
+                ("actions:", f'  {_key(schema.name)}: {{say: "{say}", done: "{done}"}}{look}'),
                 into,
             )
 
@@ -80,6 +81,22 @@ def doubled(given: Wordings, file: Path | None) -> Iterator[Finding]:
                     named(file),
                     line_of_entry(file, "predicates", name),
                 )
+
+
+def still_marked(file: Path | None) -> Iterator[Finding]:
+    """Lines that the draft marked for a person to look at, and that are as they were drafted."""
+    if file is None or not file.is_file():
+        return
+    for number, line in enumerate(file.read_text("utf-8", errors="replace").splitlines(), 1):
+        if f"# {LOOK}:" in line:
+            yield Finding(
+                "still-to-look-at",
+                Severity.NOTE,
+                f"{line.strip().partition(':')[0]} is marked {LOOK}: its words are a guess",
+                "Say it better where it is wrong, and take the mark out.",
+                str(file),
+                number,
+            )
 
 
 def in_vain(task: Task, given: Wordings, file: Path | None) -> Iterator[Finding]:

@@ -2,18 +2,27 @@
 
 import re
 
-_LEFT_OUT = (r", which [^;]* needs(?=;|$)", r" after (?:an?|two|three|\d+) [^;]*?(?=;|$)")
-"""What rests on a fact, and what was answered about it: told elsewhere in the same lines."""
+_LEFT_OUT = (
+    r", which [^;]* needs(?=;|$)",
+    r"(?: and)? after (?:an?|two|three|\d+) [^;]*?(?=;|$)",
+    r" \(not worth asking\)(?=;|$)",
+)
+"""What rests on a fact, what was answered about it, and why nothing was: told elsewhere in the same
+lines, or of little weight."""
+_ENDS = re.compile(r"\bthe goal holds with\b")
+"""What a trial is ended for: all else explains it."""
 MORE = "…"
 
 
 def brief(reason: str, room: int) -> str:
-    """A reason in so many columns.
+    """A reason in so many columns; in more only where what a trial is ended for takes them.
 
     >>> brief("cup in hand 0.10 → 0.02 after a no, which drink (step 4) needs; back to step 2", 50)
     'cup in hand 0.10 → 0.02 after a no; back to step 2'
     >>> brief("cup in hand 0.10 → 0.02 after a no, which drink (step 4) needs; back to step 2", 30)
     'cup in hand 0.10 → 0.02; …'
+    >>> brief("cup in hand 0.02; tea hot 0.10; no plan is left, and the goal holds with 0.01", 67)
+    'cup in hand 0.02; …; no plan is left, and the goal holds with 0.01'
 
     Args:
         reason: As it is logged: parts with semicolons between them, those that decided it first.
@@ -25,12 +34,26 @@ def brief(reason: str, room: int) -> str:
         reason = re.sub(pattern, "", reason)
     if len(reason) <= room:
         return reason
-    said, *rest = reason.split("; ")
+    parts = reason.split("; ")
+    end = next((at for at, part in enumerate(parts) if _ENDS.search(part)), None)
+    if end is not None:
+        return _ending(parts[:end], parts[end], room)
+    said, *rest = parts
     for part in rest:
         if len(f"{said}; {part}; {MORE}") > room:
             return _cut(f"{said}; {MORE}", room)
         said = f"{said}; {part}"
     return _cut(said, room)
+
+
+def _ending(before: list[str], end: str, room: int) -> str:
+    """What a trial is ended for, behind what speaks for it: the first of that, and what fits."""
+    said = before[:1]
+    for part in before[1:]:
+        if len("; ".join([*said, part, MORE, end])) > room:
+            return "; ".join([*said, MORE, end])
+        said.append(part)
+    return "; ".join([*said, end])
 
 
 def _cut(said: str, room: int) -> str:

@@ -27,7 +27,7 @@ def write_draft(
         TpvqaError: The file is there, or the task is a shipped one and no file is named.
         WriteError: It cannot be written.
     """
-    from tpvqa.drafting import draft
+    from tpvqa.drafting import LOOK, draft
     from tpvqa.files import write_whole
     from tpvqa.pddl import load_task
     from tpvqa.questions import QuestionBook
@@ -49,11 +49,11 @@ def write_draft(
     text = draft(task)
     write_whole(target, text.encode(), remedy="Name a file that can be written, with --questions.")
     notices = QuestionBook.load(target, task).notices
-    unsure = text.count("# LOOK")
+    unsure = text.count(f"# {LOOK}")
     if as_json:
         said = {"written": str(target), "to_look_at": unsure, "notices": notices}
         print(json.dumps(said, indent=1))
         return
-    look = f"; {unsure} {'line is' if unsure == 1 else 'lines are'} marked LOOK" if unsure else ""
+    look = f"; {unsure} {'line is' if unsure == 1 else 'lines are'} marked {LOOK}" if unsure else ""
     tell(f"{target} is written: {len(task.fluents | task.derived)} questions to read{look}.")
     tell("Edit it, then: tpvqa check, with the same domain and problem.")

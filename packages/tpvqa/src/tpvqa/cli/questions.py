@@ -170,17 +170,23 @@ def ask(
 
 
 def _load(wanted: "TaskConfig", timeout: float) -> "tuple[LoadedTask, QuestionBook]":
+    from tpvqa.assembly.reach import asking
+    from tpvqa.belief.priors import Priors
     from tpvqa.pddl import load_task
     from tpvqa.questions import QuestionBook
     from tpvqa.tasks import find_task
+    from tpvqa.worlds.world_file import load_world_file
 
     questions: str | Path | None = wanted.questions
+    world: str | Path | None = wanted.world_file
     if wanted.name is not None:
         loaded = load_task(wanted.name, timeout=timeout)
-        questions = questions or find_task(wanted.name).questions
+        files = find_task(wanted.name)
+        questions, world = questions or files.questions, world or files.world
     else:
         loaded = load_task(wanted.domain or "", wanted.problem, timeout=timeout)
-    return loaded, QuestionBook.load(questions, loaded)
+    book = QuestionBook.load(questions, loaded)
+    return loaded, asking(book, loaded, load_world_file(world and Path(world), loaded), Priors())
 
 
 def _no_questions(why: str, code: int) -> NoReturn:

@@ -33,6 +33,8 @@ _UNSAID = word_set("first second third half not")
 _PASSING = word_set("through over under across around behind past along beyond")
 """What stands before a thing, not before how something is done: by hand, on foot, with care."""
 _IN = word_set("in on at into onto")
+_BARE = word_set("foot hand board place line order half time hold bed power")
+"""What goes without an article behind one of these: on foot, in half."""
 _SEEKING = word_set("find search seek look detect")
 
 
@@ -80,18 +82,42 @@ class Actions:
         told = {name: noun for name, noun in mentioned.items() if noun is not doer}
         pieces = list(self._pieces(verb, rest, told, roles, schema))
         tail = " ".join(piece for piece in pieces if piece)
-        if verb == "pick" and not tail.startswith("up"):
+        if verb == "pick" and not tail.startswith("up") and " of " not in tail:
             tail = f"up {tail}"
         perfect = participle(verb) if is_verb(verb) else past(verb)
         unsure = (
             tail.count("with ") > 1
             or not is_verb(verb)
             or bool(_UNSAID & set(rest) - set(tail.split()))
+            or bool(self._lost(rest, tail, nouns))
+            or any(self._guessed(verb, tail, n, noun, roles) for n, noun in told.items())
+            or _either_way(verb, rest, tail)
+            or (verb == "let" and not told)
         )
         if doer is None:
             return Spoken(f"{verb} {tail}".strip(), f"{perfect} {tail}".strip(), unsure)
         said = f"have {doer.said} {verb} {tail}".strip()
         return Spoken(said, said.replace("have ", "had ", 1), unsure)
+
+    def _lost(self, rest: list[str], tail: str, nouns: Mapping[str, Noun]) -> list[str]:
+        """The words of the name that are not said, though nothing else says them."""
+        said = {*tail.split()} | PREPOSITIONS | PARTICLES | {"robot"}
+        return [word for word in rest if word not in said and not self._names(word, nouns)]
+
+    def _guessed(self, verb: str, tail: str, name: str, noun: Noun, roles: Roles) -> bool:
+        """Whether nothing tells that something is done with a thing: seal a bag with a knife."""
+        known = noun.parameter == "with" or name in roles.reversed or self._acts(noun)
+        return f"with {noun.said}" in tail and not known and self._joint(verb, noun) is None
+
+    def _acts(self, noun: Noun) -> bool:
+        return self._things.act(noun.objects) or self._things.hold(noun.objects)
+
+    def _joint(self, verb: str, noun: Noun) -> str | None:
+        """What joins a verb to a further thing, as far as verb or thing tells."""
+        if (self._things.nouns(noun.objects) | {noun.parameter}) & lexicon.TOOLS:
+            return "with"
+        taken = lexicon.TAKES.get(verb)
+        return _JOINS.get(verb, taken if taken not in ("by", "as", "") else None)
 
     def _without_the_only_one(self, nouns: dict[str, Noun], rest: list[str]) -> dict[str, Noun]:
         """Without the one robot that there is: it goes without saying."""
@@ -205,7 +231,9 @@ class Actions:
         particles = [word for word in joined if word in PARTICLES | _WAYS]
         named = [word for word in joined if word not in particles and word not in PREPOSITIONS]
         yield " ".join(particles)
-        if not named or all(
+        if schema.name.startswith("let") and named:
+            yield from (f"{named[0]} of", *first) if named == ["go"] and first else (*first, *named)
+        elif not named or all(
             word in lexicon.ADJECTIVES | {"first", "second", "half"} for word in named
         ):
             yield from first
@@ -215,7 +243,18 @@ class Actions:
             yield f"the {' '.join(named)}"
             yield self._phrases.placed(nouns[patients[0]])
         else:
-            yield f"the {' '.join(named)} of {first[0]}"
+            where = self._stated(named, nouns[patients[0]], schema) if patients else ""
+            yield f"the {' '.join(named)} {where or f'of {first[0]}'}"
+
+    def _stated(self, named: list[str], noun: Noun, schema: ActionSchema) -> str:
+        """Where effects say that what is named is: scale-beside(x), not windlass-left-at(gate)."""
+        for effect in schema.effects:
+            words, literal = self._things.words(effect.literal.predicate), effect.literal
+            of_it = [each.lstrip("?") for each in literal.arguments] == [noun.parameter]
+            if of_it and words[: len(named)] == named and words[-1] in PREPOSITIONS:
+                away = f"from {noun.said}"
+                return self._phrases.placed(noun, words[-1]) if literal.positive else away
+        return ""
 
     def _context(
         self, patients: list[str], nouns: Mapping[str, Noun], schema: ActionSchema
@@ -238,8 +277,7 @@ class Actions:
             return f"of {noun.said}"
         if self._things.are_places(noun.objects) and not self._things.hold(noun.objects):
             return self._phrases.placed(noun)
-        tool = (self._things.nouns(noun.objects) | {noun.parameter}) & lexicon.TOOLS
-        return f"{'with' if tool else _JOINS.get(verb, 'with')} {noun.said}"
+        return f"{self._joint(verb, noun) or 'with'} {noun.said}"
 
     def _ways(
         self,
@@ -276,7 +314,8 @@ def _verb_first(words: list[str]) -> tuple[str, list[str]]:
 def _with_article(words: str) -> str:
     """A preposition and a thing: through hatch, through the hatch."""
     preposition, _, thing = words.partition(" ")
-    named = preposition in _PASSING and thing and thing.split()[0] not in ("the", "a", "an")
+    known = {"the", "a", "an"} if preposition in _PASSING else {"the", "a", "an"} | _BARE
+    named = preposition in _PASSING | _IN and thing and thing.split()[0] not in known
     return f"{preposition} the {thing}" if named else words
 
 
@@ -285,3 +324,10 @@ def _particles(verb: str) -> frozenset[str]:
     if verb in ("put", "place", "stack", "load", "set", "lay", "hang"):
         return PARTICLES - {"on", "in"}
     return PARTICLES
+
+
+def _either_way(verb: str, rest: list[str], tail: str) -> bool:
+    """Whether a name may mean that a thing is put on something, or that something is put on it:
+    clip-on-halyard."""
+    named = len(rest) > 1 and rest[0] in _particles(verb) and rest[1] not in _BARE
+    return named and tail.endswith(rest[-1])

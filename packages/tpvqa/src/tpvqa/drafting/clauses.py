@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from tpvqa.drafting.facts_tables import SAME
 from tpvqa.drafting.forms import third
-from tpvqa.drafting.things import Things
+from tpvqa.drafting.things import Things, plural
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +25,11 @@ class Noun:
 
 
 ROBOT = Noun("the robot")
+
+
+def part(name: str, of: str = "") -> Noun:
+    """What a name says there is, of something: the lid of the {x}, the gloves."""
+    return Noun(f"the {name}{of and ' of '}{of}", plural=plural(name.split()[-1]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tpvqa.drafting.actions import Actions
 from tpvqa.drafting.clauses import Phrases
@@ -16,6 +16,9 @@ from tpvqa.questions import fallback
 from tpvqa.questions.template import Template
 
 _FELT = ("free", "empty", "full", "busy", "clean", "available", "handempty", "handsfree")
+LOOK = "LOOK"
+"""What a person has to read and say better is marked by."""
+LOOK_AT_ACTION = f"   # {LOOK}: the names tell little; say it in your own words"
 _AGREEING = {"Is": "Are", "Does": "Do", "Has": "Have"}
 _HEAD = """\
 # Questions for the domain {domain}, drafted from its names. Read every line before a VLM does:
@@ -34,21 +37,26 @@ class Words:
     Attributes:
         questions: A question about each predicate that changes.
         actions: Each action as a command, and once it is done.
+        unsure: The predicates and actions whose names tell too little, with what to mark them by.
     """
 
     questions: Mapping[str, str]
     actions: Mapping[str, tuple[str, str]]
+    unsure: Mapping[str, str] = field(default_factory=dict)
 
 
 def words(task: Task) -> Words:
     """Words that rely on no attribute of objects: to be put into a file that is there."""
     phrases = Phrases(Things(task), plain=True)
     facts, actions = Facts(phrases), Actions(phrases)
-    asked = seen_predicates(task)
+    said = {name: facts.said(name) for name in seen_predicates(task)}
     spoken = {schema.name: actions.said(schema) for schema in whole_actions(task)}
+    marked = {name: _look(each) for name, each in said.items()}
+    marked |= {name: LOOK_AT_ACTION for name, each in spoken.items() if each.unsure}
     return Words(
-        {name: facts.said(name).wordings[0] for name in asked},
+        {name: each.wordings[0] for name, each in said.items()},
         {name: (each.say, each.done) for name, each in spoken.items()},
+        {name: look for name, look in marked.items() if look},
     )
 
 
@@ -71,9 +79,7 @@ def draft(task: Task) -> str:
         lines += _predicate(name, said[name])
     lines += [*numbers_section(task), "", "actions:"]
     for name, words in spoken.items():
-        unsure = (
-            "   # LOOK: the names tell little; say it in your own words" if words.unsure else ""
-        )
+        unsure = LOOK_AT_ACTION if words.unsure else ""
         done = words.done
         lines.append(f"  {_key(name)}: {{say: {_text(words.say)}, done: {_text(done)}}}{unsure}")
     lines += [*_words_of_things(things, phrases), *_never_asked(task, things, said)]
@@ -93,11 +99,7 @@ def _text(words: str) -> str:
 
 def _predicate(name: str, said: Said) -> Iterator[str]:
     first, *others = said.wordings
-    look = ""
-    if said.unsure:
-        look = "   # LOOK: the name tells little; ask it in your own words"
-    elif said.unseen:
-        look = "   # LOOK: does a picture show it? If not, it belongs under never_asked"
+    look = _look(said)
     alike = [each for each in others if _names(each) == _names(first)]
     if said.unsure or not alike:
         yield f"  {_key(name)}: {_text(first)}{look}"
@@ -105,6 +107,14 @@ def _predicate(name: str, said: Said) -> Iterator[str]:
     yield f"  {_key(name)}:{look}"
     for each in (first, *alike):
         yield f"    - {_text(each)}"
+
+
+def _look(said: Said) -> str:
+    if said.unsure:
+        return f"   # {LOOK}: the name tells little; ask it in your own words"
+    if said.unseen:
+        return f"   # {LOOK}: does a picture show it? If not, it belongs under never_asked"
+    return ""
 
 
 def _names(wording: str) -> frozenset[str]:

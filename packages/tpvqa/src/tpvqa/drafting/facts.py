@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from tpvqa.drafting import lexicon
-from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, unknown
-from tpvqa.drafting.facts_tables import ROADS, SAME
+from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, part, unknown
+from tpvqa.drafting.facts_tables import PLAIN, ROADS, SAME
 from tpvqa.drafting.forms import (
     Form,
     does,
@@ -19,7 +19,7 @@ from tpvqa.drafting.forms import (
 from tpvqa.drafting.lexicon import ADJECTIVES, PREPOSITIONS
 from tpvqa.drafting.of_nothing import WEATHER, of_nothing
 from tpvqa.drafting.predicates import of_noun, of_verb, without_kind
-from tpvqa.drafting.things import Things, some
+from tpvqa.drafting.things import Things, plural, some
 from tpvqa.questions.template import indefinite_article
 
 _NEGATIONS = ("not", "no", "non")
@@ -170,7 +170,7 @@ class Facts:
             *switched, state = words
             placed = self._things.are_places(nouns[0].objects)
             where = self._phrases.placed(nouns[0]) if placed else f"of {nouns[0].said}"
-            thing = Noun(f"the {' '.join(switched)} {where}", plural=switched[-1] == "lights")
+            thing = Noun(f"the {' '.join(switched)} {where}", plural=plural(switched[-1]))
             yield Clause("is", thing, state)
         elif words[-1] in PREPOSITIONS and (
             (verb_form(words[0]) or ("", Form.BASE))[1] is Form.BASE
@@ -323,6 +323,10 @@ class Facts:
     def _somebody_is_at(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
         """robot_at(place), lift-at(floor)."""
         *who, preposition = words
+        if len(who) > 1 and (_is_done(who[-1]) or is_ing(who[-1])):  # windlass-left-at
+            where = self._phrases.placed(nouns[0], preposition)
+            yield Clause("is", part(" ".join(who[:-1])), f"{who[-1]} {where}")
+            return
         name = " ".join(who)
         subject = Noun(f"the {'robot' if name == 'robby' else name}")
         place = self._phrases.stood_at(nouns[0], preposition)
@@ -335,9 +339,9 @@ class Facts:
 
     def _verb(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
         side = len(words) > 1 and words[0] in lexicon.SIDES  # the left hand; not what was left
-        part = side and words[1] in lexicon.HANDS | lexicon.PARTS
+        of_it = side and words[1] in lexicon.HANDS | lexicon.PARTS
         alone = words[0] in ADJECTIVES and len(words) == 1
-        form = None if alone or part else verb_form(words[0])
+        form = None if alone or of_it else verb_form(words[0])
         if form is not None and words[0] not in lexicon.HANDS and not self._is_noun(words, nouns):
             yield from of_verb(self._phrases, form, words, nouns, self._others)
         else:
@@ -348,29 +352,7 @@ class Facts:
         (_, form) = verb_form(words[0]) or ("", Form.ING)
         if form is not Form.BASE or participle(words[0]) == words[0]:
             return False
-        plain = words[0] in (
-            "hold",
-            "carry",
-            "contain",
-            "support",
-            "touch",
-            "grasp",
-            "cover",
-            "block",
-            "push",
-            "pull",
-            "follow",
-            "need",
-            "see",
-            "know",
-            "serve",
-            "use",
-            "face",
-            "lift",
-            "drive",
-            "occupy",
-        )
-        return not (plain and len(nouns) > 1)
+        return not (words[0] in PLAIN and len(nouns) > 1)
 
     def _others(self, nouns: list[Noun], *, plain: bool = False) -> list[str]:
         """Further things, with the prepositions that their names or kinds suggest."""

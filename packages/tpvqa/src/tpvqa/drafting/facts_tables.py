@@ -56,5 +56,12 @@ PICTURES = word_set(
 """What is of something and made with something."""
 HELD = word_set("holding carrying grasping gripping lifting grabbing bearing wearing using")
 """What is done with a thing in the hand."""
+HANDLING = word_set("hold carry grasp grip lift grab bear wear use push pull")
+"""What somebody does with a thing, the thing being all that is spoken of."""
+PLAIN = word_set(
+    "hold carry contain support touch grasp cover block push pull follow need see know serve use "
+    "face lift drive occupy"
+)
+"""Verbs whose base, of two things, is no noun: hold(robot, x)."""
 UNNAMED = word_set("nothing something anything everything object objects on up off down still out")
 """What is no name of a thing, behind one of these."""

@@ -118,8 +118,10 @@ IRREGULAR = {  # base: (past, past participle)
     "grow": ("grew", "grown"), "hang": ("hung", "hung"), "have": ("had", "had"),
     "hide": ("hid", "hidden"), "hit": ("hit", "hit"), "hold": ("held", "held"),
     "keep": ("kept", "kept"), "know": ("knew", "known"), "lay": ("laid", "laid"),
+    "lead": ("led", "led"),
     "leave": ("left", "left"), "let": ("let", "let"), "lie": ("lay", "lain"),
     "light": ("lit", "lit"), "lose": ("lost", "lost"), "make": ("made", "made"),
+    "mean": ("meant", "meant"),
     "meet": ("met", "met"), "overtake": ("overtook", "overtaken"), "pay": ("paid", "paid"),
     "put": ("put", "put"), "read": ("read", "read"),
     "reset": ("reset", "reset"), "rewind": ("rewound", "rewound"),
@@ -127,17 +129,20 @@ IRREGULAR = {  # base: (past, past participle)
     "rise": ("rose", "risen"), "run": ("ran", "run"), "saw": ("sawed", "sawn"),
     "say": ("said", "said"), "see": ("saw", "seen"), "seek": ("sought", "sought"),
     "sell": ("sold", "sold"), "send": ("sent", "sent"), "set": ("set", "set"),
-    "sew": ("sewed", "sewn"), "shake": ("shook", "shaken"), "shoot": ("shot", "shot"),
+    "sew": ("sewed", "sewn"), "shake": ("shook", "shaken"), "shear": ("sheared", "shorn"),
+    "shoot": ("shot", "shot"),
     "show": ("showed", "shown"), "shut": ("shut", "shut"), "sit": ("sat", "sat"),
     "slide": ("slid", "slid"), "sow": ("sowed", "sown"), "speak": ("spoke", "spoken"),
     "spin": ("spun", "spun"), "split": ("split", "split"), "spread": ("spread", "spread"),
     "stand": ("stood", "stood"), "steal": ("stole", "stolen"), "stick": ("stuck", "stuck"),
+    "strike": ("struck", "struck"),
     "sweep": ("swept", "swept"), "swim": ("swam", "swum"), "swing": ("swung", "swung"),
     "take": ("took", "taken"), "teach": ("taught", "taught"), "tear": ("tore", "torn"),
     "tell": ("told", "told"), "throw": ("threw", "thrown"), "undo": ("undid", "undone"),
     "understand": ("understood", "understood"), "unwind": ("unwound", "unwound"),
     "wake": ("woke", "woken"), "wear": ("wore", "worn"), "wind": ("wound", "wound"),
-    "withdraw": ("withdrew", "withdrawn"), "write": ("wrote", "written"),
+    "withdraw": ("withdrew", "withdrawn"), "wring": ("wrung", "wrung"),
+    "write": ("wrote", "written"),
 }  # fmt: skip
 REGULAR = word_set(
     "achieve add adjust align arrive assemble assign attach bake bathe beat board boil bore "
@@ -148,7 +153,7 @@ REGULAR = word_set(
     "expand explode extinguish face fasten fetch fill finish fit fix flip float fold follow fry "
     "glaze glue grab grasp grease greet grill handle harvest heat help hoist image include "
     "indicate infect inflate inform insert inspect install iron join jump kick kill knock label "
-    "land launch lead leak lean lift like link load locate lock look loosen lower lubricate map "
+    "land launch leak lean lift like link load locate lock look loosen lower lubricate map "
     "mark mash measure melt mend mill miss mix mop mount move navigate need nest observe occupy "
     "open operate order pack paint park pass paste peel pick pin pile place plan plant play "
     "plug point polish pour power prepare press price print process protect pull pump punch "
@@ -225,6 +230,14 @@ RUN_TOGETHER = word_set(
 )
 """Words that are written in one without a sign between them: handempty, ontable."""
 
+COMPOUNDS = word_set(
+    "bedside boxcar doorstep doorway floorboard foodstuff hilltop roommate tabletop treetop "
+    "waterway"
+)
+"""Words that are one, though both their parts are words, too."""
+
+ENDINGS = ("able", "ful", "less", "ible", "tight", "proof")
+"""How words end that say what a thing is like."""
 ABBREVIATIONS = {
     "loc": "location", "obj": "object", "pos": "position", "dest": "destination",
     "destin": "destination", "conn": "connected", "dir": "direction", "inhand": "in hand",
@@ -232,6 +245,8 @@ ABBREVIATIONS = {
     "grasped": "grasped", "eq": "equal", "rob": "robot", "msg": "message", "img": "image",
     "cont": "container", "veh": "vehicle", "pass": "pass",
 }  # fmt: skip
+SEVERAL = word_set("children feet geese men mice people teeth women")
+"""Several things, without an s."""
 MASS = word_set(
     "water milk coffee tea juice food soil sugar sand liquid fuel dust rubbish trash dirt money "
     "power energy rice flour salt oil soap ink glue grease"

@@ -8,13 +8,17 @@ from tpvqa.drafting.forms import is_verb, verb_form
 from tpvqa.drafting.lexicon import (
     ABBREVIATIONS,
     ADJECTIVES,
+    COMPOUNDS,
+    INSIDE,
     PARTICLES,
+    PLACES,
     PREPOSITIONS,
     RUN_TOGETHER,
+    UPON,
     word_set,
 )
 
-_HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 _PREFIXES = ("is", "has", "have", "not", "get", "can")
 _LONE = frozenset(
     {
@@ -76,7 +80,8 @@ def words_of(name: str, known: Collection[str] = ()) -> list[str]:
 def _apart(word: str, known: frozenset[str]) -> list[str]:
     """A word that was written together, taken apart."""
     lexicon = known | RUN_TOGETHER | PREPOSITIONS
-    if len(word) < 5 or word in lexicon | ADJECTIVES | _LONE or not word.isalpha():
+    whole = lexicon | ADJECTIVES | COMPOUNDS | INSIDE | UPON | PLACES | _LONE
+    if len(word) < 5 or word in whole or not word.isalpha() or word.endswith(("tight", "proof")):
         return [word]
     for prefix in _PREFIXES:
         rest = word.removeprefix(prefix)
@@ -98,11 +103,11 @@ def _apart(word: str, known: frozenset[str]) -> list[str]:
             first = word[:size]
             if first in ("go", "move", "pick", "put", "turn", "switch", "drop", "get"):
                 rest_words = _apart(word[size:], known)
-                whole = set(rest_words) <= lexicon | PARTICLES | ADJECTIVES | {"not", "to"}
-                if whole or (word[size:].startswith("to") and len(word) > size + 4):
+                known_all = set(rest_words) <= lexicon | PARTICLES | ADJECTIVES | {"not", "to"}
+                if known_all or (word[size:].startswith("to") and len(word) > size + 4):
                     return [
                         first,
-                        *(rest_words if whole else ["to", *_apart(word[size + 2 :], known)]),
+                        *(rest_words if known_all else ["to", *_apart(word[size + 2 :], known)]),
                     ]
     return [word]
 
@@ -113,3 +118,17 @@ def is_number(word: str) -> bool:
 
 
 _COUNTING = word_set("one two three four five six seven eight nine ten")
+
+
+def as_written(words: str, raw: str) -> str:
+    """Words of a name with the capitals that its author gave to codes: bag A1, GP saddle.
+
+    Args:
+        words: In lower case.
+        raw: The name as its author wrote it.
+    """
+    mixed = raw != raw.upper()
+    for code in re.findall(r"(?<![A-Za-z0-9])[A-Z0-9]+(?![a-z0-9])|[A-Z]\d+", raw):
+        if not code.isdigit() and (mixed or not code.isalpha() or len(code) == 1):
+            words = re.sub(rf"(?<!\w){code.lower()}(?!\w)", code, words)
+    return words

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from tpvqa.drafting import lexicon
-from tpvqa.drafting.clauses import ROBOT, Clause, Noun
+from tpvqa.drafting.clauses import ROBOT, Clause, Noun, part
 from tpvqa.drafting.facts_tables import HELD, UNNAMED
 from tpvqa.drafting.forms import Form, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, word_set
@@ -61,8 +61,8 @@ def of_nothing(words: list[str]) -> Iterator[Clause]:
         return
     subject = " ".join(words[:split])
     own = words[split - 1] in lexicon.PARTS_OF_ROBOTS and words[0] != "robot"
-    several = words[split - 1] in ("hands", "jaws", "fingers", "grippers", "arms", "lights")
-    noun = Noun(f"the robot's {subject}" if own else f"the {subject}", plural=several)
+    whose = "robot's " if own else ""
+    noun = part(f"{whose}{subject}")
     rest = " ".join(words[split:])
     yield Clause("is", noun, rest)
     if rest in ("empty", "free") and own:

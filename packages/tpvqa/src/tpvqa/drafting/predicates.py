@@ -3,10 +3,11 @@
 from collections.abc import Callable, Iterator
 
 from tpvqa.drafting import lexicon
-from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases
-from tpvqa.drafting.facts_tables import COMPARED, ELSE, LINKS, PICTURES, ROADS
+from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, part
+from tpvqa.drafting.facts_tables import COMPARED, ELSE, HANDLING, LINKS, PICTURES, ROADS
 from tpvqa.drafting.forms import Form, ing, participle, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, STATES
+from tpvqa.drafting.things import plural
 from tpvqa.questions.template import indefinite_article
 
 Others = Callable[[list[Noun]], list[str]]
@@ -117,7 +118,7 @@ def _done(
         and words[1] not in PREPOSITIONS
         and not {words[-1]} & (PARTICLES | ADJECTIVES | PREPOSITIONS | lexicon.SIDES)
     ):
-        yield Clause("has", Noun(f"the {extra} of {first.said}"), f"been {said}")
+        yield Clause("has", part(extra, first.said), f"been {said}")
         return
     state = {"opened": "open", "shut": "closed"}.get(said, said)
     state = f"{state} {extra}".strip()
@@ -180,6 +181,9 @@ def _does(
         if rest and at not in ("from", "by", "to", "with"):
             yield Clause("is", first, " ".join(place))
         yield Clause("is", first, f"{ing(base)} {' '.join(place)}".strip())
+        return
+    if not rest and base in HANDLING and not things.act(first.objects):
+        yield from _doing(phrases, base, extra, nouns, others)  # carries(x): who but the robot
         return
     if not rest:
         yield (
@@ -252,9 +256,7 @@ def of_noun(
     elif last in ROADS and len(rest) > 0:
         a = indefinite_article(said)
         yield Clause("is", Noun("there"), f"{a} {said} from {first.said} to {rest[0].said}")
-    elif last in ADJECTIVES | PARTICLES | COMPARED or last.endswith(
-        ("able", "ful", "less", "ible")
-    ):
+    elif last in ADJECTIVES | PARTICLES | COMPARED or last.endswith(lexicon.ENDINGS):
         yield from _adjective(phrases, words, nouns, others)
     elif rest:
         yield from _property(phrases, said, nouns, others)
@@ -263,24 +265,22 @@ def of_noun(
     elif len(words) > 1 and verb_form(last) is not None and all(map(_says_how, words[:-1])):
         yield Clause("is", first, said)
     elif len(words) > 1 and verb_form(last) is not None:
-        subject = Noun(f"the {' '.join(words[:-1])} of {first.said}")
-        yield Clause("is", subject, last)
+        yield Clause("is", part(" ".join(words[:-1]), first.said), last)
 
 
 def _hand(phrases: Phrases, words: list[str], first: Noun) -> Iterator[Clause]:
     """handempty(robot), full-ferry would be an adjective first; slot_free(slot)."""
-    *part, state = words
+    *held, state = words
     kinds = phrases.things.nouns(first.objects) | {first.parameter}
-    if part[-1] in kinds or phrases.things.hold(first.objects):
+    if held[-1] in kinds or phrases.things.hold(first.objects):
         yield Clause("is", first, state)
         if phrases.things.hold(first.objects) and state in ("empty", "free"):
             yield Clause("is", first, "holding nothing")
         elif state in ELSE:
             yield Clause("is", first, ELSE[state])
         return
-    several = part[-1] in ("hands", "jaws", "fingers")
-    yield Clause("is", Noun(f"{first.said}'s {' '.join(part)}", plural=several), state)
-    if part[-1] in lexicon.HANDS and state in ("empty", "free", "full"):
+    yield Clause("is", Noun(f"{first.said}'s {' '.join(held)}", plural=plural(held[-1])), state)
+    if held[-1] in lexicon.HANDS and state in ("empty", "free", "full"):
         some = {"full": "anything"}.get(state, "nothing")
         yield Clause("is", first, f"holding {some}")
 
@@ -305,17 +305,17 @@ def _adjective(
     phrases: Phrases, words: list[str], nouns: list[Noun], others: Others
 ) -> Iterator[Clause]:
     first, *rest = nouns
-    *part, state = words
+    *before, state = words
     tail = " ".join(others(rest))
     if state in PARTICLES and rest:
         tail = " ".join([phrases.placed(rest[0], "on"), *others(rest[1:])])
     kinds = phrases.things.nouns(first.objects) | {first.parameter}
-    upright = part[-1:] == ["side"] and state in ("up", "down")
-    if not (kinds & {*part[-1:]} or upright or all(map(_says_how, part))):
+    upright = before[-1:] == ["side"] and state in ("up", "down")
+    if not (kinds & {*before[-1:]} or upright or all(map(_says_how, before))):
         # A part of the thing, as in quick-release-open; what is wide open is the thing itself.
-        yield Clause("is", Noun(f"the {' '.join(part)} of {first.said}"), f"{state} {tail}".strip())
+        yield Clause("is", part(" ".join(before), first.said), f"{state} {tail}".strip())
         return
-    said = state if part and part[-1] in kinds else " ".join(words)
+    said = state if before and before[-1] in kinds else " ".join(words)
     yield Clause("is", first, f"{said} {tail}".strip())
     if not rest and state in ("free", "empty") and phrases.things.hold(first.objects):
         yield Clause("is", first, "holding nothing")

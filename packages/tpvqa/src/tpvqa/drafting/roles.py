@@ -12,7 +12,7 @@ from tpvqa.pddl.schema import ActionSchema
 _SOURCES = ("from", "source", "start", "src", "sloc", "origin", "cur", "curpos", "current")
 _TARGETS = ("to", "into", "onto", "dest", "destination", "target", "eloc", "end", "next", "nextpos")
 _LOCATING = lexicon.POSTURES | word_set(
-    "load insert stow put place stack park locate mount store set dock shelve position"
+    "load insert stow put place stack park locate mount store set dock shelve position pack"
 )
 
 
@@ -125,7 +125,10 @@ def _reversed(schema: ActionSchema, things: Things) -> tuple[str, ...]:
     verb = things.words(schema.name)[0]
     for effect in schema.effects:
         literal = effect.literal
-        form = verb_form(things.words(literal.predicate)[0])
+        words = things.words(literal.predicate)
+        if len(words) > 1:
+            continue  # hangs-on says where what was hung up is
+        form = verb_form(words[0])
         if literal.positive and form == (verb, Form.THIRD) and len(literal.arguments) == 2:
             return (literal.arguments[1], literal.arguments[0])
     return ()

@@ -3,7 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from tpvqa.drafting.lexicon import (
@@ -16,10 +16,11 @@ from tpvqa.drafting.lexicon import (
     PERSONS,
     PLACES,
     PLURAL_EXCEPTIONS,
+    SEVERAL,
     SIDES,
     UPON,
 )
-from tpvqa.drafting.names import is_number, spelled, words_of
+from tpvqa.drafting.names import as_written, is_number, spelled, words_of
 from tpvqa.pddl import Task
 from tpvqa.questions.template import indefinite_article
 
@@ -107,7 +108,11 @@ class Things:
 
     @cached_property
     def _labels(self) -> dict[str, Label]:
-        return {obj: self._label(obj) for obj in self.task.objects}
+        plain = {obj: self._label(obj) for obj in self.task.objects}
+        return {
+            obj: replace(label, name=as_written(label.name, spelled(obj, self._text)))
+            for obj, label in plain.items()
+        }
 
     def _label(self, obj: str) -> Label:
         kinds = self.kinds(obj)
@@ -137,7 +142,7 @@ class Things:
         others = {*self.task.objects} - {obj}
         if len(words) > 1 and words[0] == noun and "_".join(words[1:]) in others:
             return Label(f"{noun} of the {' '.join(words[1:])}")
-        return Label(" ".join(words), plural=_plural(spoken[-1] if spoken else "", noun))
+        return Label(" ".join(words), plural=plural(spoken[-1] if spoken else "", noun))
 
     def place_of(self, obj: str) -> str:
         """Whether things are in, on or at an object."""
@@ -227,7 +232,15 @@ def _enumerated(words: list[str], kind: str, obj: str) -> str:
     return " ".join(words)
 
 
-def _plural(word: str, kind: str) -> bool:
+def plural(word: str, kind: str = "") -> bool:
+    """Whether a noun is several things: beans.
+
+    Args:
+        word: The noun.
+        kind: What it is one of: a `beans` that is a type is one thing.
+    """
+    if word in SEVERAL:
+        return True
     if len(word) < 4 or word in PLURAL_EXCEPTIONS or word == kind:
         return False
     return word.endswith("s") and not word.endswith(("ss", "us", "is"))
@@ -236,5 +249,5 @@ def _plural(word: str, kind: str) -> bool:
 def some(words: Sequence[str]) -> str:
     """A thing that is named without saying which: a cup, any water, any keys."""
     noun = " ".join(words)
-    many = words[-1] in MASS or _plural(words[-1], "")
+    many = words[-1] in MASS or plural(words[-1])
     return f"any {noun}" if many else f"{indefinite_article(noun)} {noun}"

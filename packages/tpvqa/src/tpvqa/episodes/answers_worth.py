@@ -22,6 +22,8 @@ MISTAKEN = 0.1
 one."""
 SURE = 0.95
 """From which probability on a fact counts as known."""
+MOST = 0.5
+"""The share of answers from which something is said of all."""
 FEW = 10
 """Answers from which nothing is concluded."""
 
@@ -49,13 +51,14 @@ class AnswersWorth:
     """Counts in a trial how often answers agreed with what was believed before the next action.
 
     Where the belief came to be sure (`SURE`) of a fact, its answers are counted as right or wrong,
-    and how often one was the last one again: what the VLM is like, by this one trial.
+    and how often one was the last one again: what the VLM is like, by this one trial. Answers about
+    what stayed in doubt are not: they may be worse, as they settled nothing.
     """
 
     def __init__(self) -> None:
         self._state = TrialState()
         self._open: dict[str, tuple[QuestionRecord, list[bool]]] = {}
-        self._right = self._answers = self._same = self._pairs = 0
+        self._heard = self._right = self._answers = self._same = self._pairs = 0
 
     def take(self, event: Event) -> None:
         """Count an event."""
@@ -66,6 +69,7 @@ class AnswersWorth:
                     if answer.reply in (Reply.YES, Reply.NO) and not person:
                         _, said = self._open.setdefault(question.text, (question, []))
                         said.append(answer.reply is Reply.YES)
+                        self._heard += 1
             case Acting() | Ended():
                 for question, said in self._open.values():
                     self._settle(question, said)
@@ -88,7 +92,8 @@ class AnswersWorth:
         1945), as the answers were trusted at the start (at most `LATE` times as many as the
         calibration says, as questions are priced), beside how many it would take if it were
         known for certain how often they are right, and how often they only repeat the last one, as
-        both were in this trial. Questions become fewer in that proportion.
+        both were in this trial. Questions become fewer in that proportion, if the answers about
+        what stayed in doubt are as good; where those are most, nothing is said of it.
         """
         started, questions = self._state.started, self._state.questions
         if started is None or not weighs_answers(started) or self._answers < FEW:
@@ -106,15 +111,18 @@ class AnswersWorth:
         then = answers_to_be_sure(right, self._repeat(right, known.repeat_same_view))
         saved = 1 - then / now
         told = (
-            f"{right:.2f} of the answers agreed with what was believed before the next "
-            f"action; they were taken to be right in {taken:.2f}, and trusted as in {trusted:.2f}"
+            f"{self._right} of {self._answers} answers agreed with what was sure before the next "
+            f"action, {right:.2f}, and {self._heard - self._answers} more were about what stayed "
+            f"in doubt; all were taken to be right in {taken:.2f}, and trusted as in {trusted:.2f}"
         )
-        if saved >= LITTLE:
+        if saved >= LITTLE and self._answers >= MOST * self._heard:
             return (
-                f"{told}. If that were known for certain, {then:.1f} instead of {now:.1f} answers "
-                f"to a question would do: about {round(saved * questions)} of the {questions} "
-                "questions less."
+                f"{told}. If {right:.2f} were known for certain and held of those in doubt, too, "
+                f"{then:.1f} instead of {now:.1f} answers to a question would do: about "
+                f"{round(saved * questions)} of the {questions} questions less."
             )
+        if saved >= LITTLE:
+            return f"{told}: how many questions labels would save cannot be told from so few."
         if right < taken - MISTAKEN:
             return f"{told}: labels would say how far not to trust them."
         return ""

@@ -187,8 +187,10 @@ class Ways:
         """The skill of a step where it seems to be dead, in words."""
         if self._chances.skill(step.action).shown < NAMED:
             return ""
-        tried, failed = self._chances.times(step.action)
-        return f"{step.book.say(step.action)} failed {round(failed)} times of {round(tried)}"
+        able, failed = self._chances.times(step.action)
+        tries = self._chances.tries(step.action)
+        said = f"{step.book.say(step.action)} failed {round(failed)} times of {round(able)}"
+        return said if round(able) == tries else f"{said} that could have worked, of {tries} tries"
 
     def take(self, plan: Plan, state: State) -> None:
         """Know a plan from a state."""

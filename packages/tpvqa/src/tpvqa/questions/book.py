@@ -15,6 +15,7 @@ from tpvqa.questions.template import Template
 from tpvqa.questions.wordings import Wording, Wordings, parameters_of, read_wordings
 
 STATIC = "no action changes it"
+NEVER_TRUE = "it does not hold at first, and nothing can make it true"
 UNSEEN = "that an action runs is not seen; give a question for it where it is"
 
 
@@ -28,6 +29,8 @@ class QuestionBook:
         task: The task.
         wordings: What the questions file says; nothing by default.
         wording: How actions are said in questions about them as a whole.
+        within: The facts that can ever hold, and the predicates of which any fact may; None where
+            that is not known.
 
     Attributes:
         notices: What a user should know about the words: fallbacks, questions that cannot be
@@ -36,10 +39,15 @@ class QuestionBook:
     """
 
     def __init__(
-        self, task: Task, wordings: Wordings | None = None, wording: Wording = "usual"
+        self,
+        task: Task,
+        wordings: Wordings | None = None,
+        wording: Wording = "usual",
+        within: tuple[frozenset[Atom], frozenset[str]] | None = None,
     ) -> None:
         wordings = wordings or Wordings()
-        self.task, self.wording = task, wording
+        self.task, self.wording, self._within = task, wording, within
+        self._narrower: QuestionBook | None = None
         self.notices: list[str] = list(wordings.notices)
         self._wordings = wordings
         self._predicates, self._actions = parameters_of(task)
@@ -70,13 +78,29 @@ class QuestionBook:
         """The book that says actions otherwise in questions about them as a whole."""
         if wording == self.wording:
             return self
-        return QuestionBook(self.task, self._wordings, wording)
+        return QuestionBook(self.task, self._wordings, wording, self._within)
+
+    def within(self, can_hold: frozenset[Atom], free: frozenset[str]) -> "QuestionBook":
+        """The book that does not ask about facts that can never hold: what a negative precondition
+        says of everything there is, though most of it is no such thing.
+
+        Args:
+            can_hold: The facts that can ever hold.
+            free: The predicates of which any fact may.
+        """
+        within = can_hold, free
+        if self._within == within:
+            return self
+        if self._narrower is None or self._narrower._within != within:
+            self._narrower = QuestionBook(self.task, self._wordings, self.wording, within)
+        return self._narrower
 
     def of_states(self) -> "QuestionBook":
         """The book for whoever answers from a state: no picture shows what holds no more."""
         if not self._wordings.still_shown:
             return self
-        return QuestionBook(self.task, replace(self._wordings, still_shown=()), self.wording)
+        rest = replace(self._wordings, still_shown=())
+        return QuestionBook(self.task, rest, self.wording, self._within)
 
     # Facts
 
@@ -155,10 +179,14 @@ class QuestionBook:
                 return pattern.because or "the questions file says so"
         if self._runs(literal.atom.predicate) and literal.atom.predicate not in self._given:
             return UNSEEN
-        if self.task.changes(literal.atom):
-            return None
+        because = self._never_true(literal.atom) if self.task.changes(literal.atom) else STATIC
         doubted = (p.matches(literal, None, {}, self.task) for p in self._wordings.in_doubt)
-        return None if any(doubted) else STATIC
+        return None if because is None or any(doubted) else because
+
+    def _never_true(self, atom: Atom) -> str | None:
+        can_hold, free = self._within or ((), ())
+        known = self._within is not None and atom.predicate not in free
+        return NEVER_TRUE if known and atom not in can_hold else None
 
     def preconditions(self, action: Action, state: State) -> tuple[FactQuestion, ...]:
         """The questions about what an action's precondition rests on in the believed state.

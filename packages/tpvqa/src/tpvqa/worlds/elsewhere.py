@@ -1,6 +1,6 @@
 """True states at first in which things are not where the problem says."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from tpvqa.chance import chance
 from tpvqa.errors import WorldError
@@ -51,10 +51,30 @@ def elsewhere(
     if moved < count:
         raise WorldError(
             f"--elsewhere {count}: of what the plan of {task.name} handles, {moved or 'no'} "
-            f"{'thing' if moved < 2 else 'things'} can be elsewhere with the goal still in reach; "
-            "name fewer, or a state with --true-start"
+            f"{'thing' if moved < 2 else 'things'} can be elsewhere with the goal still in reach"
+            f"{_why(task, handled, places)}; name {'fewer, or ' if count > 1 else ''}a state with "
+            "--true-start"
         )
     return state
+
+
+def _why(task: Task, handled: Collection[str], places: Mapping[str, Sequence[Atom]]) -> str:
+    """Why no more things of those that a plan handles can be elsewhere, where the task says why."""
+    at = {atom.arguments[0] for atom in task.init - task.static if len(atom.arguments) > 1}
+    loose = sorted((at & {*handled}) - places.keys())
+    bound = sorted(thing for thing, found in places.items() if len(found) < 2)
+    why = []
+    if loose:
+        why.append(
+            f"of {' and '.join(loose)} the domain does not make sure that exactly one of the facts "
+            "that say where it is holds (what adds one has to delete another that it has as its "
+            "condition)"
+        )
+    if bound:
+        why.append(f"no action brings {' or '.join(bound)} to another place of that kind")
+    if not (places or loose):
+        why.append("no action changes a fact that says where one is, as (on bread table)")
+    return f" ({'; '.join(why)})" if why else ""
 
 
 def _handled(task: Task, plan: Sequence[Action]) -> set[str]:

@@ -1,0 +1,80 @@
+"""Names that say less than they seem to: drafted as English goes, or marked to be looked at."""
+
+import yaml
+
+from tpvqa.drafting import LOOK, draft
+from tpvqa.pddl.loading import task_from_text
+
+DOMAIN = """(define (domain yard) (:requirements :typing)
+  (:types horse saddle hook bag crate knife rope gate room - object)
+  (:predicates (carries ?s - saddle) (hangs-on ?s - saddle ?k - hook) (hooves-picked ?h - horse)
+    (gloves-on) (packed ?b - bag ?c - crate) (sealed ?b - bag) (kept ?k - knife)
+    (halyard-clipped ?h - horse) (scale-beside ?k - knife) (windlass-left-at ?g - gate)
+    (watertight ?g - gate) (loose ?r - rope) (idling) (led ?h - horse))
+  (:action hang-up :parameters (?s - saddle ?k - hook) :precondition (carries ?s)
+    :effect (and (hangs-on ?s ?k) (not (carries ?s))))
+  (:action pick-hooves :parameters (?h - horse) :effect (hooves-picked ?h))
+  (:action put-on-gloves :parameters () :effect (gloves-on))
+  (:action pack :parameters (?b - bag ?c - crate) :effect (packed ?b ?c))
+  (:action seal :parameters (?b - bag ?k - horse) :effect (and (sealed ?b) (led ?k)))
+  (:action clip-on-halyard :parameters (?h - horse) :effect (halyard-clipped ?h))
+  (:action lay-scale :parameters (?k - knife) :effect (scale-beside ?k))
+  (:action lay-down-windlass :parameters (?g - gate)
+    :effect (and (windlass-left-at ?g) (watertight ?g)))
+  (:action pick-up-windlass :parameters (?g - gate) :effect (not (windlass-left-at ?g)))
+  (:action let-go :parameters (?r - rope) :effect (loose ?r))
+  (:action let-idle :parameters () :effect (idling))
+  (:action lead-away :parameters (?h - horse) :effect (led ?h)))"""
+PROBLEM = """(define (problem p) (:domain yard) (:objects Bess - horse GP_saddle17 - saddle
+    hookA - hook bag_A1 BAG_B - bag crate1 - crate Knife_07B - knife bow_line - rope
+    north_gate - gate bedroom_2 - room)
+  (:init) (:goal (gloves-on)))"""
+
+
+def drafted() -> str:
+    return draft(task_from_text(DOMAIN, PROBLEM))
+
+
+def test_verbs_take_what_english_joins_to_them() -> None:
+    actions = yaml.safe_load(drafted())["actions"]
+    said = {name: each["say"].replace(".the", "") for name, each in actions.items()}
+    assert said["hang-up"].replace("the ", "") == "hang up {s} on {k}"
+    assert said["pick-hooves"] == "pick the hooves of the {h}"
+    assert said["put-on-gloves"] == "put on the gloves"
+    assert said["pack"].replace("the ", "") == "pack {b} into {c}"
+    assert said["lay-scale"].replace("the ", "") == "lay scale beside {k}"
+    assert said["lay-down-windlass"] == "lay down the windlass at the {g}"
+    assert said["pick-up-windlass"] == "pick up the windlass from the {g}"
+    assert said["let-go"] == "let go of the {r}"
+    assert actions["lead-away"]["done"] == "led away the {h}"
+
+
+def test_facts_are_asked_of_who_does_it_and_of_several_things_as_several() -> None:
+    asked = yaml.safe_load(drafted())["predicates"]
+    assert asked["carries"][0] == "Is the robot carrying {s.the}?"
+    assert asked["gloves-on"][0] == "Are the gloves on?"
+    assert asked["hooves-picked"][0] == "Are the hooves of the {h} picked?"
+    assert asked["windlass-left-at"] == [
+        "Is the windlass left at the {g}?",
+        "Is it true that the windlass is left at the {g}?",
+    ]
+    assert asked["watertight"][0] == "Is the {g} watertight?"
+
+
+def test_what_the_names_leave_open_is_marked() -> None:
+    marked = {line.split(":")[0].strip() for line in drafted().splitlines() if LOOK in line}
+    assert {"seal", "clip-on-halyard", "let-idle"} <= marked
+    assert not {"hang-up", "pack", "lay-scale", "let-go", "put-on-gloves"} & marked
+
+
+def test_codes_keep_the_capitals_and_compounds_stay_whole() -> None:
+    named = yaml.safe_load(drafted())["objects"]
+    said = {
+        name: each.get("name") if isinstance(each, dict) else each for name, each in named.items()
+    }
+    assert said["knife_07b"] == "knife 07B"
+    assert said["bag_a1"] == "bag A1"
+    assert said["bag_b"] == "bag B"
+    assert said["hooka"] == "hook A"
+    assert said["gp_saddle17"] == "GP saddle 17"
+    assert said.get("bedroom_2") is None
