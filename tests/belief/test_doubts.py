@@ -10,7 +10,6 @@ from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.places import further_places, things
 from tpvqa.belief.priors import Priors
-from tpvqa.belief.sight import Sight
 from tpvqa.belief.starts import drawn_start, opened
 from tpvqa.belief.surprise import Surprise
 from tpvqa.pddl import Atom, load_task
@@ -63,10 +62,10 @@ def test_a_doubt_is_weighed_by_answers_and_given_once() -> None:
 def test_an_action_that_rests_on_a_place_takes_its_doubt_in_once() -> None:
     belief = Belief(FaultModel(TASK))
     evidence = Evidence(belief, Calibration.default(), None, doubts=Doubts(TASK, 0.1))
-    evidence.rests_on(TAKE, Sight(belief.model))
+    evidence.rests_on(TAKE)
     assert isclose(belief.probability(COUNTER), 0.9)
     assert belief.probability(TABLE) > 0
-    evidence.rests_on(TAKE, Sight(belief.model))
+    evidence.rests_on(TAKE)
     assert isclose(belief.probability(COUNTER), 0.9)
 
 
@@ -74,13 +73,13 @@ def test_what_fails_in_vain_may_need_what_does_not_hold() -> None:
     """Less where an answer was about it."""
     belief = Belief(FaultModel(TASK))
     evidence, near = Evidence(belief, Calibration.default(), None), Atom.parse("(near counter)")
-    evidence.rests_on(TAKE, Sight(belief.model), doubt=0.3)
+    evidence.rests_on(TAKE, doubt=0.3)
     gone = 1 - belief.probability(COUNTER)
     assert 0.3 - 1e-9 <= gone < 0.4
     asked = FactQuestion("Is it near?", Way.PRECONDITION, near)
     evidence.take(asked, Answer(asked, Reply.YES), 0, None)
     before = 1 - belief.probability(near)
-    evidence.rests_on(TAKE, Sight(belief.model), doubt=0.3)
+    evidence.rests_on(TAKE, doubt=0.3)
     assert 1 - belief.probability(near) - before < gone / 2
 
 

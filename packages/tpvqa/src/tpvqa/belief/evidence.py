@@ -165,19 +165,19 @@ class Evidence(Expected):
             elsewhere = self._doubts.taken(atoms, held=held) if self._doubts else 0.0
             self._weighed.open(atoms, max(self._unexplained, elsewhere))
 
-    def rests_on(self, action: Action, sight: Sight, *, doubt: float = 0.0) -> None:
+    def rests_on(self, action: Action, sight: Sight | None = None, *, doubt: float = 0.0) -> None:
         """Take in that what an action needs may not be so, before it is done.
 
         Args:
             action: It.
-            sight: What can be seen.
+            sight: What can be seen; None for all.
             doubt: The chance of that with each fact, as it has failed again and again; less counts
                 where answers have said that it holds.
         """
         fluents, asked = self._belief.model.task.fluents, self._hearing.asked if doubt else ()
         for literal in literals(action.precondition):
             atom = literal.atom
-            if doubt and atom.predicate in fluents and sight.sees(atom):
+            if doubt and atom.predicate in fluents and (sight is None or sight.sees(atom)):
                 chance = max(SUSPECTED, ANSWERED * doubt) if atom in asked else doubt
                 self._belief.open((atom,), chance)
         if self._doubts is None:
