@@ -20,7 +20,7 @@ from tpvqa.belief.readings import Readings
 from tpvqa.belief.repeats import learn_repeats
 from tpvqa.belief.reports import Reports
 from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import SUSPECTED
+from tpvqa.belief.skills import DEAD, DEAD_WITH, SUSPECTED
 from tpvqa.belief.told_apart import ToldApart
 from tpvqa.belief.trust import Trust
 from tpvqa.belief.weighed import Weighed
@@ -34,7 +34,7 @@ UNEXPLAINED = 0.002
 SURPRISING = 0.25
 """An answer less probable than this makes that chance be taken in."""
 ANSWERED = 0.2
-"""The share of a doubt that is left where an answer was about the fact."""
+"""The share of a doubt that is left where the last answer has denied it."""
 MANY = 48
 """Joint states from which on it saves time to leave out of them what is next to impossible."""
 ANYWAY = 0.25
@@ -165,29 +165,34 @@ class Evidence(Expected):
             elsewhere = self._doubts.taken(atoms, held=held) if self._doubts else 0.0
             self._weighed.open(atoms, max(self._unexplained, elsewhere))
 
-    def rests_on(self, action: Action, sight: Sight | None = None, *, doubt: float = 0.0) -> None:
+    def rests_on(self, action: Action, sight: Sight | None = None, *, dead: float = 0.0) -> None:
         """Take in that what an action needs may not be so, before it is done.
+
+        That explains tries in vain as well as that the action never works does. So each thing that
+        it needs has its share of that, less where it was said last that it holds.
 
         Args:
             action: It.
             sight: What can be seen; None for all.
-            doubt: The chance of that with each fact, as it has failed again and again; less counts
-                where answers have said that it holds.
+            dead: How probable it is that it never works, where tries in vain are to be explained.
         """
-        fluents, asked = self._belief.model.task.fluents, self._hearing.asked if doubt else ()
-        for literal in literals(action.precondition):
-            atom = literal.atom
-            if doubt and atom.predicate in fluents and (sight is None or sight.sees(atom)):
-                chance = max(SUSPECTED, ANSWERED * doubt) if atom in asked else doubt
-                self._belief.open((atom,), chance)
+        fluents, needed = self._belief.model.task.fluents, list(literals(action.precondition))
+        doubted = [
+            each
+            for each in needed
+            if dead and each.atom.predicate in fluents and (sight is None or sight.sees(each.atom))
+        ]
+        chance = dead * SUSPECTED / (len(doubted) * SUSPECTED + DEAD + DEAD_WITH)
+        for each in doubted:
+            said = self._hearing.said(each.atom, holds=each.positive)
+            self._belief.open((each.atom,), chance * (ANSWERED if said else 1.0))
         if self._doubts is None:
             return
-        for literal in literals(action.precondition):
-            atom = literal.atom
-            if literal.positive and self._belief.probability(atom) >= 0.5:
-                chance = self._doubts.gone(atom)
+        for each in needed:
+            if each.positive and self._belief.probability(each.atom) >= 0.5:
+                chance = self._doubts.gone(each.atom)
                 if chance:
-                    self._belief.open((atom,), chance)
+                    self._belief.open((each.atom,), chance)
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action: once more is worth

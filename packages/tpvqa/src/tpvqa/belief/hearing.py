@@ -1,7 +1,7 @@
 """What was heard of every question, as it counts now: carried along when it is asked for."""
 
 from collections import deque
-from collections.abc import Mapping, Set
+from collections.abc import Mapping
 from typing import Protocol
 
 from tpvqa.belief.heard import Heard
@@ -11,6 +11,7 @@ from tpvqa.belief.led import Led, Places
 from tpvqa.belief.other_words import OtherWords
 from tpvqa.pddl import Atom
 from tpvqa.questions.question import FactQuestion
+from tpvqa.vlm import Reply
 
 REMEMBERED = 8
 """Actions after which it is forgotten what was heard of a question."""
@@ -102,10 +103,10 @@ class Hearing:
         led = [each and each.told_apart(columns, taken) for each in self._led]
         self._led = deque(led, maxlen=REMEMBERED)
 
-    @property
-    def asked(self) -> Set[Atom]:
-        """The facts that some answer was about."""
-        return {atom for last in self.last.values() for atom in last.atoms}
+    def said(self, atom: Atom, *, holds: bool) -> bool:
+        """Whether the last answer to some question about a fact was that it holds, or does not."""
+        reply = Reply.YES if holds else Reply.NO
+        return any(atom in last.atoms and last.reply is reply for last in self.last.values())
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action."""

@@ -33,6 +33,7 @@ from tpvqa.monitors.inspection import REPORTED, Inspection
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Request
+from tpvqa.monitors.saying_done import says_done
 from tpvqa.monitors.scrutiny import unknown
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated, bound_for
 from tpvqa.monitors.telltales import Telltales
@@ -182,11 +183,6 @@ class BeliefMonitor(Learning, PlainArguments):
         return confidence(self.belief.where(self.task.goal_holds))
 
     @property
-    def _may_say_so(self) -> bool:
-        """Whether the goal is so probable that the risk which is stated allows to say "done"."""
-        return self._risk is None or self._risk.allows(self.goal_probability)
-
-    @property
     def unsure(self) -> bool:
         """Whether the problem or the priors leave open how the world is at first."""
         return bool(self.task.left_open) or self._priors.opens
@@ -225,7 +221,7 @@ class BeliefMonitor(Learning, PlainArguments):
         self.belief.begin(prior.states())
         verdict = yield from first_verdict(self.belief, prior, FactWords(book), now)
         done = verdict.plan is not None and not verdict.plan.actions
-        if self._risk is None or not done or self._may_say_so:
+        if self._risk is None or not done or self._risk.allows(self.goal_probability):
             return verdict
         why = f"{IN_DOUBT}: {as_stated(self.goal_probability, self._risk)}; {verdict.reason}"
         return replace(verdict, decision=Decision.GIVE_UP, reason=why)
@@ -271,7 +267,7 @@ class BeliefMonitor(Learning, PlainArguments):
             for chooser in self._choosers:
                 chooser.renumbered(self.belief.model, numbers)
             self._inquirer.renumbered(self.belief.model)
-        self.evidence.rests_on(step.action, self._sight, doubt=self._ways.suspects(step.action))
+        self.evidence.rests_on(step.action, self._sight, dead=self._ways.suspects(step.action))
         self._telltales.acted(step.action)
         for chooser in self._choosers:
             chooser.acted(self.belief, step.action)
@@ -366,10 +362,12 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _verdict(self, step: Step, choice: Choice, *, acted: bool) -> Verdict:
         state, action, place = choice.state, choice.action, None
+        failing = self._ways.failing(step)
         same = self.belief.model.same_skill
         if action is None:
-            likely = self.belief.where(self.task.goal_holds) >= 0.5
-            decision = Decision.DONE if likely and self._may_say_so else Decision.GIVE_UP
+            told = not (self._chooser.blind or failing)
+            done = says_done(self.goal_probability, self._risk, told=told)
+            decision = Decision.DONE if done else Decision.GIVE_UP
         elif acted and same(action, step.action, state):
             decision = Decision.REPEAT
         else:
@@ -387,7 +385,7 @@ class BeliefMonitor(Learning, PlainArguments):
             unseen=self.evidence.unseen,
             questions_left=self._asking.may_ask,
             actions_left=step.actions_left,
-            failing=self._ways.failing(step),
+            failing=failing,
             settles=self._chooser.settles,
             risk=self._risk,
         )

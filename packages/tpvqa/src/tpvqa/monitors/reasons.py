@@ -10,6 +10,7 @@ from tpvqa.belief.risk import RiskBound
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Inspection, Noticed, Replies
 from tpvqa.monitors.protocol import Step
+from tpvqa.monitors.saying_done import EVEN, HELD
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated
 from tpvqa.pddl import Action, Atom, Literal, State
 from tpvqa.questions import FactWords
@@ -215,7 +216,7 @@ def _goal(grounds: Grounds) -> list[Literal]:
 
 def _stopped(grounds: Grounds, decision: Decision) -> bool:
     """Whether it ends without "done" for the sake of the risk that is stated alone."""
-    likely = grounds.belief.where(grounds.step.task.goal_holds) >= 0.5
+    likely = grounds.belief.where(grounds.step.task.goal_holds) >= EVEN
     return grounds.risk is not None and decision is Decision.GIVE_UP and likely
 
 
@@ -257,7 +258,8 @@ def _end(grounds: Grounds, decision: Decision) -> str:
     if decision is Decision.DONE and grounds.risk is not None:
         return f"{why}{as_stated(probability, grounds.risk)}"
     if decision is Decision.DONE:
-        return f"{why}the goal holds with {goal}{_never_seen(grounds)}"
+        held = f", and goals believed so were reached in {HELD:.2f}" if probability < EVEN else ""
+        return f"{why}the goal holds with {goal}{held}{_never_seen(grounds)}"
     if not why and grounds.step.replans_left == 0:
         why = "no change of plan is left, and "
     if not why and grounds.failing:

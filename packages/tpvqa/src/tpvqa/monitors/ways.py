@@ -11,7 +11,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.learned import Learned
 from tpvqa.belief.outlook import KNOWN
 from tpvqa.belief.seeking import LIKELY
-from tpvqa.belief.skills import CLOSELY, DEAD, DEAD_WITH, NAMED, SUSPECT, SUSPECTED
+from tpvqa.belief.skills import CLOSELY, NAMED, SUSPECT
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.inspection import Inspection
 from tpvqa.monitors.protocol import Step
@@ -136,17 +136,13 @@ class Ways:
         return way is not None and not dead.isdisjoint(way[1].actions[way[0] :])
 
     def suspects(self, action: Action) -> float:
-        """How probable it is that something an action needs is not so, where it begins to look as
-        if it never worked, and again after several tries in vain and each time twice as many; else
-        0. That explains them as well as that it never works, and has its share of what that has
-        come to by then."""
+        """How probable it is that an action never works, said where it begins to look like that,
+        and again after several tries in vain and each time twice as many; else 0."""
         skill = self._chances.skill(action)
         if skill.dead <= SUSPECT or skill.vain < self._suspected.get(action, 0.0):
             return 0.0
-        again = action in self._suspected
         self._suspected[action] = max(2 * skill.vain, SEVERAL)
-        share = SUSPECTED / (SUSPECTED + DEAD + DEAD_WITH)
-        return max(SUSPECTED, skill.dead * share) if again else SUSPECTED
+        return skill.dead
 
     def learns_now(self, now: Inspection) -> bool:
         """Whether what the last action came to counts for what is decided now, as it may never
