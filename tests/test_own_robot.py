@@ -174,7 +174,12 @@ def test_they_can_be_driven_by_a_program_of_its_own(
             "take_picture)",
             "observe returned .*bytes",
         ),
-        ("vlm.py", "p_yes=p)", "p_yes=100 * p)", "ask returned .*p_yes: .*less than or equal to 1"),
+        (
+            "vlm.py",
+            "p_yes=p)",
+            "p_yes=100 * p)",
+            "has to give p_yes as a number between 0 and 1, not 9",
+        ),
         ("vlm.py", "Reply.YES if", '"maybe" if', "has to give a Reply, and gave 'maybe'"),
         (
             "vlm.py",

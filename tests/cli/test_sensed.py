@@ -122,8 +122,8 @@ def test_where_everything_is_sensed_no_question_is_needed(tpvqa: Run, at: str) -
         assert ended.questions == 0
         if at == "effect":  # what a failure may have undone besides, nothing tells
             assert ended.actions <= 6 + failed + 2
-        else:  # what failed five times in a row looks dead, and is made sure of once it works
-            assert ended.actions == 6 + failed + late_successes(events)
+        else:  # what failed five times in a row looks dead, and may be made sure of once it works
+            assert 0 <= ended.actions - 6 - failed <= late_successes(events)
         assert ended.looks <= (ended.actions if at == "look" else 1)
 
 

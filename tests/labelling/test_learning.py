@@ -169,7 +169,7 @@ def _counting(row: LabelledAnswer, weight: float, trial: str | None = None) -> L
 
 
 def test_what_a_person_answered_in_the_trial_is_a_label(tmp_path: Path) -> None:
-    config = configured(task="build_tower", monitor="belief:person=0.1", vlm="oracle:0.7")
+    config = configured(task="build_tower", monitor="belief:person=0.02", vlm="oracle:0.6")
     config = config.but(world={"spec": "symbolic"}, seed=3)
     writer = EpisodeWriter(tmp_path / "e", durable=False)
     with Trial(config, person=ScriptedVLM(lambda _: Reply.YES)) as trial:
