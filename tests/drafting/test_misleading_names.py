@@ -1,5 +1,6 @@
 """Names that say less than they seem to: drafted as English goes, or marked to be looked at."""
 
+import pytest
 import yaml
 
 from tpvqa.drafting import LOOK, draft
@@ -78,6 +79,21 @@ def test_codes_keep_the_capitals_and_compounds_stay_whole() -> None:
     assert said["hooka"] == "hook A"
     assert said["gp_saddle17"] == "GP saddle 17"
     assert said.get("bedroom_2") is None
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        ("gloves", "Are the gloves on?"),
+        ("news", "Is the news on?"),
+        ("physics", "Is the physics on?"),
+        ("biceps", "Is the biceps on?"),
+    ],
+)
+def test_what_ends_in_an_s_is_not_always_several_things(name: str, asked: str) -> None:
+    domain = DOMAIN.replace("gloves-on", f"{name}-on")
+    text = draft(task_from_text(domain, PROBLEM.replace("gloves-on", f"{name}-on")))
+    assert yaml.safe_load(text)["predicates"][f"{name}-on"][0] == asked
 
 
 IDIOMS = """(define (domain ship) (:requirements :typing)
