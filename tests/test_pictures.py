@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image
+from PIL import Image, ImageOps
 
 from tpvqa.errors import PictureError
 from tpvqa.observation import Frame
@@ -167,14 +167,29 @@ def test_the_folder_itself_may_be_a_link(tmp_path: Path) -> None:
     assert read_picture("p.png", inside=tmp_path / "here")
 
 
-def _phone(kind: str, size: tuple[int, int] = (60, 40), orientation: int = 6) -> bytes:
-    """A picture that is red at its left, blue at its right, and says how it is to be turned."""
+def _phone(
+    kind: str, size: tuple[int, int] = (60, 40), orientation: int = 6, damage: int | None = None
+) -> bytes:
+    """A picture that is red at its left, blue at its right, and says how it is to be turned.
+
+    Args:
+        kind: Its format.
+        size: Its size as it is kept.
+        orientation: How it is to be turned.
+        damage: The kind of number, as EXIF counts them, that another of its tags claims to be.
+    """
     picture = Image.new("RGB", size, "red")
     picture.paste("blue", (size[0] // 2, 0, *size))
     exif = Image.Exif()
     exif[0x0112] = orientation
+    exif[0x0128] = 2
+    said = exif.tobytes()
+    if damage is not None:
+        kept = struct.pack(">HHL", 0x0128, 3, 1)
+        assert kept in said
+        said = said.replace(kept, struct.pack(">HHL", 0x0128, damage, 1))
     file = BytesIO()
-    picture.save(file, kind, exif=exif)
+    picture.save(file, kind, exif=said)
     return file.getvalue()
 
 
@@ -189,6 +204,20 @@ def test_a_picture_of_a_phone_is_upright_to_everybody(kind: str) -> None:
         assert not dict(picture.getexif()).get(0x0112)
     assert Frame("a", "front", data).pixels.shape == (60, 40, 3)
     assert picture_type(upright(data)) == picture_type(data)
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_every_orientation_is_turned_as_viewers_do(orientation: int) -> None:
+    data = _phone("PNG", orientation=orientation)
+    shown = ImageOps.exif_transpose(Image.open(BytesIO(data)))
+    assert np.array_equal(np.asarray(decoded(data)), np.asarray(shown))
+
+
+@pytest.mark.parametrize("kind", ["JPEG", "PNG", "WEBP"])
+@pytest.mark.parametrize("damage", [2, 4, 7, 12])
+def test_a_tag_that_is_damaged_keeps_no_picture_from_being_upright(kind: str, damage: int) -> None:
+    data = _phone(kind, damage=damage)
+    assert decoded(data).size == decoded(upright(data)).size == in_colour(data).size == (40, 60)
 
 
 @pytest.mark.parametrize("orientation", [1, 9, 0])

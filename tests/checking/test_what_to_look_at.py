@@ -34,6 +34,18 @@ def test_lines_that_are_still_marked_are_told_until_somebody_has_read_them(
     assert "LOOK" not in tpvqa("check", *task)[1]
 
 
+@pytest.mark.parametrize("lines", [1, 300_000])
+def test_a_file_that_was_refused_is_not_read_for_marks(
+    lines: int, task: list[str], tpvqa: Run
+) -> None:
+    Path("scene/questions.yaml").write_text("predicates: [\n" + "seal: # LOOK: a guess\n" * lines)
+    code, out, err = tpvqa("check", *task)
+    assert code != 0
+    assert "questions.yaml" in out
+    assert "is marked LOOK" not in out
+    assert "Traceback" not in out + err
+
+
 def test_words_to_paste_are_marked_too_and_go_where_the_task_lies(
     task: list[str], tpvqa: Run
 ) -> None:

@@ -165,6 +165,16 @@ def test_no_decision_is_longer_than_a_line(parts: list[str]) -> None:
             "put the halter on Bess failed 32 times of 32; …; no other way is known, and the goal "
             "holds with only 0.00",
         ),
+        (
+            "the goal holds with 0.97; asked what is known to see what answers are worth; and more "
+            "that does not fit into any line",
+            "the goal holds with 0.97; asked what is known to see what answers are worth; …",
+        ),
+        (
+            "cup in hand 0.02; no plan is left, and the goal holds with 0.01; asked what is known "
+            "to see what answers are worth (cup clean, tea hot)",
+            "cup in hand 0.02; no plan is left, and the goal holds with 0.01; …",
+        ),
     ],
 )
 def test_what_a_trial_is_ended_for_is_never_left_out(reason: str, said: str) -> None:

@@ -1,5 +1,6 @@
 """Names that say less than they seem to: drafted as English goes, or marked to be looked at."""
 
+import pytest
 import yaml
 
 from tpvqa.drafting import LOOK, draft
@@ -78,3 +79,70 @@ def test_codes_keep_the_capitals_and_compounds_stay_whole() -> None:
     assert said["hooka"] == "hook A"
     assert said["gp_saddle17"] == "GP saddle 17"
     assert said.get("bedroom_2") is None
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        ("gloves", "Are the gloves on?"),
+        ("news", "Is the news on?"),
+        ("physics", "Is the physics on?"),
+        ("biceps", "Is the biceps on?"),
+    ],
+)
+def test_what_ends_in_an_s_is_not_always_several_things(name: str, asked: str) -> None:
+    domain = DOMAIN.replace("gloves-on", f"{name}-on")
+    text = draft(task_from_text(domain, PROBLEM.replace("gloves-on", f"{name}-on")))
+    assert yaml.safe_load(text)["predicates"][f"{name}-on"][0] == asked
+
+
+IDIOMS = """(define (domain ship) (:requirements :typing)
+  (:types letter boiler tray - object)
+  (:predicates (opened ?l - letter) (drained ?b - boiler) (on-fire ?b - boiler) (cold ?b - boiler)
+    (stored ?l - letter))
+  (:action letter-open :parameters (?l - letter) :effect (opened ?l))
+  (:action let-out-water :parameters (?b - boiler) :effect (drained ?b))
+  (:action set-on-fire :parameters (?b - boiler) :effect (on-fire ?b))
+  (:action put-in-gear :parameters (?b - boiler) :effect (cold ?b))
+  (:action lay-at-rest :parameters (?b - boiler) :effect (cold ?b))
+  (:action leave-at-home :parameters (?b - boiler) :effect (cold ?b))
+  (:action put-in-reverse :parameters (?b - boiler) :effect (cold ?b))
+  (:action cut-in-two :parameters (?b - boiler) :effect (cold ?b))
+  (:action put-in-tray :parameters (?l - letter) :effect (stored ?l)))"""
+SHIP = """(define (problem p) (:domain ship) (:objects note - letter kettle - boiler blue - tray)
+  (:init) (:goal (opened note)))"""
+
+
+def test_an_article_stands_before_things_and_not_in_idioms() -> None:
+    actions = yaml.safe_load(draft(task_from_text(IDIOMS, SHIP)))["actions"]
+    said = {name: each["say"] for name, each in actions.items()}
+    assert said["letter-open"] == "open the {l}"
+    assert said["let-out-water"] == "let out the water of the {b}"
+    assert said["set-on-fire"] == "set the {b} on fire"
+    assert said["put-in-gear"] == "put the {b} in gear"
+    assert said["lay-at-rest"] == "lay the {b} at rest"
+    assert said["leave-at-home"] == "leave the {b} at home"
+    assert said["put-in-reverse"] == "put the {b} in reverse"
+    assert said["cut-in-two"] == "cut the {b} in two"
+    assert said["put-in-tray"] == "put the {l} in the tray"
+
+
+GRIPPER = """(define (domain gripper-strips)
+  (:predicates (room ?r) (ball ?b) (gripper ?g) (at-robby ?r) (at ?b ?r) (free ?g) (carry ?o ?g))
+  (:action pick :parameters (?obj ?room ?gripper)
+    :precondition (and (ball ?obj) (room ?room) (gripper ?gripper) (at ?obj ?room)
+      (at-robby ?room) (free ?gripper))
+    :effect (and (carry ?obj ?gripper) (not (at ?obj ?room)) (not (free ?gripper))))
+  (:action drop :parameters (?obj ?room ?gripper)
+    :precondition (and (ball ?obj) (room ?room) (gripper ?gripper) (carry ?obj ?gripper)
+      (at-robby ?room))
+    :effect (and (at ?obj ?room) (free ?gripper) (not (carry ?obj ?gripper)))))"""
+BALLS = """(define (problem p) (:domain gripper-strips) (:objects rooma roomb ball1 left right)
+  (:init (room rooma) (room roomb) (ball ball1) (gripper left) (gripper right) (at-robby rooma)
+    (free left) (free right) (at ball1 rooma)) (:goal (at ball1 roomb)))"""
+
+
+def test_that_something_is_done_with_a_gripper_is_no_guess() -> None:
+    text = draft(task_from_text(GRIPPER, BALLS))
+    assert "with {gripper.the}" in yaml.safe_load(text)["actions"]["pick"]["say"]
+    assert LOOK not in text.partition("actions:")[2]

@@ -1,5 +1,6 @@
 """Facts that can never hold are not asked about: a domain without types speaks of everything."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -7,9 +8,14 @@ import pytest
 
 from tests.cli.conftest import Run, tpvqa
 from tpvqa.assembly import Trial
+from tpvqa.assembly.reach import asking
+from tpvqa.belief.priors import Priors
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events.events import Asked
+from tpvqa.pddl import Atom, Literal, task_from_text
+from tpvqa.questions import QuestionBook
+from tpvqa.worlds.world_file import WorldRules
 
 __all__ = ["tpvqa"]
 DOMAIN = """(define (domain scene) (:requirements :strips :negative-preconditions)
@@ -27,6 +33,16 @@ UNDO = """undo:
   - fact: (gloved)
     outcomes: [{add: ["(gripped hall)"]}]
 """
+
+
+DOORS = """(define (domain doors) (:requirements :strips :negative-preconditions)
+  (:predicates (door ?d) (key ?k ?d) (locked ?d) (opened ?d))
+  (:action unlock :parameters (?k ?d) :precondition (and (key ?k ?d) (locked ?d))
+    :effect (not (locked ?d)))
+  (:action open-one :parameters (?d) :precondition (and (door ?d) (forall (?x) (not (locked ?x))))
+    :effect (opened ?d)))"""
+HOUSE = """(define (problem p) (:domain doors) (:objects front back hall brass)
+  (:init (door front) (door back) (key brass front)) (:goal (opened front)))"""
 
 
 @pytest.fixture
@@ -68,6 +84,23 @@ def test_what_mishaps_or_the_start_may_bring_about_is_asked(
     assert any("gripped hall" in atom for atom in found)
     found = asked(files, start={"what": "unknown"})
     assert any("gripped van" in atom for atom in found)
+
+
+@pytest.mark.parametrize("monitor", ["tpvqa", "lead:2"])
+def test_what_actions_end_and_none_brings_about_is_asked(
+    monitor: str, files: dict[str, str]
+) -> None:
+    """Somebody locked the door before; that the problem does not say so is no proof."""
+    Path(files["domain"]).write_text(DOORS)
+    Path(files["problem"]).write_text(HOUSE)
+    about = {atom for atom in asked(files, monitor) if "locked" in atom}
+    assert about == {"(locked front)"}  # no key fits the others, and the hall is no door
+
+
+def test_where_objects_were_left_out_all_is_asked_that_they_may_bring_about() -> None:
+    task = replace(task_from_text(DOMAIN, PROBLEM), left_out=frozenset({"glove-box"}))
+    book = QuestionBook(task)
+    assert asking(book, task, WorldRules(), Priors()).asked(Literal(Atom("gripped", ("hall",))))
 
 
 def test_the_list_of_questions_leaves_them_out_too(files: dict[str, str], tpvqa: Run) -> None:

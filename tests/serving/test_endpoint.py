@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from tests.serving.running import INSTRUCTION, Known, body, call, complete, picture, running
-from tpvqa.errors import AnswerError, TpvqaError
+from tpvqa.errors import AnswerError, PluginError, TpvqaError
 from tpvqa.observation import Observation
 from tpvqa.questions import Question
 from tpvqa.serving.app import Limits
@@ -275,10 +275,17 @@ def test_who_has_no_more_time_is_told_and_who_went_away_is_forgotten() -> None:
     assert [asked for _, asked in vlm.calls] == [("Is the fridge open?",)] * 2
 
 
+def _told(error: Exception) -> Exception:
+    """As a plug-in raises it that says itself what went wrong below it."""
+    error.__cause__ = OSError("secret")
+    return error
+
+
 @pytest.mark.parametrize(
     ("error", "code", "said"),
     [
         (AnswerError("The key is refused."), "vlm_failed", "The key is refused."),
+        (_told(PluginError("My server is off.")), "vlm_failed", "My server is off."),
         (ZeroDivisionError("secret"), "vlm_broke", "ZeroDivisionError"),
     ],
 )

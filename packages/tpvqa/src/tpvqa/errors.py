@@ -30,6 +30,7 @@ TpvqaError
 ├── TrainingError          a VLM cannot be trained, or not from what is given
 ├── UnknownNameError       no plug-in or task of that name
 ├── PluginError            a plug-in cannot be imported, does not take its arguments, or broke
+│   └── PluginBrokeError       it raised what is no TpvqaError, which is the cause
 └── MissingExtraError      an optional package is needed
 """
 
@@ -302,6 +303,11 @@ class UnknownNameError(TpvqaError):
 
 class PluginError(TpvqaError):
     """A plug-in cannot be imported, does not take the arguments of its specification, or broke."""
+
+
+class PluginBrokeError(PluginError):
+    """A plug-in raised what is no `TpvqaError`, in words that are not meant for users; that is the
+    `__cause__`."""
 
 
 class MissingExtraError(TpvqaError):

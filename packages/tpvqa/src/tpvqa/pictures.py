@@ -27,6 +27,16 @@ MOST_BYTES = 32 * 2**20
 MOST_PIXELS = 50_000_000
 """Of a picture: as many as the largest photos of phones."""
 _QUALITY = 95  # of a picture that is encoded again, in percent
+_TURNS = {
+    2: "FLIP_LEFT_RIGHT",
+    3: "ROTATE_180",
+    4: "FLIP_TOP_BOTTOM",
+    5: "TRANSPOSE",
+    6: "ROTATE_270",
+    7: "TRANSVERSE",
+    8: "ROTATE_90",
+}  # how each orientation of EXIF is made upright; EXIF is not written again, as it may be damaged
+_SAYING_TURNS = ("exif", "Raw profile type exif", "XML:com.adobe.xmp", "xmp")
 _MOST_SCANS = 100  # of a JPEG; each is decoded over the whole picture, photos have some ten
 
 
@@ -94,16 +104,20 @@ def decoded(data: bytes) -> "Image.Image":
     Raises:
         PictureError: It is no JPEG, PNG or WebP, is damaged, or has too many pixels.
     """
-    from PIL import ImageOps
+    from PIL import Image
 
     picture = _opened(data)
     try:
         picture.load()
     except Exception as error:  # decoders raise of every kind
         raise PictureError(f"is a damaged picture ({error})") from error
-    if _is_turned(picture):
-        ImageOps.exif_transpose(picture, in_place=True)
-    return picture
+    turn = _TURNS.get(_orientation(picture))
+    if turn is None:
+        return picture
+    turned = picture.transpose(Image.Transpose[turn])
+    for name in _SAYING_TURNS:
+        turned.info.pop(name, None)
+    return turned
 
 
 def upright(data: bytes) -> bytes:
@@ -114,7 +128,7 @@ def upright(data: bytes) -> bytes:
         PictureError: As `decoded` does.
     """
     opened = _opened(data)
-    if not _is_turned(opened):
+    if _orientation(opened) not in _TURNS:
         return data
     file = BytesIO()
     kind = "JPEG" if opened.format == "MPO" else opened.format
@@ -122,13 +136,16 @@ def upright(data: bytes) -> bytes:
     return file.getvalue()
 
 
-def _is_turned(picture: "Image.Image") -> bool:
+def _orientation(picture: "Image.Image") -> int:
+    """What EXIF data say of it; 1, upright, where they say nothing that can be read."""
     from PIL import ExifTags
 
     try:
-        return picture.getexif().get(ExifTags.Base.Orientation, 1) in range(2, 9)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return int(picture.getexif().get(ExifTags.Base.Orientation, 1))
     except Exception:  # noqa: BLE001 — what a camera wrote there may be anything; viewers go on
-        return False
+        return 1
 
 
 def in_colour(data: bytes) -> "Image.Image":

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from difflib import get_close_matches
 from typing import TypeVar
 
-from tpvqa.errors import PluginError, TpvqaError
+from tpvqa.errors import PluginBrokeError, TpvqaError
 
 T = TypeVar("T")
 
@@ -100,7 +100,7 @@ def called_at(where: str, call: Callable[[], T], *, then: str = "Mend it") -> T:
     Raises:
         TpvqaError: What it raised itself.
         KeyboardInterrupt: Ctrl-C.
-        PluginError: It raised something else; says where.
+        PluginBrokeError: It raised something else; says where.
     """
     try:
         return call()
@@ -110,7 +110,7 @@ def called_at(where: str, call: Callable[[], T], *, then: str = "Mend it") -> T:
         place = traceback.extract_tb(error.__traceback__)[-1]
         said = f": {error}" if str(error) else ""
         broke = f"{where} broke: {type(error).__name__}{said}"
-        raise PluginError(f"{broke} ({place.filename}:{place.lineno}). {then}") from error
+        raise PluginBrokeError(f"{broke} ({place.filename}:{place.lineno}). {then}") from error
 
 
 def short(value: object) -> str:

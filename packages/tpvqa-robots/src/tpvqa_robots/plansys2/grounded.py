@@ -11,8 +11,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Action
 from tpvqa.questions import FactQuestion
 from tpvqa.vlm import Answer
-from tpvqa.vlm.checking import ask_checked
-from tpvqa.vlm.sight import cannot_see, seen_by
+from tpvqa.vlm.sight import ask_seeing
 from tpvqa.worlds import Execution, Report
 
 LOOKS = 3
@@ -77,10 +76,7 @@ class Grounded:
     def _look(self, questions: Sequence[FactQuestion]) -> list[Answer]:
         world, vlm = self._trial.world, self._trial.vlm
         seen = called(world, "observe", Observation, None)
-        shown, why = seen_by(vlm, replace(seen, look=next(self._numbers)))
-        if why:
-            return cannot_see(questions, why)
-        return ask_checked(vlm, shown, questions)
+        return ask_seeing(vlm, replace(seen, look=next(self._numbers)), questions)
 
 
 def _named(answers: Sequence[Answer]) -> str:

@@ -12,8 +12,7 @@ from tpvqa.observation import Observation
 from tpvqa.pddl import Atom, Literal
 from tpvqa.questions import FactQuestion, QuestionBook
 from tpvqa.vlm.capabilities import may_be_asked_side_by_side
-from tpvqa.vlm.checking import ask_checked
-from tpvqa.vlm.sight import cannot_see, seen_by
+from tpvqa.vlm.sight import ask_seeing
 from tpvqa_robots.bridges.jobs import turn
 from tpvqa_robots.ros2.typed import stamped
 from tpvqa_robots.ros2_trial.running import Running
@@ -69,9 +68,7 @@ class Asking:
         vlm, question = trial.vlm, _question(fact, trial.book)
         busy = turn("ask", vlm).waited_for(PATIENCE, "the VLM")
         with nullcontext() if may_be_asked_side_by_side(vlm) else busy:
-            shown, why = seen_by(vlm, seen)
-            given = cannot_see([question], why) if why else ask_checked(vlm, shown, [question])
-        answer = given[0]
+            (answer,) = ask_seeing(vlm, seen, [question])
         response.answered, response.question = True, question.text
         response.reply, response.text = answer.reply.value, answer.text
         if answer.p_yes is not None:

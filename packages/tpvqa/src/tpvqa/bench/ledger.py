@@ -84,10 +84,10 @@ class Ledger:
                 yield EpisodeRow.model_validate_json(line)
             except ValidationError as error:
                 first = first_fault(error)
-                said = ": ".join((".".join(map(str, first["loc"])), first["msg"]))
+                said = ": ".join(filter(None, (".".join(map(str, first["loc"])), first["msg"])))
                 raise BenchError(
                     f"{self.folder / ROWS}:{number}: not a row of this version "
-                    f"({said.removeprefix(': ')}). Remove the folder, or name another"
+                    f"({said}). Remove the folder, or name another"
                 ) from None
 
     def missing(self, cell: Cell, episodes: int) -> list[int]:

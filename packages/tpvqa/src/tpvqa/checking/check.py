@@ -68,9 +68,10 @@ def _findings(
     folder = Path("") if task.problem_path is None else task.problem_path.parent
     into = str(questions or folder / QUESTIONS)
     given, wrong = Wordings(), list[QuestionsError]()
+    drafted = None
     try:
         if questions is not None:
-            given = read_wordings(questions, task, wrong=wrong)
+            given, drafted = read_wordings(questions, task, wrong=wrong), questions
     except QuestionsError as error:
         wrong.append(error)
     yield from (of_error("questions", error) for error in wrong)
@@ -87,7 +88,7 @@ def _findings(
     yield from of_effects(task)
     yield from wordings.in_vain(task, given, questions)
     yield from wordings.doubled(given, questions)
-    yield from wordings.still_marked(questions)
+    yield from wordings.still_marked(drafted)
     if questions is None:
         yield Finding(
             "no-questions",

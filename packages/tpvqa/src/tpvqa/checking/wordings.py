@@ -84,8 +84,12 @@ def doubled(given: Wordings, file: Path | None) -> Iterator[Finding]:
 
 
 def still_marked(file: Path | None) -> Iterator[Finding]:
-    """Lines that the draft marked for a person to look at, and that are as they were drafted."""
-    if file is None or not file.is_file():
+    """Lines that the draft marked for a person to look at, and that are as they were drafted.
+
+    Args:
+        file: The questions file, which has been read before: it is none that is too large.
+    """
+    if file is None:
         return
     for number, line in enumerate(file.read_text("utf-8", errors="replace").splitlines(), 1):
         if f"# {LOOK}:" in line:

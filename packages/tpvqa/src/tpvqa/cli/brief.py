@@ -37,7 +37,7 @@ def brief(reason: str, room: int) -> str:
     parts = reason.split("; ")
     end = next((at for at, part in enumerate(parts) if _ENDS.search(part)), None)
     if end is not None:
-        return _ending(parts[:end], parts[end], room)
+        return _ending(parts[:end], parts[end:], room)
     said, *rest = parts
     for part in rest:
         if len(f"{said}; {part}; {MORE}") > room:
@@ -46,14 +46,25 @@ def brief(reason: str, room: int) -> str:
     return _cut(said, room)
 
 
-def _ending(before: list[str], end: str, room: int) -> str:
-    """What a trial is ended for, behind what speaks for it: the first of that, and what fits."""
-    said = before[:1]
-    for part in before[1:]:
-        if len("; ".join([*said, part, MORE, end])) > room:
-            return "; ".join([*said, MORE, end])
-        said.append(part)
-    return "; ".join([*said, end])
+def _ending(before: list[str], ending: list[str], room: int) -> str:
+    """What a trial is ended for, behind what speaks for it: the first of that, and what fits; what
+    comes behind it follows where it fits, too."""
+    end, *behind = ending
+    said = _fitting(before[:1], before[1:], [end, *_more(behind)], room)
+    return "; ".join(_fitting([*said, end], behind, [], room))
+
+
+def _fitting(said: list[str], parts: list[str], after: list[str], room: int) -> list[str]:
+    """What is said already with as many more parts as leave room for what comes after."""
+    for at, part in enumerate(parts, 1):
+        if len("; ".join([*said, part, *_more(parts[at:]), *after])) > room:
+            return [*said, MORE]
+        said = [*said, part]
+    return said
+
+
+def _more(left: list[str]) -> list[str]:
+    return [MORE] if left else []
 
 
 def _cut(said: str, room: int) -> str:

@@ -33,7 +33,12 @@ _UNSAID = word_set("first second third half not")
 _PASSING = word_set("through over under across around behind past along beyond")
 """What stands before a thing, not before how something is done: by hand, on foot, with care."""
 _IN = word_set("in on at into onto")
-_BARE = word_set("foot hand board place line order half time hold bed power")
+_LETTING = word_set("go idle rest run cool dry soak settle stand wait drip drain fall loose")
+"""What a thing is let do, or be."""
+_BARE = word_set(
+    "foot hand board place line order half time hold bed power fire gear rest home reverse motion "
+    "use stock"
+)
 """What goes without an article behind one of these: on foot, in half."""
 _SEEKING = word_set("find search seek look detect")
 
@@ -92,7 +97,7 @@ class Actions:
             or bool(self._lost(rest, tail, nouns))
             or any(self._guessed(verb, tail, n, noun, roles) for n, noun in told.items())
             or _either_way(verb, rest, tail)
-            or (verb == "let" and not told)
+            or (verb == "let" and not told and bool(_LETTING & set(rest)))
         )
         if doer is None:
             return Spoken(f"{verb} {tail}".strip(), f"{perfect} {tail}".strip(), unsure)
@@ -114,7 +119,7 @@ class Actions:
 
     def _joint(self, verb: str, noun: Noun) -> str | None:
         """What joins a verb to a further thing, as far as verb or thing tells."""
-        if (self._things.nouns(noun.objects) | {noun.parameter}) & lexicon.TOOLS:
+        if (self._things.nouns(noun.objects) | {noun.parameter}) & (lexicon.TOOLS | lexicon.HANDS):
             return "with"
         taken = lexicon.TAKES.get(verb)
         return _JOINS.get(verb, taken if taken not in ("by", "as", "") else None)
@@ -151,7 +156,7 @@ class Actions:
         extra = [word for word in rest if not self._names(word, nouns)]
         if len(extra) > 1 and extra[0] in PREPOSITIONS and extra[1] not in PARTICLES:
             trailing, extra = " ".join(extra), []
-            trailing = "" if trailing.startswith("to ") else _with_article(trailing)
+            trailing = "" if trailing.startswith("to ") else self._with_article(trailing, schema)
         else:
             trailing = ""
         ends = {name: roles.ends[name] for name in nouns if name in roles.ends}
@@ -195,7 +200,7 @@ class Actions:
         elif verb in _DIRECT and tools and not direct and not patients:
             direct, tools, ends = tools[:1], tools[1:], {}
         first = [nouns[name].said for name in (direct or patients)[:1]]
-        yield from self._object(joined, first, nouns, patients, schema)
+        yield from self._object(verb, joined, first, nouns, patients, schema)
         for name in patients[1:] if not direct else patients:
             if name in roles.reversed:
                 yield f"with {nouns[name].said}"
@@ -209,6 +214,26 @@ class Actions:
         for name in tools:
             yield f"with {nouns[name].said}"
 
+    def _with_article(self, words: str, schema: ActionSchema) -> str:
+        """A preposition and a thing: through hatch, through the hatch; but on fire, at rest."""
+        preposition, _, thing = words.partition(" ")
+        if not thing or thing.split()[0] in ("the", "a", "an"):
+            return words
+        known = thing not in _BARE and self._a_thing(thing, schema)
+        passing = preposition in _PASSING
+        return f"{preposition} the {thing}" if passing or (preposition in _IN and known) else words
+
+    def _a_thing(self, thing: str, schema: ActionSchema) -> bool:
+        """Whether the task has such a thing, or the action's effects say how it is: gloves-on."""
+        task, last = self._things.task, thing.split()[-1]
+        called = (kind for obj in task.objects for kind in self._things.kinds(obj))
+        labels = (self._things.label(obj).name for obj in task.objects)
+        kinds = (" ".join(self._things.words(kind)) for kind in task.types)
+        if any(last == name.split()[-1] for name in (*called, *labels, *kinds)):
+            return True
+        effects = (self._things.words(each.literal.predicate) for each in schema.effects)
+        return any(words[0] == thing and len(words) > 1 for words in effects)
+
     def _names(self, word: str, nouns: Mapping[str, Noun]) -> bool:
         """Whether a word of the name says again what a parameter is: load_truck, move-robot."""
         return word in ("object", "obj") or any(
@@ -221,6 +246,7 @@ class Actions:
 
     def _object(
         self,
+        verb: str,
         joined: list[str],
         first: list[str],
         nouns: Mapping[str, Noun],
@@ -231,7 +257,7 @@ class Actions:
         particles = [word for word in joined if word in PARTICLES | _WAYS]
         named = [word for word in joined if word not in particles and word not in PREPOSITIONS]
         yield " ".join(particles)
-        if schema.name.startswith("let") and named:
+        if verb == "let" and named and _LETTING.issuperset(named):
             yield from (f"{named[0]} of", *first) if named == ["go"] and first else (*first, *named)
         elif not named or all(
             word in lexicon.ADJECTIVES | {"first", "second", "half"} for word in named
@@ -309,14 +335,6 @@ def _verb_first(words: list[str]) -> tuple[str, list[str]]:
         return "go", words
     verb = next((word for word in words if is_verb(word)), words[0])
     return verb, [word for word in words if word != verb]
-
-
-def _with_article(words: str) -> str:
-    """A preposition and a thing: through hatch, through the hatch."""
-    preposition, _, thing = words.partition(" ")
-    known = {"the", "a", "an"} if preposition in _PASSING else {"the", "a", "an"} | _BARE
-    named = preposition in _PASSING | _IN and thing and thing.split()[0] not in known
-    return f"{preposition} the {thing}" if named else words
 
 
 def _particles(verb: str) -> frozenset[str]:

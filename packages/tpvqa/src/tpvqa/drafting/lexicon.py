@@ -262,5 +262,6 @@ PLURAL_EXCEPTIONS = word_set(
     "glass gas bus lens cross class press compass chassis canvas atlas bass mass grass brass "
     "dress mattress address boss iris cactus focus virus status bias kiss moss process success "
     "princess progress stress bypass cutlass harness fortress wilderness campus tennis plus "
-    "series axis apparatus basis always this us his yes"
+    "series axis apparatus basis always this us his yes news physics mathematics athletics "
+    "gymnastics chaos christmas means species biceps triceps cosmos thermos alias measles mumps"
 )

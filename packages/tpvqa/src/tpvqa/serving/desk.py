@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from threading import Condition, Thread
 
-from tpvqa.errors import PluginError, TpvqaError
+from tpvqa.errors import PluginBrokeError, TpvqaError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pddl import Atom
 from tpvqa.questions.question import FactQuestion, Way
@@ -254,10 +254,10 @@ class Desk:
 
 
 def _failure(error: BaseException) -> Refusal:
-    broke = error.__cause__ if isinstance(error, PluginError) else None
-    if isinstance(error, TpvqaError) and broke is None:
+    foreign = isinstance(error, PluginBrokeError)
+    if isinstance(error, TpvqaError) and not foreign:
         return Refusal(500, str(error), code="vlm_failed")
-    broke = broke or error
+    broke = (error.__cause__ if foreign else None) or error
     traceback.print_exception(broke, file=sys.stderr)
     return Refusal(
         500,

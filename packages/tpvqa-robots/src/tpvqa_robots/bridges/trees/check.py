@@ -13,8 +13,7 @@ from tpvqa.pddl import Action, Literal, State
 from tpvqa.questions import FactQuestion, QuestionBook
 from tpvqa.vlm import VLM, Answer
 from tpvqa.vlm.capabilities import may_be_asked_side_by_side
-from tpvqa.vlm.checking import ask_checked
-from tpvqa.vlm.sight import cannot_see, seen_by
+from tpvqa.vlm.sight import ask_seeing
 from tpvqa.worlds import World
 from tpvqa_robots.bridges.jobs import Job, turn
 from tpvqa_robots.bridges.trees.library import PATIENCE, Behaviour, Status, reason
@@ -156,14 +155,8 @@ class Check(Behaviour):
                     return []
                 seen = called(self._world, "observe", Observation, self._view)
             # a trial numbers its looks from 0 on: what is asked is not about one of those
-            return self._ask(replace(seen, look=-next(self._answering.numbers)))
-
-    def _ask(self, seen: Observation) -> list[Answer]:
-        vlm, questions = self._vlm, self.questions
-        shown, why = seen_by(vlm, seen)
-        if why:
-            return cannot_see(questions, why)
-        return ask_checked(vlm, shown, questions)
+            shown = replace(seen, look=-next(self._answering.numbers))
+            return ask_seeing(self._vlm, shown, self.questions)
 
 
 def _about(literals: Sequence[Literal], book: QuestionBook, name: str) -> tuple[FactQuestion, ...]:
