@@ -362,7 +362,7 @@ def _news(grounds: Grounds, state: State) -> list[Literal]:
 
 def _since(grounds: Grounds, told: Sequence[Literal], since: str = ":") -> str:
     """For what something is decided: what is believed, or what may be the case all the same."""
-    likely = all(grounds.probability(each) >= 0.5 for each in told[:SAID])
+    likely = all(round(grounds.probability(each), 2) >= EVEN for each in told[:SAID])
     return f"{since if likely else ' in case'} {_listed(grounds, told)}"
 
 
