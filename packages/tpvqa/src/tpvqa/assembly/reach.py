@@ -5,13 +5,7 @@ from itertools import islice, product
 
 from tpvqa.belief.priors import Priors
 from tpvqa.pddl import Atom, Task
-from tpvqa.pddl.schema import (
-    ActionSchema,
-    ConditionSchema,
-    EffectSchema,
-    Junction,
-    LiteralSchema,
-)
+from tpvqa.pddl.schema import ActionSchema, EffectSchema, LiteralSchema, required
 from tpvqa.questions import QuestionBook
 from tpvqa.worlds.world_file import WorldRules
 
@@ -57,7 +51,7 @@ def _only_ended(task: Task) -> tuple[frozenset[Atom], frozenset[str]]:
 def _ended(task: Task, schema: ActionSchema, effect: EffectSchema) -> Iterator[Atom]:
     """The facts that an effect ends where what never changes allows its action."""
     kinds = {each.name: each.type for each in (*schema.parameters, *effect.parameters)}
-    needed = [*_needed(schema.precondition), *_needed(effect.condition)]
+    needed = [*required(schema.precondition), *required(effect.condition)]
     fixed = frozenset(task.predicates) - task.fluents - task.derived
     lasting = [each for each in needed if each.positive and each.predicate in fixed]
     for binding in _met(task, lasting, kinds, {}):
@@ -85,12 +79,3 @@ def _met(
             fits &= word not in kinds or task.is_a(name, kinds[word])
         if fits:
             yield from _met(task, needed[1:], kinds, more)
-
-
-def _needed(condition: ConditionSchema) -> Iterator[LiteralSchema]:
-    """The literals that a condition cannot do without."""
-    if isinstance(condition, LiteralSchema):
-        yield condition
-    elif isinstance(condition, Junction) and condition.conjunctive:
-        for part in condition.parts:
-            yield from _needed(part)

@@ -9,7 +9,14 @@ from tpvqa.checking.places import line_of_action, line_of_goal, line_of_predicat
 from tpvqa.pddl import Action, Atom, Conjunction, Literal, Task, literals
 from tpvqa.pddl.conditions import Condition
 from tpvqa.pddl.lasting import Phase
-from tpvqa.pddl.schema import ActionSchema, ConditionSchema, Junction, LiteralSchema, Quantified
+from tpvqa.pddl.schema import (
+    ActionSchema,
+    ConditionSchema,
+    Junction,
+    LiteralSchema,
+    Quantified,
+    required,
+)
 from tpvqa.planning import Plan, Planner, TimedOut, Unsolvable
 from tpvqa.planning.obstacles import obstacle
 from tpvqa.planning.protocol import TemporalPlanner
@@ -89,7 +96,7 @@ def _never(task: Task, schema: ActionSchema, undone: frozenset[str]) -> str:
         if not task.objects_by_type.get(parameter.type):
             return f"there is no object of the type {parameter.type} for {parameter.name}"
     possible = task.reachable_atoms | task.init
-    for literal in _needed(schema.precondition):
+    for literal in required(schema.precondition):
         if literal.predicate == "=" or not literal.positive or literal.predicate in undone:
             continue
         kinds = {p.name: p.type for p in schema.parameters}
@@ -117,17 +124,6 @@ def _idle(task: Task, schema: ActionSchema) -> str:
         return ""
     said = " and ".join(f"({' '.join((each.predicate, *each.arguments))})" for each in ended)
     return f"it ends {said}, which never holds"
-
-
-def _needed(condition: ConditionSchema) -> Iterator[LiteralSchema]:
-    """The literals that a condition cannot do without."""
-    if isinstance(condition, LiteralSchema):
-        yield condition
-    elif isinstance(condition, Junction) and condition.conjunctive:
-        for part in condition.parts:
-            yield from _needed(part)
-    elif isinstance(condition, Quantified):
-        return
 
 
 def _needs(condition: Condition) -> Iterator[Literal]:

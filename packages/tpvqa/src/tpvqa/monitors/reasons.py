@@ -258,7 +258,7 @@ def _end(grounds: Grounds, decision: Decision) -> str:
     if decision is Decision.DONE and grounds.risk is not None:
         return f"{why}{as_stated(probability, grounds.risk)}"
     if decision is Decision.DONE:
-        held = f", and goals believed so were reached in {HELD:.2f}" if probability < EVEN else ""
+        held = f", and {HELD:.2f} of goals believed so in benches did" if probability < EVEN else ""
         return f"{why}the goal holds with {goal}{held}{_never_seen(grounds)}"
     if not why and grounds.step.replans_left == 0:
         why = "no change of plan is left, and "

@@ -211,6 +211,15 @@ def join(parts: Iterator[Condition], *, conjunctive: bool) -> Condition:
     return flat[0] if len(flat) == 1 else kind(tuple(flat))
 
 
+def required(condition: ConditionSchema) -> Iterator[LiteralSchema]:
+    """The literals that a condition cannot do without."""
+    if isinstance(condition, LiteralSchema):
+        yield condition
+    elif isinstance(condition, Junction) and condition.conjunctive:
+        for part in condition.parts:
+            yield from required(part)
+
+
 def ground_action(
     schema: ActionSchema,
     arguments: tuple[str, ...],
