@@ -13,10 +13,14 @@ import time
 from collections.abc import Callable, Sequence
 from statistics import mean, quantiles
 
+import numpy as np
+
 from tpvqa.assembly import Trial
 from tpvqa.belief.belief import MOST, SMALLEST, Belief
 from tpvqa.belief.calibration import AnswerRates, Calibration, Curve, Group
 from tpvqa.belief.faults import FaultModel, JointState, Rates
+from tpvqa.belief.information import Floats
+from tpvqa.belief.weighed import Instead
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.monitors.belief import BeliefMonitor
@@ -107,11 +111,26 @@ class Watched(Belief):
             lambda: Belief.weigh_outcome(self, **rates),
         )
 
-    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
+    def open(self, atoms: tuple[Atom, ...], chance: float, instead: Instead | None = None) -> int:
         self._pass(
-            lambda belief: belief.open(atoms, chance), lambda: Belief.open(self, atoms, chance)
+            lambda belief: belief.open(
+                atoms, chance, instead and self._translated(belief, instead)
+            ),
+            lambda: Belief.open(self, atoms, chance, instead),
         )
         return 0
+
+    def _translated(self, belief: Belief, instead: Instead) -> Instead:
+        """The same by another belief's numbers, which tells nothing of the noise apart."""
+
+        def translated(one: int, other: int) -> Floats | None:
+            states = belief.model.joint_states
+            more = instead(self.model.number(states[one]), self.model.number(states[other]))
+            if more is None:
+                return None
+            return np.log([self.noise[self.told] @ np.exp(more)])
+
+        return translated
 
     def _pass(self, what: Callable[[Belief], object], own: Callable[[], object]) -> None:
         for each in self.others.values():

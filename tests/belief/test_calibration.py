@@ -70,8 +70,17 @@ def test_it_grows_with_p_yes_and_is_bounded(
 
 def test_it_grows_strictly_within_its_bounds() -> None:
     one = calibration(Curve(slope=0.7))
-    worths = [one.log_ratio(Answer(ON, Reply.YES, p / 100)) for p in range(1, 100)]
+    words = {p: Reply.YES if p > 50 else Reply.NO for p in range(1, 100)}
+    worths = [one.log_ratio(Answer(ON, word, p / 100)) for p, word in words.items()]
     assert all(a < b for a, b in pairwise(worths))
+
+
+@given(P)
+def test_where_nothing_was_learnt_a_word_counts_that_its_p_yes_contradicts(p: float) -> None:
+    one = Calibration.default("v")
+    assert one.log_ratio(Answer(ON, Reply.YES, p)) >= 0
+    assert one.log_ratio(Answer(ON, Reply.NO, p)) <= 0
+    assert one.log_ratio(Answer(ON, Reply.YES, 0.01)) == one.log_ratio(Answer(ON, Reply.YES))
 
 
 def test_without_p_yes_the_counts_decide() -> None:

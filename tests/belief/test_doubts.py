@@ -3,6 +3,10 @@
 from math import isclose
 from random import Random
 
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.doubts import Doubts, moved
@@ -12,6 +16,7 @@ from tpvqa.belief.places import further_places, things
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.starts import drawn_start, opened
 from tpvqa.belief.surprise import Surprise
+from tpvqa.belief.trust import Trust
 from tpvqa.pddl import Atom, load_task
 from tpvqa.questions.question import FactQuestion, Way
 from tpvqa.vlm import Answer, Reply
@@ -54,6 +59,7 @@ def test_a_doubt_is_weighed_by_answers_and_given_once() -> None:
     doubts = Doubts(TASK, 0.1)
     doubts.learn((COUNTER,), 0.8, 0.2)
     doubts.learn((TABLE,), 0.1, 0.9)  # says nothing of the counter
+    doubts.leave()
     expected = 0.1 * 0.2 / (0.1 * 0.2 + 0.9 * 0.8)
     assert isclose(doubts.taken((COUNTER,), held=True), expected)
     assert doubts.taken((COUNTER,), held=True) == 0
@@ -86,6 +92,32 @@ def test_what_fails_in_vain_may_need_what_does_not_hold() -> None:
     assert 0.1 < doubted() < 0.3
     assert doubted(Reply.YES) < doubted() / 2
     assert doubted(Reply.NO, Reply.NO) > doubted() / 2
+
+
+@given(
+    st.lists(st.tuples(st.booleans(), st.sampled_from([COUNTER, TABLE])), max_size=8),
+    st.sampled_from([None, 0]),
+)
+def test_it_is_the_same_whether_a_doubt_is_taken_in_before_answers_or_after(
+    answers: list[tuple[bool, Atom]], trusted: int | None
+) -> None:
+    """What was said of it in this scene is not forgotten (Bayes' rule knows no order)."""
+    likely = []
+    for early in (True, False):
+        belief = Belief(FaultModel(TASK), smallest=0.0)
+        calibration = Calibration.default().model_copy(update={"pairs_same_view": 10**9})
+        trust = None if trusted is None else Trust.after(trusted)
+        doubts = Doubts(TASK, 0.1)
+        evidence = Evidence(belief, calibration, trust, unexplained=0.0, doubts=doubts)
+        for look in range(len(answers) + 1):
+            if look == (0 if early else len(answers)):
+                evidence.rests_on(TAKE)
+            if look < len(answers):
+                yes, atom = answers[look]
+                asked = FactQuestion(f"Is it true that {atom}?", Way.PRECONDITION, atom)
+                evidence.take(asked, Answer(asked, Reply.YES if yes else Reply.NO), look, None)
+        likely.append((belief.probability(COUNTER), belief.probability(TABLE)))
+    assert likely[0] == pytest.approx(likely[1], rel=1e-6)
 
 
 def test_another_place_has_its_share_of_a_doubt() -> None:

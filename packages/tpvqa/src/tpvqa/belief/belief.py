@@ -17,6 +17,7 @@ from tpvqa.belief.noise import NEVER, JointNoise
 from tpvqa.belief.outcome_weights import Earlier, OutcomeWeights, Weights, aligned, carried
 from tpvqa.belief.packed import Facts
 from tpvqa.belief.told_apart import ToldApart
+from tpvqa.belief.weighed import Instead
 from tpvqa.pddl import Action, Atom, State
 
 SMALLEST = 1e-5
@@ -272,9 +273,7 @@ class Belief:
             if_false: Where no is right.
         """
         truth = self.model.truth(atoms)
-        return self._weighed(
-            {n: weight * (if_true if truth[n] else if_false) for n, weight in self.weights.items()}
-        )
+        return self.weigh(lambda number: if_true if truth[number] else if_false)
 
     def hear(self, likely: Floats, left_out: Floats | None = None) -> None:
         """Weigh by an answer.
@@ -310,17 +309,17 @@ class Belief:
 
         self.weigh(likelihood)
 
-    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
+    def open(self, atoms: tuple[Atom, ...], chance: float, instead: Instead | None = None) -> int:
         """Take in that a fact may have changed without the action model knowing.
 
         From every joint state with a share of at least a hundredth, the nearest consistent ones
-        in which the fact is the other way get `chance` of its probability.
+        in which the fact is the other way get `chance` of its probability, as far as what was seen
+        since is as probable in them.
 
         Returns:
             How many joint states that added.
         """
-        grown = dict(self.weights)
-        new, most = 0, 1
+        grown, before, most = dict(self.weights), self.weights.keys(), 1
         for number, weight in self.weights.items():
             if weight < 0.01:
                 continue
@@ -332,12 +331,15 @@ class Belief:
             most = max(most, len(others))
             for other in others:
                 there = self.model.become(number, other)
-                new += there not in grown
-                share = chance * weight / len(others)
-                self._noise.mix(there, grown.get(there, 0.0), number, share)
-                grown[there] = grown.get(there, 0.0) + share
+                row = self._noise.rows((number,))[0]
+                if instead and (more := instead(number, there)) is not None:
+                    row = row * np.exp(more)
+                share = chance * weight / len(others) * (likely := float(row.sum()))
+                if share > 0.0:
+                    self._noise.mix(there, grown.get(there, 0.0), row / likely, share)
+                    grown[there] = grown.get(there, 0.0) + share
         self._become(grown, self._smallest / most)
-        return new
+        return len(self.weights.keys() - before)
 
     def where_noise(self, part: NDArray[np.bool_]) -> dict[int, float]:
         """The probabilities of the joint states where the VLM's noise is one of some.

@@ -83,7 +83,10 @@ class Group(_Model):
     curve: Curve | None = None
 
     def log_ratio(self, reply: Reply, p_yes: float | None) -> float:
-        """What an answer of this kind is worth, see `Calibration.log_ratio`."""
+        """What an answer of this kind is worth, see `Calibration.log_ratio`.
+
+        Where nothing was learnt of a VLM whose P(yes) contradicts its word, the word counts.
+        """
         if reply is Reply.YES:
             yes = True
         elif reply is Reply.NO:
@@ -91,7 +94,7 @@ class Group(_Model):
         else:
             return 0.0
         curve, rates = self.curve, self.rates
-        if curve is not None and p_yes is not None:
+        if curve is not None and p_yes is not None and not self._unlearnt(p_yes, yes=yes):
             p = min(max(p_yes, EDGE), 1 - EDGE)
             sign = curve.sign if yes else -curve.sign
             ratio = curve.slope * math.log(p / (1 - p)) + curve.intercept + sign
@@ -100,6 +103,10 @@ class Group(_Model):
         else:
             ratio = _log_odds(1 - rates.yes_if_true, 1 - rates.yes_if_false)
         return min(max(ratio, -BOUND), BOUND)
+
+    def _unlearnt(self, p_yes: float, *, yes: bool) -> bool:
+        """Whether P(yes) contradicts the word, and nothing was learnt of what that means."""
+        return not self.rows and (p_yes < 0.5 if yes else p_yes > 0.5)
 
 
 NEAREST: Mapping[Way, tuple[Way, ...]] = {

@@ -25,6 +25,7 @@ class Doubts:
     def __init__(self, task: Task, elsewhere: float | None = None):
         chance = ELSEWHERE if elsewhere is None else elsewhere
         self._chances = dict.fromkeys(things(task), chance)
+        self._learnt: dict[Thing, float] = {}
         self._things: dict[Atom, list[Thing]] = {}
         for thing in self._chances:
             for atom in thing.places:
@@ -54,12 +55,18 @@ class Doubts:
         )
 
     def learn(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> None:
-        """Weigh the doubts by an answer about a fact, as Bayes' rule says."""
+        """Weigh the doubts by an answer about a fact, as Bayes' rule says, from the next scene on:
+        what was said in this one the belief weighs itself where it takes a doubt in."""
         for thing in (thing for atom in atoms for thing in self._things.get(atom, ())):
-            chance = self._chances.get(thing)
-            if chance is not None and thing.stated in atoms:
+            if thing in self._chances and thing.stated in atoms:
+                chance = self._learnt.get(thing, self._chances[thing])
                 there, gone = (1 - chance) * if_true, chance * if_false
-                self._chances[thing] = gone / (there + gone) if there + gone else chance
+                self._learnt[thing] = gone / (there + gone) if there + gone else chance
+
+    def leave(self) -> None:
+        """Note that another scene comes."""
+        self._chances |= {t: learnt for t, learnt in self._learnt.items() if t in self._chances}
+        self._learnt.clear()
 
 
 def moved(task: Task, state: State, elsewhere: float, surprise: Surprise, random: Random) -> State:

@@ -92,6 +92,8 @@ class Evidence(Expected):
 
     def weigh(self, belief: Weighed) -> None:
         """Weigh something else from now on; what was answered before stays known."""
+        if self._doubts:
+            self._doubts.leave()
         self._weighed = belief
         self._belief.suppose(self.worth.weights)
 
@@ -121,6 +123,8 @@ class Evidence(Expected):
         self._take_report(action, failed)
         self._readings.acted()
         self._hearing.moved(self._belief.led)
+        if self._doubts:
+            self._doubts.leave()
         self._tell_apart()
         self._opened.clear()
         self._silent.clear()
@@ -163,7 +167,7 @@ class Evidence(Expected):
         if atoms not in self._opened and self._unexplained:
             self._opened.add(atoms)
             elsewhere = self._doubts.taken(atoms, held=held) if self._doubts else 0.0
-            self._weighed.open(atoms, max(self._unexplained, elsewhere))
+            self._weighed.open(atoms, max(self._unexplained, elsewhere), self._instead)
 
     def rests_on(self, action: Action, sight: Sight | None = None, *, dead: float = 0.0) -> None:
         """Take in that what an action needs may not be so, before it is done.
@@ -183,7 +187,7 @@ class Evidence(Expected):
             if dead and each.atom.predicate in fluents and (sight is None or sight.sees(each.atom))
         ]
         chance = dead * SUSPECTED / (len(doubted) * SUSPECTED + DEAD + DEAD_WITH)
-        for each in doubted:
+        for each in doubted:  # whatever was said, so many tries in vain are to be explained
             said = self._hearing.said(each.atom, holds=each.positive)
             self._belief.open((each.atom,), chance * (ANSWERED if said else 1.0))
         if self._doubts is None:
@@ -192,7 +196,10 @@ class Evidence(Expected):
             if each.positive and self._belief.probability(each.atom) >= 0.5:
                 chance = self._doubts.gone(each.atom)
                 if chance:
-                    self._belief.open((each.atom,), chance)
+                    self._belief.open((each.atom,), chance, self._instead)
+
+    def _instead(self, one: int, other: int) -> Floats | None:
+        return self._hearing.instead(one, other, self._belief.model)
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action: once more is worth
@@ -320,21 +327,23 @@ class Evidence(Expected):
     ) -> None:
         self.worth.compare(said, rates)
         if self._weighed is self._belief:
-            numbers = tuple(self._belief.weights)
+            numbers, both = tuple(self._belief.weights), cases.by_truth(heard)
+            so = self.worth.take(said, both, rates)
             if others := self._words.besides(question):
                 shares = self.worth.shares[cases.columns]
-                came = Answered.of(said.yes, numbers, cases, taken, shares)
                 last, model = self._hearing.last, self._belief.model
                 known = [(e, self._hearing.now(last[e.text], view, model)) for e in others]
-                self._words.hear(question, came, known)
+                for those, what, came in ((numbers, cases, taken), ((), both, so)):
+                    told = Answered.of(said.yes, those, what, came, shares)
+                    self._words.hear(question, told, known)
             heard.told(numbers, taken.drawn)
             if self._trust is not None:
+                heard.say(so.likely, so.drawn)
                 self._belief.hear(taken.likely, self._left_out(said, cases, rates))
                 self._tell_apart()
             else:
-                alike = (cases.mass * taken.likely).sum(axis=1)
-                alike /= np.maximum(cases.mass.sum(axis=1), 1e-300)
-                self._belief.hear(alike[:, None])
+                heard.say(_alike(both, so) + np.zeros_like(both.mass), so.drawn)
+                self._belief.hear(_alike(cases, taken))
             self.worth.believe(self._belief.noise)
             return
         self._weighed.see(question.atoms, *taken.whole)
@@ -360,8 +369,15 @@ class Evidence(Expected):
             self.silence(question.text, PERSONS_VIEW)
         if reply in (Reply.YES, Reply.NO):
             right = PERSON if reply is Reply.YES else 1 - PERSON
-            self._weighed.open(question.atoms, self._unexplained)
+            self._weighed.open(question.atoms, self._unexplained, self._instead)
             self._weighed.see(question.atoms, right, 1 - right)
+
+
+def _alike(cases: Cases, taken: Taken) -> Floats:
+    """An answer's probability in each case (rows of one), whatever the noise."""
+    likely = (cases.mass * taken.likely).sum(axis=1)
+    found: Floats = likely / np.maximum(cases.mass.sum(axis=1), 1e-300)
+    return found[:, None]
 
 
 def _others(said: Pair) -> Pair:

@@ -18,6 +18,7 @@ from tpvqa.belief.mutexes import h2_mutexes
 from tpvqa.belief.origins import Origins
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.reached import Reached, reached
+from tpvqa.belief.weighed import Instead
 from tpvqa.errors import BeliefError, PlannerError
 from tpvqa.pddl import Atom, State, Task
 
@@ -93,7 +94,7 @@ class Prior:
             self._chances = _shares(self._chances * odds)
         return probable * if_true + (1 - probable) * if_false
 
-    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
+    def open(self, atoms: tuple[Atom, ...], chance: float, instead: Instead | None = None) -> int:
         """All that is possible is taken in already.
 
         Returns:

@@ -53,7 +53,10 @@ class Heard:
     """What was heard of one question, from one view.
 
     Attributes:
-        by_truth: Where yes is right and where no is, before anything was done: two rows.
+        by_truth: Where yes is right and where no is: two rows, of joint states of which no more is
+            known.
+        said: How probable the answers in this scene were so, as logarithms for everything that is
+            told apart of the noise; None where none came.
         numbers: Of the joint states of which more is known.
         rows: What is known in them.
         true: P(yes is right) by all that is told apart, before anything was done; None where it is
@@ -66,6 +69,7 @@ class Heard:
     rows: Drawn | None = None
     true: Floats | None = None
     believed: float = 0.5
+    said: Floats | None = None
 
     def drawn(
         self,
@@ -106,6 +110,29 @@ class Heard:
         else:
             self.by_truth = drawn
 
+    def begun(self, present: NDArray[np.bool_], drawn: Drawn) -> Drawn:
+        """What is known where yes is right and where no is, before an answer in this scene.
+
+        Args:
+            present: Which of the two some joint state has.
+            drawn: What is known in these, on the average.
+        """
+        if self.said is not None and self.by_truth is not None:
+            return self.by_truth
+        none = _never(drawn.yes.shape[1]) if self.by_truth is None else self.by_truth
+        taken = np.where(present, [0, 1], [2, 3])
+        return Drawn(*(np.concatenate(each)[taken] for each in zip(drawn, none, strict=True)))
+
+    def say(self, likely: Floats, drawn: Drawn) -> None:
+        """Take in an answer where yes is right and where no is.
+
+        Args:
+            likely: Its probability (two rows), for everything that is told apart of the noise.
+            drawn: What is known then.
+        """
+        said = np.log(np.maximum(likely, 1e-300))
+        self.by_truth, self.said = drawn, said if self.said is None else self.said + said
+
     def elsewhere(self, columns: Columns = EVERY) -> "Heard":
         """What that says of another view.
 
@@ -128,6 +155,7 @@ class Heard:
             led: Where joint states have led; None where that is not known.
             truth: In which joint states yes is right.
         """
+        self.said = None
         if led is None:
             self.numbers, self.rows = (), None
             return
@@ -140,6 +168,9 @@ class Heard:
         kept = np.where(turns[:, 0], 1 - known.kept, known.kept)
         once = np.stack([kept, led.same * known.answers, led.same * known.yeses])
         drawn = Drawn(led.carried(yes), led.carried(new), *led.averaged(once))
+        if self.by_truth is not None:
+            lasts = stays_of(led.mixed.shape[1], led.columns)
+            self.by_truth = self.by_truth.elsewhere(lasts)
         self.told(led.after, drawn)
 
     def tell_apart(self, taken: Places) -> None:
@@ -147,6 +178,7 @@ class Heard:
         self.by_truth, self.rows = (
             each and each.only(taken) for each in (self.by_truth, self.rows)
         )
+        self.said = None if self.said is None else self.said[:, taken]
 
     def renumbered(self, numbers: Mapping[int, int]) -> None:
         """Go on with other numbers of the joint states."""

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from tpvqa.belief.heard import Heard
+from tpvqa.belief.information import Floats
 from tpvqa.belief.last_answer import LastAnswer, Picture
 from tpvqa.belief.lasting import Columns
 from tpvqa.belief.led import Led, Places
@@ -107,6 +108,30 @@ class Hearing:
         """Whether the last answer to some question about a fact was that it holds, or does not."""
         reply = Reply.YES if holds else Reply.NO
         return any(atom in last.atoms and last.reply is reply for last in self.last.values())
+
+    def instead(self, one: int, other: int, truths: Truths) -> Floats | None:
+        """How many times as probable what was said in this scene is in another joint state.
+
+        Args:
+            one: The number of a joint state.
+            other: That of the other one.
+            truths: Says what holds in them.
+
+        Returns:
+            A logarithm for everything that is told apart of the noise; None where all that was
+            asked about is alike in both.
+        """
+        found: Floats | None = None
+        for last in self.last.values():
+            if last.acted != self.acted:
+                continue
+            said = [each.said for each in last.heard.values() if each.said is not None]
+            truth = truths.truth(last.atoms) if said else {}
+            for each in said:
+                if truth[one] != truth[other]:
+                    less = each[0] - each[1] if truth[other] else each[1] - each[0]
+                    found = less if found is None else found + less
+        return found
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action."""

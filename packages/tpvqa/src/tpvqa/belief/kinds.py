@@ -32,8 +32,8 @@ RECORDED = (0.34, 0.05, 0.05, 0.07, 0.06, 0.12, 0.11, 0.07, 0.07, 0.03, 0.03)
 ViPlan (a lasting share of about .8 and .98, of which .77 and .55 stay), shared out widely; the rest
 for one that answers anew at every look."""
 UNKNOWN = tuple(
-    0.9 if not kind.share else 0.1 * weight / (1 - RECORDED[0])
+    0.6 if not kind.share else 0.4 * weight / (1 - RECORDED[0])
     for kind, weight in zip(KINDS, RECORDED, strict=True)
 )
 """How probable each is taken to be of a VLM of which nothing is known. Less than the recordings
-say: else a few answers about one thing could never speak against what is believed of it."""
+say: else a few answers about one thing could hardly speak against what is believed of it."""

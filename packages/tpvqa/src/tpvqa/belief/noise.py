@@ -64,16 +64,16 @@ class JointNoise:
         """Go on with other numbers of the joint states, by their old ones."""
         self.take(tuple(numbers.values()), self.rows(tuple(numbers)))
 
-    def mix(self, into: int, weight: float, other: int, share: float) -> None:
-        """Take some of what is believed in one joint state into another.
+    def mix(self, into: int, weight: float, more: Floats, share: float) -> None:
+        """Take into a joint state what is believed in another.
 
         Args:
             into: The number of the one that takes it.
             weight: What that one weighs.
-            other: The number of the one it comes from.
+            more: What is believed in the other.
             share: What comes, in weight.
         """
-        own, more = self.rows((into, other))
+        own = self.rows((into,))[0]
         row = ((weight * own + share * more) / (weight + share))[None]
         kept = tuple(number for number in self._numbers if number != into)
         self.take((*kept, into), np.concatenate([self.rows(kept), row]))

@@ -127,7 +127,7 @@ class OtherWords:
         for other, heard in others:
             known = heard.drawn(answer.numbers, answer.truth, answer.first.shape[1])
             new = question not in self._asked[question.family]
-            if self._learns and new and other is nearest:
+            if self._learns and new and other is nearest and answer.numbers:
                 self._learn(answer, known)
             heard.told(answer.numbers, self._told(answer, self.between(question, other), known))
 

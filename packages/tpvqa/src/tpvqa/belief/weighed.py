@@ -1,9 +1,14 @@
 """What answers weigh."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Protocol
 
+from tpvqa.belief.information import Floats
 from tpvqa.pddl import Atom
+
+Instead = Callable[[int, int], Floats | None]
+"""How many times as probable what was seen before is in the second of two joint states, by their
+numbers: a logarithm for everything that is told apart of the noise; None for as probable."""
 
 
 class Weighed(Protocol):
@@ -15,5 +20,5 @@ class Weighed(Protocol):
     def see(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> float:
         """Weigh by an answer about a fact (or any of several alike)."""
 
-    def open(self, atoms: tuple[Atom, ...], chance: float) -> int:
+    def open(self, atoms: tuple[Atom, ...], chance: float, instead: Instead | None = None) -> int:
         """Take in that a fact may have changed without the action model knowing."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.belief.bounds import EDGE
-from tpvqa.belief.heard import Drawn, after_answer, own
+from tpvqa.belief.heard import Drawn, Heard, after_answer, own
 from tpvqa.belief.information import Floats, Mixture, Reliability
 from tpvqa.belief.kinds import KINDS, RECORDED
 from tpvqa.belief.lasting import (
@@ -54,6 +54,19 @@ class Cases:
     def elsewhere(self, stays: Floats) -> "Cases":
         """What may be the case when it is asked in another scene; see `Drawn.elsewhere`."""
         return replace(self, drawn=self.drawn.elsewhere(stays[self.columns]))
+
+    def by_truth(self, heard: Heard) -> "Cases":
+        """The two cases that yes is right and that no is, each taken to be so, by what was said in
+        this scene.
+
+        Args:
+            heard: What was heard of the question.
+        """
+        every = np.arange(self.mass.shape[1])
+        both = self.standing_for(every, every)
+        present = np.array([self.truth.any(), not self.truth.all()])
+        mass = np.stack([self.mass.sum(axis=0)] * 2)
+        return Cases(mass, both.truth, heard.begun(present, both.drawn), self.columns)
 
     def standing_for(self, places: Places, columns: Columns) -> "Cases":
         """The two cases that yes is right and that no is, for what is left out of these.

@@ -30,6 +30,7 @@ from tpvqa.monitors.errands import Errand, Errands
 from tpvqa.monitors.feeling import Feeling
 from tpvqa.monitors.first_look import first_look, first_verdict
 from tpvqa.monitors.inspection import REPORTED, Inspection
+from tpvqa.monitors.lost import lost
 from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Request
@@ -354,8 +355,9 @@ class BeliefMonitor(Learning, PlainArguments):
         return found
 
     def _about_needs(self, book: QuestionBook) -> list[FactQuestion]:
-        """Questions about what the plans need, or tells of it: no other changes a decision."""
+        """Questions about what the plans need, or tells of it, or of where there is none."""
         atoms = self._ways.atoms | self._telltales.of(self.belief, self._ways.atoms)
+        atoms |= lost(self.belief, self._chooser.ahead)
         if self._asks_all:
             atoms |= {a for n in self.belief.weights for a in self.belief.model.state(n)}
         return self._now.about(atoms, book)
