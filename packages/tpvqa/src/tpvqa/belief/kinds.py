@@ -32,7 +32,7 @@ RECORDED = (0.34, 0.05, 0.05, 0.07, 0.06, 0.12, 0.11, 0.07, 0.07, 0.03, 0.03)
 ViPlan (a lasting share of about .8 and .98, of which .77 and .55 stay), shared out widely; the rest
 for one that answers anew at every look."""
 UNKNOWN = tuple(
-    0.6 if not kind.share else 0.4 * weight / (1 - RECORDED[0])
+    0.8 if not kind.share else 0.2 * weight / (1 - RECORDED[0])
     for kind, weight in zip(KINDS, RECORDED, strict=True)
 )
 """How probable each is taken to be of a VLM of which nothing is known. Less than the recordings
