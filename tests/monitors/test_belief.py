@@ -143,6 +143,13 @@ def test_dear_questions_are_not_asked_and_cheap_ones_are(planner: Planner) -> No
     assert sum(e.questions for e in cheap) > sum(e.questions for e in usual) > 0
 
 
+@pytest.mark.parametrize("free", ["question=0", "question=0:look=0"])
+def test_questions_may_cost_nothing(planner: Planner, free: str) -> None:
+    ended, _, _ = run(planner, f"belief:{free}")
+    assert ended.completed
+    assert ended.questions > 0
+
+
 @pytest.mark.parametrize(
     ("budget", "counted"),
     [
