@@ -77,7 +77,7 @@ def test_labels_stay_where_an_episode_is_gone_on_with(folders: list[Path]) -> No
     ("change", "says"),
     [
         ({"log": "0" * 12}, "labels of another episode"),
-        ({"schema": 2}, r"labels\.jsonl:1: no label of this version \(schema"),
+        ({"schema": 3}, r"labels\.jsonl:1: no label of this version \(schema"),
         ({"label": "maybe"}, r"labels\.jsonl:1: no label of this version \(label"),
         ({"stretch": -1}, "stretch"),
         ({"stretch": 91}, r"labels\.jsonl:1: a label of stretch 91, and the episode.s last is \d"),

@@ -18,7 +18,7 @@ from tpvqa.labelling.recorded import Asking, RecordedEpisode
 from tpvqa.told import ToldModel, check_json, first_fault
 
 LABELS = "labels.jsonl"
-SCHEMA: Literal[1] = 1
+SCHEMA: Literal[2] = 2
 Said = Literal["yes", "no", "cannot see"]
 
 
@@ -26,9 +26,9 @@ class Label(ToldModel):
     """One line of the file: what a person says is the right answer.
 
     Attributes:
-        schema_number: Of the file's format.
+        schema_number: Of the file's format; for 1 no time passed between two actions.
         log: Tells the log that it is of from others (`RecordedEpisode.log`).
-        stretch: Actions that had begun when it was asked.
+        stretch: When it was asked (`Asking.stretch`).
         text: The question.
         label: The right answer; "cannot see" where the pictures do not tell.
         at: When it was given, in UTC.
@@ -36,7 +36,7 @@ class Label(ToldModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
-    schema_number: Literal[1] = Field(
+    schema_number: Literal[1, 2] = Field(
         default=SCHEMA, validation_alias="schema", serialization_alias="schema"
     )
     log: str
@@ -72,6 +72,11 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
             raise CalibrationError(
                 f"{path}:{number}: labels of another episode. Put them beside the log that they "
                 f"are of, or remove them and label {episode.folder} anew"
+            )
+        if label.schema_number == 1 and episode.timed:
+            raise CalibrationError(
+                f"{path}:{number}: a label of a version that did not count the time that passes "
+                f"while actions last. Remove {path}, and label {episode.folder} anew"
             )
         if label.stretch > len(episode.actions):
             raise CalibrationError(

@@ -10,7 +10,7 @@ from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import LOG, episode_folder, whole_lines
 from tpvqa.errors import CalibrationError
 from tpvqa.events import Event, Exchange, Resumed, Started, TrialState
-from tpvqa.events.events import Acted, Acting, Answered, Observed, QuestionRecord
+from tpvqa.events.events import Acted, Acting, Answered, Observed, QuestionRecord, Waited
 from tpvqa.files import opened_plain
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
@@ -41,11 +41,13 @@ class Given:
 
 @dataclass(frozen=True, slots=True)
 class Asking:
-    """All that was asked in the same words between two actions: one truth, so one label does.
+    """All that was asked in the same words while nothing was done and no time passed: one truth, so
+    one label does.
 
     Attributes:
         episode: The episode's folder.
-        stretch: Actions that had begun by then (an interruption counts as one).
+        stretch: Actions that had begun by then (an interruption counts as one, and so does time
+            that passed while actions lasted).
         text: The question.
         subject: The predicate asked about, or the action where a whole action is.
         atoms: The facts of which any one makes yes right; none where a whole action is asked about.
@@ -89,7 +91,9 @@ class RecordedEpisode:
         log: Tells its log from others.
         askings: What was asked, in the order of asking.
         actions: What was done, and what the skill reported (None where it did not come to that);
-            None in the place of an interruption. One lies between each stretch and the next.
+            None in the place of an interruption, and of time that passed. One lies between each
+            stretch and the next.
+        timed: Whether time passed while actions lasted.
     """
 
     folder: Path
@@ -97,6 +101,7 @@ class RecordedEpisode:
     log: str
     askings: tuple[Asking, ...]
     actions: tuple[tuple[Acting, Acted | None] | None, ...]
+    timed: bool = False
 
 
 def read_recorded(folder: Path | str) -> RecordedEpisode:
@@ -118,6 +123,7 @@ def read_recorded(folder: Path | str) -> RecordedEpisode:
         _fingerprint(folder / LOG),
         tuple(gathering.askings()),
         tuple(gathering.done),
+        gathering.timed,
     )
 
 
@@ -154,6 +160,11 @@ def said_in_trial(asking: Asking) -> Literal["yes", "no"] | None:
         if answer.person and answer.reply in (Reply.YES, Reply.NO):
             return "yes" if answer.reply is Reply.YES else "no"
     return None
+
+
+def time_passes(event: Event, before: TrialState) -> bool:
+    """Whether time passed between two actions, in which what is true may have changed."""
+    return isinstance(event, Waited) and before.clock is not None and event.clock > before.clock
 
 
 def subject_of(question: QuestionRecord) -> str:
@@ -195,8 +206,12 @@ class _Gathering:
         self._asked: dict[tuple[int, str], _Asked] = {}
         self._said = ""
         self.done: list[tuple[Acting, Acted | None] | None] = []
+        self.timed = False
 
     def take(self, event: Event) -> None:
+        if time_passes(event, self._state):
+            self.done.append(None)
+            self.timed = True
         self._state = self._state.after(event)
         match event:
             case Observed():
