@@ -123,7 +123,7 @@ def read_recorded(folder: Path | str) -> RecordedEpisode:
         _fingerprint(folder / LOG),
         tuple(gathering.askings()),
         tuple(gathering.done),
-        gathering.timed,
+        gathering.stretches.timed,
     )
 
 
@@ -162,11 +162,6 @@ def said_in_trial(asking: Asking) -> Literal["yes", "no"] | None:
     return None
 
 
-def time_passes(event: Event, before: TrialState) -> bool:
-    """Whether time passed between two actions, in which what is true may have changed."""
-    return isinstance(event, Waited) and before.clock is not None and event.clock > before.clock
-
-
 def subject_of(question: QuestionRecord) -> str:
     """The predicate or the action that a question is about."""
     text = question.atom if question.way in OF_FACTS else question.action
@@ -188,6 +183,32 @@ def _fingerprint(path: Path) -> str:
         return sha256(next(whole_lines(descriptor))).hexdigest()[:12]
 
 
+class Stretches:
+    """Counts what lies between two moments at which the same need not be true.
+
+    Attributes:
+        number: Of the stretch now, from 0.
+        timed: Whether time passed while actions lasted.
+    """
+
+    def __init__(self) -> None:
+        self.number, self.timed = 0, False
+        self._clock: float | None = None
+
+    def take(self, event: Event) -> bool:
+        """Take an event; whether a stretch begins with it."""
+        match event:
+            case Acting() | Resumed():
+                begins = True
+            case Waited():
+                begins = self._clock is not None and event.clock > self._clock
+                self.timed, self._clock = self.timed or begins, event.clock
+            case _:
+                begins = False
+        self.number += begins
+        return begins
+
+
 @dataclass
 class _Asked:
     stretch: int
@@ -205,26 +226,23 @@ class _Gathering:
         self._looks: dict[int, Observed] = {}
         self._asked: dict[tuple[int, str], _Asked] = {}
         self._said = ""
+        self.stretches = Stretches()
         self.done: list[tuple[Acting, Acted | None] | None] = []
-        self.timed = False
 
     def take(self, event: Event) -> None:
-        if time_passes(event, self._state):
-            self.done.append(None)
-            self.timed = True
         self._state = self._state.after(event)
+        if self.stretches.take(event):
+            self.done.append((event, None) if isinstance(event, Acting) else None)
         match event:
             case Observed():
                 self._looks[event.look] = event
             case Acting():
-                self.done.append((event, None))
                 self._said = event.action.said
             case Acted():
                 last = self.done[-1] if self.done else None
                 if last is not None:
                     self.done[-1] = (last[0], event)
             case Resumed():
-                self.done.append(None)
                 self._said = "an interruption"
             case Answered():
                 for exchange in self._state.latest:
@@ -232,9 +250,9 @@ class _Gathering:
 
     def _answer(self, exchange: Exchange) -> None:
         question, answer, look, person = exchange
-        key = (len(self.done), question.text)
+        key = (self.stretches.number, question.text)
         if key not in self._asked:
-            self._asked[key] = _Asked(len(self.done), self._said, exchange)
+            self._asked[key] = _Asked(self.stretches.number, self._said, exchange)
         asked, seen = self._asked[key], self._looks.get(look)
         asked.answers.append(
             Given(
