@@ -3,7 +3,7 @@
 import fcntl
 import os
 from codecs import BOM_UTF8
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,6 +16,7 @@ from tpvqa.errors import CalibrationError, WriteError
 from tpvqa.files import open_plain, opened_plain, write_all
 from tpvqa.labelling.recorded import Asking, RecordedEpisode
 from tpvqa.told import ToldModel, check_json, first_fault
+from tpvqa.told.strict_json import LONGEST
 
 LABELS = "labels.jsonl"
 SCHEMA: Literal[2] = 2
@@ -49,7 +50,7 @@ class Label(ToldModel):
 def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
     """The labels beside an episode's log: of several for the same question the last one.
 
-    A line that was torn by a kill is left out.
+    A line that was torn by a kill is left out, and so are blank ones.
 
     Raises:
         CalibrationError: The file is damaged, of another version, or of another episode, or a
@@ -59,6 +60,7 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
     try:
         with opened_plain(path) as descriptor:
             lines = list(whole_lines(descriptor))
+            lines.append(_last(descriptor, _size(lines)))
     except FileNotFoundError:
         return {}
     except OSError as error:
@@ -67,6 +69,8 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
     for number, line in enumerate(lines, 1):
         if number == 1:
             line = line.removeprefix(BOM_UTF8)  # as editors put it there
+        if not line.strip():
+            continue
         label = _label(path, number, line)
         if label.log != episode.log:
             raise CalibrationError(
@@ -86,6 +90,21 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
             )
         found[label.stretch, label.text] = label.label
     return found
+
+
+def _size(lines: Iterable[bytes]) -> int:
+    """How many bytes whole lines take up."""
+    return sum(len(line) + 1 for line in lines)
+
+
+def _last(descriptor: int, whole: int) -> bytes:
+    """What stands behind the whole lines, where it is JSON: an editor put no end to it."""
+    last = os.pread(descriptor, LONGEST, whole)
+    try:
+        check_json(last if whole else last.removeprefix(BOM_UTF8))
+    except ValueError:
+        return b""
+    return last
 
 
 def _label(path: Path, number: int, line: bytes) -> Label:
@@ -155,8 +174,11 @@ class Labels:
         try:
             self._file = open_plain(self._path, os.O_RDWR | os.O_APPEND | os.O_CREAT)
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            whole = sum(len(line) + 1 for line in whole_lines(self._file))
-            os.ftruncate(self._file, whole)  # what a kill tore
+            whole = _size(whole_lines(self._file))
+            if _last(self._file, whole):
+                write_all(self._file, b"\n")
+            else:
+                os.ftruncate(self._file, whole)  # what a kill tore
         except BlockingIOError:
             self.close()
             raise CalibrationError(
