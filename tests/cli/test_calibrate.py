@@ -8,10 +8,12 @@ import pytest
 from PIL import Image
 
 from tests.cli.conftest import Run
-from tpvqa.belief import Calibration
+from tpvqa.belief import Calibration, Group
+from tpvqa.belief.chances import Chances
 from tpvqa.belief.experience import Experience
 from tpvqa.episodes import read_episode
 from tpvqa.events.events import Acted
+from tpvqa.questions import Way
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.pictures import MANIFEST
 from tpvqa_household.images.manifest import load_pictures
@@ -228,6 +230,20 @@ def test_where_nothing_is_learnt_no_experience_is_written(tpvqa: Run) -> None:
     assert code == 2
     assert "no yes or no" in err
     assert not Path("e.json").exists()
+
+
+def test_a_calibration_that_is_none_is_called_what_it_is(tpvqa: Run) -> None:
+    words = ("run", "build_tower", "--vlm", "oracle", "--world", "symbolic", "--calibration")
+    Experience.of(Chances(), None, 1).save(Path("e.json"))
+    code, _, err = tpvqa(*words, "e.json")
+    assert code == 2
+    assert "e.json: it is an experience, which --experience takes, and no calibration" in err
+    group = Group(way=Way.EFFECT, predicate="on", rates=Calibration.default().whole.rates)
+    doubled = Calibration.default("oracle").model_copy(update={"groups": (group, group)})
+    doubled.save(Path("c.json"))
+    code, _, err = tpvqa(*words, "c.json")
+    assert code == 2
+    assert "c.json: it tells of on of effect twice" in err
 
 
 def test_a_set_without_pictures_says_so(tpvqa: Run, tmp_path: Path) -> None:
