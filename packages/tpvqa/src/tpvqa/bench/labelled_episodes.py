@@ -15,7 +15,7 @@ from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
-from tpvqa.errors import CalibrationError, pasted
+from tpvqa.errors import CalibrationError, PDDLError, pasted
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.events import Acted, Waited
 from tpvqa.labelling import LABELS, RecordedEpisode, check_apart, read_labels, read_recorded
@@ -161,8 +161,23 @@ def label_episodes(
         told = Labelled(vlm or "", rows, heard, by_hand=by_hand, unused=unused)
     else:
         inferred = inferred_rows(untold, vlm or "")
+        if not inferred:
+            _check_readable(untold)
         told = Labelled(vlm or "", inferred, heard, inferred=len(inferred) // 2)
     return replace(told, idle=tuple(idle), stray=tuple(stray))
+
+
+def _check_readable(episodes: Sequence[RecordedEpisode]) -> None:
+    """See that the domains which logs hold can be read; from others nothing is inferred."""
+    for each in episodes:
+        try:
+            task_from_text(each.started.domain, each.started.problem)
+        except PDDLError as error:
+            raise CalibrationError(
+                f"{each.folder}: the log holds a domain and a problem that cannot be read "
+                f"({error}), so that nothing is inferred from it. Label it "
+                f"(`tpvqa label {pasted(each.folder)}`), or leave it out"
+            ) from error
 
 
 def _of_no_question(file: Path, labels: Sequence[tuple[int, str]]) -> list[str]:
