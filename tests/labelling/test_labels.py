@@ -210,6 +210,17 @@ def test_a_copy_of_an_episode_does_not_count_twice(folders: list[Path], tmp_path
             label_episodes([folders[0], other])
 
 
+def test_two_that_go_on_from_one_episode_do_not_count_twice(folders: list[Path]) -> None:
+    lines = (folders[0] / LOG).read_bytes().splitlines(keepends=True)
+    half = len(lines) // 2
+    event = json.loads(lines[half])
+    event["time"] += 0.0001
+    other = [*lines[:half], json.dumps(event).encode() + b"\n", *lines[half + 1 :]]
+    (folders[1] / LOG).write_bytes(b"".join(other))
+    with pytest.raises(CalibrationError, match="both go on from one episode"):
+        label_episodes(folders[:2])
+
+
 def test_episodes_that_only_begin_alike_both_count(folders: list[Path]) -> None:
     """As of one command that was run often: its start took equally long twice."""
     first, second = ((each / LOG).read_bytes().splitlines(keepends=True) for each in folders[:2])

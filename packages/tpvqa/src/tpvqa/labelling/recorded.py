@@ -1,5 +1,6 @@
 """What was asked in a recorded episode, put together by what one label answers."""
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from hashlib import sha256
@@ -15,6 +16,7 @@ from tpvqa.files import opened_plain
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 
+_ANSWERED = re.compile(rb'"kind": ?"answered"')
 OF_FACTS = (Way.PRECONDITION, Way.EFFECT, Way.ALTERNATIVE)
 
 
@@ -137,20 +139,24 @@ def check_apart(episodes: Iterable[RecordedEpisode]) -> None:
     for episode in episodes:
         alike = known.setdefault(episode.log, [])
         for first in alike:
-            if _goes_on(first / LOG, episode.folder / LOG):
+            if _share_answers(first / LOG, episode.folder / LOG):
                 raise CalibrationError(
-                    f"{episode.folder} is a copy of {first}: its answers would count twice. Give "
-                    "one of them"
+                    f"{episode.folder} is a copy of {first}, or both go on from one episode: what "
+                    "was answered in both would count twice. Give one of them"
                 )
         alike.append(episode.folder)
 
 
-def _goes_on(one: Path, other: Path) -> bool:
-    """Whether one of two logs is the other, or goes on with it. That they begin alike says little:
-    the same command does, run often enough."""
+def _share_answers(one: Path, other: Path) -> bool:
+    """Whether two logs are alike until something is answered, or one of them ends. That they begin
+    alike says little: the same command does, run often enough; but then times soon differ."""
     with opened_plain(one) as first, opened_plain(other) as second:
-        both = zip(whole_lines(first), whole_lines(second), strict=False)
-        return all(line == same for line, same in both)
+        for line, same in zip(whole_lines(first), whole_lines(second), strict=False):
+            if line != same:
+                return False
+            if _ANSWERED.search(line):
+                return True
+    return True
 
 
 def said_in_trial(asking: Asking) -> Literal["yes", "no"] | None:
