@@ -102,6 +102,26 @@ def test_labels_of_no_question_are_told_beside_those_that_count(tmp_path: Path) 
     assert told in found.fit().notices[-1]
 
 
+def test_a_label_goes_before_the_truth_of_its_own_question_alone(tmp_path: Path) -> None:
+    live = recorded(CONFIG, tmp_path / "e")
+    known = label_episodes([tmp_path / "e"])
+    episode = read_recorded(tmp_path / "e")
+    told, unseen = episode.askings[0], episode.askings[3]
+    right = {(row.look, row.text): row.truth for row in live}
+    labels = Labels(episode)
+    labels.append(told, "no" if right[told.of_vlm[0].look, told.text] else "yes")
+    labels.append(unseen, "cannot see")
+    labels.close()
+    found = label_episodes([tmp_path / "e"])
+    assert found.by_hand == 1
+    assert found.own == known.own
+    assert found.own.acts
+    changed = [row for row in found.rows if row.truth != right[row.look, row.text]]
+    assert {row.text for row in changed} == {told.text}
+    assert len(changed) == len(told.of_vlm)
+    assert len(found.rows) == len(live) - len(unseen.of_vlm)
+
+
 def test_two_vlms_do_not_mix(tmp_path: Path) -> None:
     recorded(CONFIG, tmp_path / "a")
     recorded(CONFIG.but(vlm="oracle:0.9"), tmp_path / "b")

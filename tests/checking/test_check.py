@@ -127,6 +127,17 @@ def test_a_file_of_priors_is_checked_too(
     assert says in found.says
 
 
+def test_a_fact_that_is_stated_beside_its_alternatives_is_told(files: Files) -> None:
+    choice = "(oneof (lies lid spare_tray) (lies lid out_tray))"
+    files.change("problem.pddl", "(lies lid in_tray) ", f"\n{choice} ")
+    assert "stated-and-open" not in {each.kind for each in files.found()}
+    files.change("problem.pddl", "(free)", "(free) (lies lid in_tray)")
+    (found,) = (each for each in files.found() if each.kind == "stated-and-open")
+    assert found.severity is Severity.WARNING
+    assert found.line == files.line("problem.pddl", "oneof")
+    assert found.says.startswith("(lies lid in_tray) is stated beside (oneof (lies lid out_tray) ")
+
+
 def test_an_empty_file_of_questions_is_told(files: Files) -> None:
     files.texts["questions.yaml"] = "# to be written\n"
     assert "empty-questions" in {each.kind for each in files.found()}

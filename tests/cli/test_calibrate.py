@@ -8,10 +8,12 @@ import pytest
 from PIL import Image
 
 from tests.cli.conftest import Run
-from tpvqa.belief import Calibration
+from tpvqa.belief import Calibration, Group
+from tpvqa.belief.chances import Chances
 from tpvqa.belief.experience import Experience
 from tpvqa.episodes import read_episode
 from tpvqa.events.events import Acted
+from tpvqa.questions import Way
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.pictures import MANIFEST
 from tpvqa_household.images.manifest import load_pictures
@@ -191,6 +193,57 @@ def test_a_file_that_is_there_is_written_over_by_force_alone(tpvqa: Run) -> None
     assert "--force" in err
     assert Path("c.json").read_text() == "work"
     assert tpvqa(*words, "--force")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "options"),
+    [
+        (("--out", "c.png"), ("--out", "--curves")),
+        (("--out", "c.json", "--curves", "./c.json"), ("--out", "--curves")),
+        (("--out", "c.json", "--experience", "c.json"), ("--out", "--experience")),
+        (("--out", "c.json", "--experience", "c.png"), ("--curves", "--experience")),
+    ],
+)
+def test_one_file_is_not_written_twice(
+    tpvqa: Run, words: tuple[str, ...], options: tuple[str, str]
+) -> None:
+    code, _, err = tpvqa("calibrate", "nowhere", *words, "--force")
+    assert code == 2
+    assert f"{options[0]} and {options[1]} are the same file" in err
+
+
+@pytest.mark.parametrize("there", ["c.png", "curves.svg", "e.json"])
+def test_no_other_file_that_is_there_is_written_over(tpvqa: Run, there: str) -> None:
+    Path(there).write_text("work")
+    curves = () if there == "c.png" else ("--curves", "curves.svg")
+    words = ("calibrate", "nowhere", "--out", "c.json", *curves, "--experience", "e.json")
+    code, _, err = tpvqa(*words)
+    assert code == 2
+    assert f"{there} is there" in err
+    assert Path(there).read_text() == "work"
+
+
+def test_where_nothing_is_learnt_no_experience_is_written(tpvqa: Run) -> None:
+    words = ("--monitor", "none", "--vlm", "oracle", "--world", "symbolic", "--out", "e")
+    assert tpvqa("run", "build_tower", *words)[0] in (0, 1)
+    code, _, err = tpvqa("calibrate", "e", "--experience", "e.json")
+    assert code == 2
+    assert "no yes or no" in err
+    assert not Path("e.json").exists()
+
+
+def test_a_calibration_that_is_none_is_called_what_it_is(tpvqa: Run) -> None:
+    words = ("run", "build_tower", "--vlm", "oracle", "--world", "symbolic", "--calibration")
+    Experience.of(Chances(), None, 1).save(Path("e.json"))
+    code, _, err = tpvqa(*words, "e.json")
+    assert code == 2
+    assert "e.json: it is an experience, which --experience takes, and no calibration" in err
+    group = Group(way=Way.EFFECT, predicate="on", rates=Calibration.default().whole.rates)
+    doubled = Calibration.default("oracle").model_copy(update={"groups": (group, group)})
+    doubled.save(Path("c.json"))
+    code, _, err = tpvqa(*words, "c.json")
+    assert code == 2
+    assert "c.json: it tells of on of effect twice" in err
 
 
 def test_a_set_without_pictures_says_so(tpvqa: Run, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import shutil
 import signal
 import socket
 import struct
@@ -167,6 +168,17 @@ def test_that_there_are_no_pictures_is_said(
         typed("q\n")
         _, _, err = tpvqa("label", folder)
         assert ("nothing here was recorded with a picture" in err) == bare
+
+
+def test_a_picture_that_is_not_there_is_said(tpvqa: Run, seen: Path, typed: Typed) -> None:
+    shutil.copytree(seen, "e")
+    for missing in (False, True):
+        if missing:
+            shutil.rmtree("e/frames")
+        typed("q\n")
+        _, _, err = tpvqa("label", "e")
+        assert "picture: " in err
+        assert ("(is not there)" in err) == missing
 
 
 def test_single_keys_in_a_terminal(

@@ -142,6 +142,8 @@ def test_repetition_costs_more_the_oftener_and_nothing_where_sensors_tell(tmp_pa
 def test_a_part_without_tasks_says_what_to_name(tmp_path: Path) -> None:
     with pytest.raises(BenchError, match="--others"):
         run_abroad_bench(AbroadBench(parts=(Part.OTHERS,)), tmp_path / "out")
+    with pytest.raises(BenchError, match=r"world-sensed\.yaml"):
+        run_abroad_bench(AbroadBench(parts=(Part.SENSED,)), tmp_path / "out")
     with pytest.raises(BenchError, match="holds no folder"):
         tasks_in(tmp_path)
 

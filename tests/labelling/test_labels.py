@@ -59,6 +59,42 @@ def test_what_an_editor_puts_before_the_labels_is_no_fault(folders: list[Path]) 
     assert read_labels(episode) == {episode.askings[0].key: "yes"}
 
 
+@pytest.mark.parametrize("mark", [b"", BOM_UTF8])
+@pytest.mark.parametrize("several", [False, True])
+def test_a_last_line_to_which_an_editor_put_no_end_counts(
+    folders: list[Path], mark: bytes, several: bool
+) -> None:
+    episode = read_recorded(folders[0])
+    first, second, third = episode.askings[:3]
+    labels = Labels(episode)
+    labels.append(first, "yes")
+    if several:
+        labels.append(second, "no")
+    labels.close()
+    told = dict(labels.known)
+    path = folders[0] / LABELS
+    path.write_bytes(mark + path.read_bytes().rstrip())
+    assert read_labels(episode) == told
+    labels = Labels(episode)
+    labels.append(third, "no")
+    labels.close()
+    assert read_labels(episode) == told | {third.key: "no"}
+
+
+def test_blank_lines_are_no_fault(folders: list[Path]) -> None:
+    episode = read_recorded(folders[0])
+    labels = Labels(episode)
+    labels.append(episode.askings[0], "yes")
+    labels.close()
+    path = folders[0] / LABELS
+    path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n") + b"\r\n\n  ")
+    assert read_labels(episode) == {episode.askings[0].key: "yes"}
+    labels = Labels(episode)
+    labels.append(episode.askings[1], "no")
+    labels.close()
+    assert len(read_labels(episode)) == 2
+
+
 def test_labels_stay_where_an_episode_is_gone_on_with(folders: list[Path]) -> None:
     log = folders[0] / LOG
     lines = log.read_bytes().splitlines(keepends=True)
@@ -77,7 +113,7 @@ def test_labels_stay_where_an_episode_is_gone_on_with(folders: list[Path]) -> No
     ("change", "says"),
     [
         ({"log": "0" * 12}, "labels of another episode"),
-        ({"schema": 2}, r"labels\.jsonl:1: no label of this version \(schema"),
+        ({"schema": 3}, r"labels\.jsonl:1: no label of this version \(schema"),
         ({"label": "maybe"}, r"labels\.jsonl:1: no label of this version \(label"),
         ({"stretch": -1}, "stretch"),
         ({"stretch": 91}, r"labels\.jsonl:1: a label of stretch 91, and the episode.s last is \d"),
@@ -172,6 +208,17 @@ def test_a_copy_of_an_episode_does_not_count_twice(folders: list[Path], tmp_path
             Session([folders[0], other])
         with pytest.raises(CalibrationError, match="is a copy of"):
             label_episodes([folders[0], other])
+
+
+def test_two_that_go_on_from_one_episode_do_not_count_twice(folders: list[Path]) -> None:
+    lines = (folders[0] / LOG).read_bytes().splitlines(keepends=True)
+    half = len(lines) // 2
+    event = json.loads(lines[half])
+    event["time"] += 0.0001
+    other = [*lines[:half], json.dumps(event).encode() + b"\n", *lines[half + 1 :]]
+    (folders[1] / LOG).write_bytes(b"".join(other))
+    with pytest.raises(CalibrationError, match="both go on from one episode"):
+        label_episodes(folders[:2])
 
 
 def test_episodes_that_only_begin_alike_both_count(folders: list[Path]) -> None:

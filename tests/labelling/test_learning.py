@@ -1,5 +1,6 @@
 """What labels, and what came before and after, teach."""
 
+import json
 from dataclasses import replace
 from math import sqrt
 from pathlib import Path
@@ -86,6 +87,17 @@ def test_where_labels_that_answer_nothing_are_all_there_is_they_are_named(
     label_nothing(folder, said)
     with pytest.raises(CalibrationError, match=rf"{LABELS} answers none.*`tpvqa label {folder}`"):
         label_episodes([folder])
+    assert label_episodes(folders).inferred
+
+
+def test_a_log_whose_domain_cannot_be_read_is_named(folders: list[Path]) -> None:
+    log = folders[0] / LOG
+    first, *others = log.read_text().splitlines(keepends=True)
+    started = json.loads(first)
+    started["domain"] = started["domain"].replace(":effect", ":efect", 1)
+    log.write_text("".join([json.dumps(started) + "\n", *others]))
+    with pytest.raises(CalibrationError, match=f"{folders[0]}: the log holds a domain .* label"):
+        label_episodes(folders[:1])
     assert label_episodes(folders).inferred
 
 

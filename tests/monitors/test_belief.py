@@ -143,6 +143,20 @@ def test_dear_questions_are_not_asked_and_cheap_ones_are(planner: Planner) -> No
     assert sum(e.questions for e in cheap) > sum(e.questions for e in usual) > 0
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("cost", ["action", "question", "look", "failure", "misreport"])
+def test_what_costs_most_is_still_reckoned_with(planner: Planner, cost: str) -> None:
+    ended, _, _ = run(planner, f"belief:{cost}=1e6")
+    assert ended.because in ("goal", "gave up")
+
+
+@pytest.mark.parametrize("free", ["question=0", "question=0:look=0"])
+def test_questions_may_cost_nothing(planner: Planner, free: str) -> None:
+    ended, _, _ = run(planner, f"belief:{free}")
+    assert ended.completed
+    assert ended.questions > 0
+
+
 @pytest.mark.parametrize(
     ("budget", "counted"),
     [
@@ -413,6 +427,10 @@ def test_the_limits_of_the_trial_are_known(planner: Planner) -> None:
         ("belief:price=3", "price"),
         ("belief:question=much", "question"),
         ("belief:question=-1", "question"),
+        *(
+            (f"belief:{cost}=1e308", f"{cost}: .*1000000")
+            for cost in ("action", "question", "look", "replan", "person", "failure", "misreport")
+        ),
         ("belief:failure_rate=2", "between 0 and 1"),
         ("belief:without=luck", "consistency, relevance"),
     ],

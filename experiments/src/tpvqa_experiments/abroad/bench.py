@@ -132,10 +132,12 @@ def run_abroad_bench(
     version = version_of(published) if only_tables and published is not None else None
     declared = bench.declared(folder, calibrating, version)
     if not declared.wanted:
+        unfelt = Part.SENSED in bench.parts and not bench.extent.sensed
         raise BenchError(
             "There is nothing to run: none of these parts has such a task. `--parts` and `--tasks` "
             "choose; domains of others are named with --others FOLDER, see "
             "experiments/tools/others_domains.py"
+            + (f"; the part sensed takes domains of --own with a {WORLD} beside" if unfelt else "")
         )
     ledger = run_bench(
         replace(declared, wanted={}) if only_tables else declared,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tpvqa import DECIDES_AS
 from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.experience import Experience
+from tpvqa.belief.named_calibration import named_calibration
 from tpvqa.belief.risk import RiskBound, RiskCalibration
 from tpvqa.config import TrialConfig
 from tpvqa.config.layers import settings
@@ -43,7 +44,7 @@ def read_told(
         CalibrationError: One cannot be read.
     """
     if calibration is None and files.calibration is not None:
-        calibration = Calibration.load(Path(files.calibration))
+        calibration = named_calibration(Path(files.calibration))
     if experience is None and files.experience is not None:
         experience = Experience.load(Path(files.experience))
     return calibration, experience

@@ -1,10 +1,19 @@
 """What things cost: from these the prices in all decisions follow."""
 
+from typing import Annotated
+
 from pydantic import BaseModel, ConfigDict, Field
+
+DEAREST = 1e6
+"""What anything costs at most: no trial has as many actions, and products of far larger costs are
+no numbers."""
+
+Price = Annotated[float, Field(ge=0, le=DEAREST)]
+Dear = Annotated[float, Field(gt=0, le=DEAREST)]
 
 
 class Costs(BaseModel):
-    """Costs in units of one action.
+    """Costs in units of one action, `DEAREST` at most.
 
     Attributes:
         action: One action of the robot.
@@ -22,13 +31,13 @@ class Costs(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
-    action: float = Field(default=1.0, gt=0)
-    question: float = Field(default=0.05, ge=0)
-    look: float = Field(default=0.005, ge=0)
-    replan: float = Field(default=0.3, ge=0)
-    person: float | None = Field(default=None, ge=0)
-    failure: float = Field(default=50.0, gt=0)
-    misreport: float = Field(default=2.0, ge=0)
+    action: Dear = 1.0
+    question: Price = 0.05
+    look: Price = 0.005
+    replan: Price = 0.3
+    person: Price | None = None
+    failure: Dear = 50.0
+    misreport: Price = 2.0
     questions_per_step: int = Field(default=1000, ge=0)
     questions_per_trial: int = Field(default=5000, ge=0)
     looks_per_step: int = Field(default=1000, ge=0)

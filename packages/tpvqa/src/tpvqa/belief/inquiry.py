@@ -278,7 +278,7 @@ class Inquirer:
         Where a goal has many facts, each is likely and all together are not: none alone is worth a
         question then, nor are a few.
         """
-        doubt = min(self._costs.question / stake, 0.5)
+        doubt = min(max(self._costs.question / stake, EQUAL), 0.5)  # a question may cost nothing
         answers = sum(answers_to_know(each.likely, doubt, each.reliability) for each in doubted)
         settles = _settled(doubted)
         saving, first = settles * known_gain(weighted, work, truths), doubted[0].question

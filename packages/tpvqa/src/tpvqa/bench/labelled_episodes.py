@@ -1,7 +1,7 @@
 """Answers beside the truth, from recorded episodes: a world's, a person's, or what is probable."""
 
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -15,12 +15,13 @@ from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import episode_folder
-from tpvqa.errors import CalibrationError, pasted
+from tpvqa.errors import CalibrationError, PDDLError, pasted
 from tpvqa.events import Ended, Event, Started
 from tpvqa.events.events import Acted, Waited
-from tpvqa.labelling import LABELS, RecordedEpisode, check_apart, read_recorded
+from tpvqa.labelling import LABELS, RecordedEpisode, check_apart, read_labels, read_recorded
 from tpvqa.labelling.inferring import inferred_rows, likelier
-from tpvqa.labelling.recorded import said_in_trial
+from tpvqa.labelling.labels import Said
+from tpvqa.labelling.recorded import Stretches, said_in_trial
 from tpvqa.labelling.rows import answers_some, labelled_rows, stray_labels
 from tpvqa.labelling.session import check_vlm
 from tpvqa.pddl import Atom, Task, task_from_text
@@ -94,9 +95,9 @@ def label_episodes(
 ) -> Labelled:
     """Label the answers of recorded episodes.
 
-    What a person has labelled goes before what a simulated world's log says truly came of every
-    action, unless none of it answers a question. A robot's log says nothing of that; where there
-    are no labels at all, what was right is inferred from what came before and after
+    What a person has labelled goes before what a simulated world's log says was true, about the
+    question that was labelled and no other. A robot's log says nothing of that; where there are no
+    labels at all, what was right is inferred from what came before and after
     (`labelling.inferring`).
 
     Args:
@@ -117,7 +118,7 @@ def label_episodes(
     untold: list[RecordedEpisode] = []
     idle: list[Path] = []
     stray: list[str] = []
-    lacking = 0
+    lacking = corrected = 0
     for folder in map(str, dict.fromkeys(map(episode_folder, folders))):
         events = read_episode(folder)
         started = events[0]
@@ -127,23 +128,22 @@ def label_episodes(
         check_vlm(folder, answered, vlm)
         recorded = read_recorded(folder)
         seen.append(recorded)
-        true = any(map(_tells_truth, events))
         file = recorded.folder / LABELS
-        useless = file.exists() and not answers_some(recorded)
+        answering = answers_some(recorded)
+        useless = file.exists() and not answering
         if useless:
             idle.append(file)
-            stray += _of_no_question(file, stray_labels(recorded))
-        if file.exists() and not useless:
-            labelled.append(recorded)
-            stray += _of_no_question(file, stray_labels(recorded))
-            if true:
-                with suppress(CalibrationError):  # it may be known of some actions alone
-                    heard.acts.extend(_label(events, started, folder).own.acts)
-        elif true:
-            labeller = _label(events, started, folder)
-            rows += labeller.rows
-            heard.add(labeller.own)
-        elif any(map(said_in_trial, recorded.askings)):
+        stray += _of_no_question(file, stray_labels(recorded))
+        played: _Played | None = None
+        if any(map(_tells_truth, events)):
+            labels = read_labels(recorded) if answering else {}
+            with suppress(CalibrationError) if answering else nullcontext():
+                played = _play(events, started, folder, labels)  # it may know of some actions alone
+        if played is not None:
+            rows += played.rows
+            heard.add(played.own)
+            corrected += played.labels
+        elif answering or any(map(said_in_trial, recorded.askings)):
             labelled.append(recorded)
         elif useless:
             lacking += 1
@@ -151,17 +151,33 @@ def label_episodes(
             untold.append(recorded)
         done()
     check_apart(seen)
-    by_hand, labels = labelled_rows(labelled)
-    rows += by_hand
+    of_labels, by_hand = labelled_rows(labelled)
+    rows += of_labels
+    by_hand += corrected
     if lacking and not (rows or untold):
         raise CalibrationError(f"{_says_nothing(idle[0])} Nothing else tells what was right")
     if rows or not untold:
         unused = len(untold) + lacking
-        told = Labelled(vlm or "", rows, heard, by_hand=labels, unused=unused)
+        told = Labelled(vlm or "", rows, heard, by_hand=by_hand, unused=unused)
     else:
         inferred = inferred_rows(untold, vlm or "")
+        if not inferred:
+            _check_readable(untold)
         told = Labelled(vlm or "", inferred, heard, inferred=len(inferred) // 2)
     return replace(told, idle=tuple(idle), stray=tuple(stray))
+
+
+def _check_readable(episodes: Sequence[RecordedEpisode]) -> None:
+    """See that the domains which logs hold can be read; from others nothing is inferred."""
+    for each in episodes:
+        try:
+            task_from_text(each.started.domain, each.started.problem)
+        except PDDLError as error:
+            raise CalibrationError(
+                f"{each.folder}: the log holds a domain and a problem that cannot be read "
+                f"({error}), so that nothing is inferred from it. Label it "
+                f"(`tpvqa label {pasted(each.folder)}`), or leave it out"
+            ) from error
 
 
 def _of_no_question(file: Path, labels: Sequence[tuple[int, str]]) -> list[str]:
@@ -184,26 +200,56 @@ def _says_nothing(file: Path) -> str:
     )
 
 
-def _label(events: list[Event], started: Started, name: str) -> Labeller:
-    """Play the truth of an episode back beside its answers."""
+@dataclass(frozen=True, slots=True)
+class _Played:
+    """The answers of an episode whose log says what was true.
+
+    Attributes:
+        rows: The answers.
+        own: What the robot itself said.
+        labels: Labels that went before the log's truth.
+    """
+
+    rows: list[LabelledAnswer]
+    own: OwnWords
+    labels: int
+
+
+def _play(
+    events: list[Event], started: Started, name: str, told: Mapping[tuple[int, str], Said]
+) -> _Played:
+    """Play the truth of an episode back beside its answers, and put labels in its place.
+
+    Where the pictures do not tell, as a label says, an answer teaches nothing.
+    """
     task, rules = _stage(started.domain, started.problem, started.rules)
     start = frozenset(map(Atom.parse, started.true_start or started.initial))
     simulation = Simulation(task, rules, undoing=undoings(task, rules), start=start)
     labeller = Labeller(simulation, WrittenActions(task), name)
+    stretches, rows = Stretches(), list[LabelledAnswer]()
+    counted = set[tuple[int, str]]()
     for event in events:
-        if not isinstance(event, Acted | Waited):
-            labeller(event)
-            continue
-        if event.truth is not None:
-            gone, new = (
-                frozenset(map(Atom.parse, part))
-                for part in (event.truth.removed, event.truth.added)
-            )
-            simulation.become((simulation.state - gone) | new)
-        elif isinstance(event, Acted) and event.report in (Report.DONE, Report.FAILED):
-            raise _untold(name)
+        stretches.take(event)
+        if isinstance(event, Acted | Waited):
+            if event.truth is not None:
+                gone, new = (
+                    frozenset(map(Atom.parse, part))
+                    for part in (event.truth.removed, event.truth.added)
+                )
+                simulation.become((simulation.state - gone) | new)
+            elif isinstance(event, Acted) and event.report in (Report.DONE, Report.FAILED):
+                raise _untold(name)
         labeller(event)
-    return labeller
+        for row in labeller.rows:
+            key = stretches.number, row.text
+            said = told.get(key)
+            if said in ("yes", "no"):
+                counted.add(key)
+                rows.append(replace(row, truth=said == "yes"))
+            elif said is None:
+                rows.append(row)
+        labeller.rows.clear()
+    return _Played(rows, labeller.own, len(counted))
 
 
 def _tells_truth(event: Event) -> bool:

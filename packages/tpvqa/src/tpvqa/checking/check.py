@@ -6,6 +6,7 @@ from pathlib import Path
 from tpvqa.checking import possible, wordings, world
 from tpvqa.checking.contradicting import of_effects
 from tpvqa.checking.finding import Finding, Severity, of_error
+from tpvqa.checking.left_open import of_left_open
 from tpvqa.checking.priors import of_priors
 from tpvqa.checking.seeing import Telling
 from tpvqa.drafting import words
@@ -86,6 +87,7 @@ def _findings(
     yield from possible.of_actions(task, _undone(rules))
     yield from possible.of_predicates(task)
     yield from of_effects(task)
+    yield from of_left_open(task)
     yield from wordings.in_vain(task, given, questions)
     yield from wordings.doubled(given, questions)
     yield from wordings.still_marked(drafted)

@@ -240,10 +240,10 @@ def _is_path(name: str) -> bool:
 
 
 def _calibration(config: "TrialConfig") -> "Calibration | None":
-    from tpvqa.belief.calibration import Calibration
+    from tpvqa.belief.named_calibration import named_calibration
 
     file = config.monitor.calibration
-    return None if file is None else Calibration.load(Path(file))
+    return None if file is None else named_calibration(Path(file))
 
 
 def _notices(grid: "Grid", calibration: "Calibration | None") -> list[str]:

@@ -1,6 +1,7 @@
 """`tpvqa calibrate`: learn what a VLM's answers are worth."""
 
 import json
+import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,7 @@ from tpvqa.config.layers import Key, Layer, combined
 
 if TYPE_CHECKING:
     from tpvqa.belief import LabelledAnswer
+    from tpvqa.belief.experience import Experience
     from tpvqa.bench.labelled_episodes import Labelled
     from tpvqa.cli.progress import CountBar
     from tpvqa.config import TrialConfig
@@ -158,16 +160,17 @@ def calibrate(
     if not out.name:
         raise TpvqaError(f"{out} is a folder; name a file with --out")
     image = curves or out.with_suffix(".png")
-    _check(out, image, force=force)
+    written = [("--out", out), ("--curves", image)]
+    _check([*written, *([("--experience", experience)] if experience else [])], force=force)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
     found: Labelled | None = None
+    learned: Experience | None = None
     heard = OwnWords()
     if episodes:
         found = _from_episodes(episodes, vlm)
         name, rows = found.vlm, found.plain
-        if experience is not None:
-            experience_from(found.own.acts).save(experience)
+        learned = experience_from(found.own.acts) if experience is not None else None
     elif pictures is not None:
         config = combined(layers)
         name, rows = _from_pictures(vlm or default_vlm(), config, pictures, own, hidden=hidden)
@@ -201,6 +204,8 @@ def calibrate(
     told = (*calibration.notices, *doubts(table[-1]))
     calibration = calibration.model_copy(update={"notices": told})
     calibration.save(out)
+    if learned is not None and experience is not None:
+        learned.save(experience)
     draw(image, judged, name)
     if as_json:
         typer.echo(json.dumps(plain(calibration, table, out, image), indent=1))
@@ -209,8 +214,13 @@ def calibrate(
         tell(f"wrote {out} and {image}")
 
 
-def _check(out: Path, image: Path, *, force: bool) -> None:
-    """What would end the work at its end is told before it."""
+def _check(files: Sequence[tuple[str, Path]], *, force: bool) -> None:
+    """What would end the work at its end is told before it.
+
+    Args:
+        files: What is to be written, by the option that names it.
+        force: Whether what is there may be written over.
+    """
     from tpvqa.belief.platt import regression
     from tpvqa.bench.style import styled_pyplot
     from tpvqa.errors import CalibrationError
@@ -218,15 +228,23 @@ def _check(out: Path, image: Path, *, force: bool) -> None:
 
     regression()
     styled_pyplot()
-    for path, option in ((out, "--out"), (image, "--curves")):
+    known: dict[str, str] = {}
+    for option, path in files:
         if path.is_dir():
             raise CalibrationError(f"{path} is a folder; name a file with {option}")
-    if out.exists() and not force:
-        raise CalibrationError(
-            f"{out} is there, and may be what others go by; name another file with --out, or write "
-            "over it with --force"
-        )
-    see_writable(out, remedy="Name another file with --out")
+        other = known.setdefault(os.path.realpath(path), option)
+        if other != option:
+            raise CalibrationError(
+                f"{other} and {option} are the same file, {path}, and one would be lost; name "
+                f"another with {option}"
+            )
+        if path.exists() and not force:
+            raise CalibrationError(
+                f"{path} is there, and may be what others go by; name another file with {option}, "
+                "or write over it with --force"
+            )
+    for option, path in files:
+        see_writable(path, remedy=f"Name another file with {option}")
 
 
 def _from_episodes(folders: Sequence[Path], vlm: str | None) -> "Labelled":

@@ -37,7 +37,9 @@ def question_lines(session: "Session") -> str:
     asking = session.now
     assert asking is not None
     lines = [f"[{session.progress.labels + 1}] {asking.text}"]
-    lines += [f"picture: {asking.episode / picture}" for picture in asking.pictures[:_SHOWN]]
+    for picture in asking.pictures[:_SHOWN]:
+        path = asking.episode / picture
+        lines.append(f"picture: {path}{'' if path.exists() else ' (is not there)'}")
     if len(asking.pictures) > _SHOWN:
         lines.append(f"and {len(asking.pictures) - _SHOWN} more of the same moment")
     lines.append(when(asking) if asking.pictures else f"no picture; {when(asking)}")

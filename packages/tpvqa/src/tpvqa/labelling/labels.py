@@ -3,7 +3,7 @@
 import fcntl
 import os
 from codecs import BOM_UTF8
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,9 +16,10 @@ from tpvqa.errors import CalibrationError, WriteError
 from tpvqa.files import open_plain, opened_plain, write_all
 from tpvqa.labelling.recorded import Asking, RecordedEpisode
 from tpvqa.told import ToldModel, check_json, first_fault
+from tpvqa.told.strict_json import LONGEST
 
 LABELS = "labels.jsonl"
-SCHEMA: Literal[1] = 1
+SCHEMA: Literal[2] = 2
 Said = Literal["yes", "no", "cannot see"]
 
 
@@ -26,9 +27,9 @@ class Label(ToldModel):
     """One line of the file: what a person says is the right answer.
 
     Attributes:
-        schema_number: Of the file's format.
+        schema_number: Of the file's format; for 1 no time passed between two actions.
         log: Tells the log that it is of from others (`RecordedEpisode.log`).
-        stretch: Actions that had begun when it was asked.
+        stretch: When it was asked (`Asking.stretch`).
         text: The question.
         label: The right answer; "cannot see" where the pictures do not tell.
         at: When it was given, in UTC.
@@ -36,7 +37,7 @@ class Label(ToldModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
-    schema_number: Literal[1] = Field(
+    schema_number: Literal[1, 2] = Field(
         default=SCHEMA, validation_alias="schema", serialization_alias="schema"
     )
     log: str
@@ -49,7 +50,7 @@ class Label(ToldModel):
 def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
     """The labels beside an episode's log: of several for the same question the last one.
 
-    A line that was torn by a kill is left out.
+    A line that was torn by a kill is left out, and so are blank ones.
 
     Raises:
         CalibrationError: The file is damaged, of another version, or of another episode, or a
@@ -59,6 +60,7 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
     try:
         with opened_plain(path) as descriptor:
             lines = list(whole_lines(descriptor))
+            lines.append(_last(descriptor, _size(lines)))
     except FileNotFoundError:
         return {}
     except OSError as error:
@@ -67,11 +69,18 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
     for number, line in enumerate(lines, 1):
         if number == 1:
             line = line.removeprefix(BOM_UTF8)  # as editors put it there
+        if not line.strip():
+            continue
         label = _label(path, number, line)
         if label.log != episode.log:
             raise CalibrationError(
                 f"{path}:{number}: labels of another episode. Put them beside the log that they "
                 f"are of, or remove them and label {episode.folder} anew"
+            )
+        if label.schema_number == 1 and episode.timed:
+            raise CalibrationError(
+                f"{path}:{number}: a label of a version that did not count the time that passes "
+                f"while actions last. Remove {path}, and label {episode.folder} anew"
             )
         if label.stretch > len(episode.actions):
             raise CalibrationError(
@@ -81,6 +90,21 @@ def read_labels(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
             )
         found[label.stretch, label.text] = label.label
     return found
+
+
+def _size(lines: Iterable[bytes]) -> int:
+    """How many bytes whole lines take up."""
+    return sum(len(line) + 1 for line in lines)
+
+
+def _last(descriptor: int, whole: int) -> bytes:
+    """What stands behind the whole lines, where it is JSON: an editor put no end to it."""
+    last = os.pread(descriptor, LONGEST, whole)
+    try:
+        check_json(last if whole else last.removeprefix(BOM_UTF8))
+    except ValueError:
+        return b""
+    return last
 
 
 def _label(path: Path, number: int, line: bytes) -> Label:
@@ -150,8 +174,11 @@ class Labels:
         try:
             self._file = open_plain(self._path, os.O_RDWR | os.O_APPEND | os.O_CREAT)
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            whole = sum(len(line) + 1 for line in whole_lines(self._file))
-            os.ftruncate(self._file, whole)  # what a kill tore
+            whole = _size(whole_lines(self._file))
+            if _last(self._file, whole):
+                write_all(self._file, b"\n")
+            else:
+                os.ftruncate(self._file, whole)  # what a kill tore
         except BlockingIOError:
             self.close()
             raise CalibrationError(

@@ -1,5 +1,6 @@
 """What was asked in a recorded episode, put together by what one label answers."""
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from hashlib import sha256
@@ -10,11 +11,12 @@ from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import LOG, episode_folder, whole_lines
 from tpvqa.errors import CalibrationError
 from tpvqa.events import Event, Exchange, Resumed, Started, TrialState
-from tpvqa.events.events import Acted, Acting, Answered, Observed, QuestionRecord
+from tpvqa.events.events import Acted, Acting, Answered, Observed, QuestionRecord, Waited
 from tpvqa.files import opened_plain
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 
+_ANSWERED = re.compile(rb'"kind": ?"answered"')
 OF_FACTS = (Way.PRECONDITION, Way.EFFECT, Way.ALTERNATIVE)
 
 
@@ -41,11 +43,13 @@ class Given:
 
 @dataclass(frozen=True, slots=True)
 class Asking:
-    """All that was asked in the same words between two actions: one truth, so one label does.
+    """All that was asked in the same words while nothing was done and no time passed: one truth, so
+    one label does.
 
     Attributes:
         episode: The episode's folder.
-        stretch: Actions that had begun by then (an interruption counts as one).
+        stretch: Actions that had begun by then (an interruption counts as one, and so does time
+            that passed while actions lasted).
         text: The question.
         subject: The predicate asked about, or the action where a whole action is.
         atoms: The facts of which any one makes yes right; none where a whole action is asked about.
@@ -89,7 +93,9 @@ class RecordedEpisode:
         log: Tells its log from others.
         askings: What was asked, in the order of asking.
         actions: What was done, and what the skill reported (None where it did not come to that);
-            None in the place of an interruption. One lies between each stretch and the next.
+            None in the place of an interruption, and of time that passed. One lies between each
+            stretch and the next.
+        timed: Whether time passed while actions lasted.
     """
 
     folder: Path
@@ -97,6 +103,7 @@ class RecordedEpisode:
     log: str
     askings: tuple[Asking, ...]
     actions: tuple[tuple[Acting, Acted | None] | None, ...]
+    timed: bool = False
 
 
 def read_recorded(folder: Path | str) -> RecordedEpisode:
@@ -118,6 +125,7 @@ def read_recorded(folder: Path | str) -> RecordedEpisode:
         _fingerprint(folder / LOG),
         tuple(gathering.askings()),
         tuple(gathering.done),
+        gathering.stretches.timed,
     )
 
 
@@ -131,20 +139,24 @@ def check_apart(episodes: Iterable[RecordedEpisode]) -> None:
     for episode in episodes:
         alike = known.setdefault(episode.log, [])
         for first in alike:
-            if _goes_on(first / LOG, episode.folder / LOG):
+            if _share_answers(first / LOG, episode.folder / LOG):
                 raise CalibrationError(
-                    f"{episode.folder} is a copy of {first}: its answers would count twice. Give "
-                    "one of them"
+                    f"{episode.folder} is a copy of {first}, or both go on from one episode: what "
+                    "was answered in both would count twice. Give one of them"
                 )
         alike.append(episode.folder)
 
 
-def _goes_on(one: Path, other: Path) -> bool:
-    """Whether one of two logs is the other, or goes on with it. That they begin alike says little:
-    the same command does, run often enough."""
+def _share_answers(one: Path, other: Path) -> bool:
+    """Whether two logs are alike until something is answered, or one of them ends. That they begin
+    alike says little: the same command does, run often enough; but then times soon differ."""
     with opened_plain(one) as first, opened_plain(other) as second:
-        both = zip(whole_lines(first), whole_lines(second), strict=False)
-        return all(line == same for line, same in both)
+        for line, same in zip(whole_lines(first), whole_lines(second), strict=False):
+            if line != same:
+                return False
+            if _ANSWERED.search(line):
+                return True
+    return True
 
 
 def said_in_trial(asking: Asking) -> Literal["yes", "no"] | None:
@@ -177,6 +189,32 @@ def _fingerprint(path: Path) -> str:
         return sha256(next(whole_lines(descriptor))).hexdigest()[:12]
 
 
+class Stretches:
+    """Counts what lies between two moments at which the same need not be true.
+
+    Attributes:
+        number: Of the stretch now, from 0.
+        timed: Whether time passed while actions lasted.
+    """
+
+    def __init__(self) -> None:
+        self.number, self.timed = 0, False
+        self._clock: float | None = None
+
+    def take(self, event: Event) -> bool:
+        """Take an event; whether a stretch begins with it."""
+        match event:
+            case Acting() | Resumed():
+                begins = True
+            case Waited():
+                begins = self._clock is not None and event.clock > self._clock
+                self.timed, self._clock = self.timed or begins, event.clock
+            case _:
+                begins = False
+        self.number += begins
+        return begins
+
+
 @dataclass
 class _Asked:
     stretch: int
@@ -194,22 +232,23 @@ class _Gathering:
         self._looks: dict[int, Observed] = {}
         self._asked: dict[tuple[int, str], _Asked] = {}
         self._said = ""
+        self.stretches = Stretches()
         self.done: list[tuple[Acting, Acted | None] | None] = []
 
     def take(self, event: Event) -> None:
         self._state = self._state.after(event)
+        if self.stretches.take(event):
+            self.done.append((event, None) if isinstance(event, Acting) else None)
         match event:
             case Observed():
                 self._looks[event.look] = event
             case Acting():
-                self.done.append((event, None))
                 self._said = event.action.said
             case Acted():
                 last = self.done[-1] if self.done else None
                 if last is not None:
                     self.done[-1] = (last[0], event)
             case Resumed():
-                self.done.append(None)
                 self._said = "an interruption"
             case Answered():
                 for exchange in self._state.latest:
@@ -217,9 +256,9 @@ class _Gathering:
 
     def _answer(self, exchange: Exchange) -> None:
         question, answer, look, person = exchange
-        key = (len(self.done), question.text)
+        key = (self.stretches.number, question.text)
         if key not in self._asked:
-            self._asked[key] = _Asked(len(self.done), self._said, exchange)
+            self._asked[key] = _Asked(self.stretches.number, self._said, exchange)
         asked, seen = self._asked[key], self._looks.get(look)
         asked.answers.append(
             Given(
