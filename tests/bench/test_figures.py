@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 
 from tests.bench.test_statistics import row
@@ -82,6 +83,19 @@ def test_what_is_wrongly_done_is_counted_and_shown(
     page = write_bench_report(tmp_path, results).read_text(encoding="utf-8")
     assert "<th>wrongly done</th>" in page
     assert "<td>3</td>" in page
+
+
+def test_no_figure_is_left_open_however_many_tables_there_are(
+    tmp_path: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    cells = {
+        Cell("eat", "tp", "oracle:0.8", "symbolic", f"failure=0.{k}"): [row(completed=True)]
+        for k in range(9)
+    }
+    before = pyplot.get_fignums()
+    write_bench_report(tmp_path, Results({}, cells))
+    assert pyplot.get_fignums() == before
+    assert not [each for each in recwarn if "figures" in str(each.message)]
 
 
 def test_bars_have_intervals_and_figures() -> None:
