@@ -9,6 +9,7 @@ from tpvqa.belief.priors import Priors, load_priors
 from tpvqa.belief.remarks_on_priors import remarks
 from tpvqa.errors import PriorsError
 from tpvqa.pddl import Atom, Task
+from tpvqa.pddl.loading import task_from_text
 
 NIGHT = ward()
 
@@ -107,3 +108,39 @@ def test_what_has_its_effect_is_not(tmp_path: Path, task: Task, text: str) -> No
     path = tmp_path / "priors.yaml"
     path.write_text(text)
     assert list(remarks(task, load_priors(task, path))) == []
+
+
+LENS = """(define (domain lens) (:requirements :typing) (:types camera)
+  (:predicates (capped ?c - camera) (used ?c - camera))
+  (:action uncap :parameters (?c - camera) :precondition (capped ?c) :effect (not (capped ?c)))
+  (:action use :parameters (?c - camera) :effect (used ?c)))"""
+
+
+@pytest.mark.parametrize(
+    ("text", "open_too", "says"),
+    [
+        ("(capped left): 0.6", "", "(capped left): 0.6 has no effect: the problem does not say"),
+        ("(capped ?c): 0.3", "", "has no effect on (capped left): the problem does not say so"),
+        ("(capped left): 0.6", "(unknown (capped left))", None),
+        ("(capped ?c): 0.3", "(unknown (capped left))", None),
+        ("(used ?c): 0.3", "", None),
+    ],
+)
+def test_what_only_the_problem_can_say_is_to_be_left_open_in_it(
+    tmp_path: Path, text: str, open_too: str, says: str | None
+) -> None:
+    """As no action brings it about: what it says nothing of does not hold."""
+    task = task_from_text(
+        LENS,
+        "(define (problem p) (:domain lens) (:objects left right - camera)"
+        f"(:init (capped right) {open_too}) (:goal (used left)))",
+    )
+    path = tmp_path / "priors.yaml"
+    path.write_text(text)
+    found = list(remarks(task, load_priors(task, path)))
+    if says is None:
+        assert found == []
+        return
+    (remark,) = found
+    assert says in remark.says
+    assert "(unknown (capped left))" in remark.remedy

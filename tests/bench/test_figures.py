@@ -1,18 +1,22 @@
 """Figures of a bench: every curve in its interval, every monitor told apart without colour."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 
 from tests.bench.test_statistics import row
 from tpvqa.bench import figures
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.curve import ACCURACIES, curve_cells, curves
+from tpvqa.bench.report import Results, write_bench_report
 from tpvqa.bench.statistics import wilson
 from tpvqa.bench.style import styles
 from tpvqa.bench.summary import summaries
+from tpvqa.cli.bench_tables import print_results
 
 MONITORS = ("tpvqa", "tpvqa:strict", "effectvqa", "palmevqa", "successvqa", "belief", "tp")
 EPISODES = 20
@@ -62,6 +66,36 @@ def test_no_two_monitors_are_drawn_alike() -> None:
     assert len({str(each.plotted) for each in found.values()}) == len(many)
     shapes = [(str(s.line), s.marker, s.filled) for m, s in found.items() if m != "blind:5"]
     assert len(set(shapes)) == len(many) - 1
+
+
+def test_what_is_wrongly_done_is_counted_and_shown(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cell = Cell("eat", "belief", "oracle:0.8", "symbolic")
+    ends = [row(episode=k, believed_goal=True, completed=k > 2) for k in range(4)]
+    results = Results({}, {cell: [*ends, row(episode=4, because="gave up")]})
+    (found,) = results.summaries
+    assert (found.wrongly_done, found.completed) == (3, 1)
+    print_results(results)
+    head, line = (each.split() for each in capsys.readouterr().out.splitlines()[1:3])
+    assert "wrongly done" in " ".join(head)
+    assert line[:5] == ["eat", "belief", "0.200", "0.04–0.62", "3"]
+    page = write_bench_report(tmp_path, results).read_text(encoding="utf-8")
+    assert "<th>wrongly done</th>" in page
+    assert "<td>3</td>" in page
+
+
+def test_no_figure_is_left_open_however_many_tables_there_are(
+    tmp_path: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    cells = {
+        Cell("eat", "tp", "oracle:0.8", "symbolic", f"failure=0.{k}"): [row(completed=True)]
+        for k in range(9)
+    }
+    before = pyplot.get_fignums()
+    write_bench_report(tmp_path, Results({}, cells))
+    assert pyplot.get_fignums() == before
+    assert not [each for each in recwarn if "figures" in str(each.message)]
 
 
 def test_bars_have_intervals_and_figures() -> None:

@@ -160,10 +160,10 @@ def test_no_decision_is_longer_than_a_line(parts: list[str]) -> None:
             "bow line coiled 0.00; …; no change of plan is left, and the goal holds with only 0.00",
         ),
         (
-            "put the halter on Bess failed 32 times of 32; Bess sound 0.00; girth tight 0.00 (not "
-            "worth asking); no other way is known, and the goal holds with only 0.00",
-            "put the halter on Bess failed 32 times of 32; …; no other way is known, and the goal "
-            "holds with only 0.00",
+            "put the halter on Bess failed in about 32 of 32 tries; Bess sound 0.00; girth tight "
+            "0.00 (not worth asking); no other way is known, and the goal holds with only 0.00",
+            "put the halter on Bess failed in about 32 of 32 tries; …; no other way is known, and "
+            "the goal holds with only 0.00",
         ),
         (
             "the goal holds with 0.97; asked what is known to see what answers are worth; and more "

@@ -9,7 +9,8 @@ from tpvqa.events import Ended
 from tpvqa.events.events import Acting, Asked, Decided
 
 COUNTED = re.compile(
-    r"open the fridge failed \d+ times of (\d+)(?: that could have worked, of (\d+) tries)?;"
+    r"open the fridge failed in about (\d+) of (\d+) tries"
+    r"(?:, of which about (\d+) could have worked)?;"
 )
 """Of every try is told whether it counts, though not all of them could have worked."""
 
@@ -47,6 +48,7 @@ def looked_after_tries(seed: int) -> list[bool]:
     last = [e for e in writer.events if isinstance(e, Decided)][-1]
     said = COUNTED.match(last.reason)
     assert said is not None, last.reason
-    assert int(said[2] or said[1]) == len(tried)
+    failed, tries, able = (int(each or said[2]) for each in said.groups())
+    assert failed <= able <= tries == len(tried)
     at = [writer.events.index(each) for each in tried[:-1]]
     return [any(isinstance(e, Asked) for e in writer.events[n : n + 8]) for n in at]

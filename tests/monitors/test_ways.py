@@ -1,11 +1,17 @@
 """The plans that a belief monitor has the trial follow."""
 
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
 from tpvqa.belief.belief import Belief
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.faults import FaultModel
 from tpvqa.belief.learned import Learned
+from tpvqa.bench.judge import CALLED_DEAD
 from tpvqa.monitors.ways import UNSEEN, Ways
 from tpvqa.pddl import load_task
 from tpvqa.planning import Plan
@@ -53,3 +59,31 @@ def test_what_an_action_needs_is_doubted_the_more_the_longer_it_fails() -> None:
     assert len(given) == 3
     assert given == sorted(given)
     assert given[0] < 0.5 < given[-1] <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("able", "failed", "tries", "said"),
+    [
+        (12.0, 12.0, 12, "in about 12 of 12 tries"),
+        (15.4, 15.2, 16, "in about 15 of 16 tries"),
+        (15.9, 15.6, 16, "in about 16 of 16 tries"),
+        (3.4, 3.2, 12, "in about 3 of 12 tries, of which about 3 could have worked"),
+    ],
+)
+def test_how_often_a_skill_failed_is_said_as_what_is_believed(
+    able: float, failed: float, tries: int, said: str
+) -> None:
+    """Which tries could have worked is never known for sure: no share of them counts as one."""
+    task = load_task("eat_apple")
+    chances: Any = SimpleNamespace(
+        skill=lambda _: SimpleNamespace(shown=1.0),
+        times=lambda _: (able, failed),
+        tries=lambda _: tries,
+    )
+    ways = Ways(task, Chooser(FaultModel(task), Costs()), chances, Costs())
+    action = next(each for each in task.ground_actions() if each.name == "open")
+    step: Any = SimpleNamespace(
+        action=action, book=SimpleNamespace(say=lambda _: "open the fridge")
+    )
+    assert ways.failing(step) == f"open the fridge failed {said}"
+    assert CALLED_DEAD.match(ways.failing(step))  # a bench counts it by its words

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tpvqa.pddl import Atom, task_from_text
+from tpvqa.pddl import Atom, Literal, task_from_text
 from tpvqa.questions import FactWords, QuestionBook
 
 DOMAIN = """(define (domain stage) (:requirements :typing) (:types lamp bar)
@@ -35,3 +35,16 @@ def test_a_fact_is_said_as_it_is_asked_about(question: str, said: str, tmp_path:
     file.write_text(f"predicates:\n  hung: {asked}\n")
     words = FactWords(QuestionBook.load(file, task))
     assert words.of(Atom("hung", ("spot", "front_bar"))) == said
+
+
+def test_what_is_never_asked_keeps_the_words_of_its_question(tmp_path: Path) -> None:
+    task = task_from_text(
+        DOMAIN.replace("hung", "cablesTied"), PROBLEM.replace("hung", "cablestied")
+    )
+    never = 'never_asked:\n  - fact: "(cablesTied ?l ?b)"\n'
+    file = tmp_path / "questions.yaml"
+    file.write_text(f'predicates:\n  cablesTied: "Are the cables of {{l}} tied to {{b}}?"\n{never}')
+    book = QuestionBook.load(file, task)
+    tied = Atom("cablestied", ("spot", "front_bar"))
+    assert not book.asked(Literal(tied))
+    assert FactWords(book).of(tied) == "cables of spot tied to front bar"

@@ -79,7 +79,7 @@ def test_the_same_questions_can_be_drawn_again_and_again(task: Task) -> None:
 def test_one_predicate_is_biased_and_the_others_are_not(true: bool, task: Task) -> None:
     biased, other = fact("on", "plate", "table"), fact("clean", "plate")
     truth = SceneTruth({biased.atom, other.atom} if true else ())
-    vlm = made("flawed:biased:on:0.9:0.5", truth=truth, task=task, seed=1)
+    vlm = made("flawed:biased:On:0.9:0.5", truth=truth, task=task, seed=1)
     assert rate(vlm, biased) == pytest.approx(0.9 if true else 0.5, abs=0.052)
     assert rate(vlm, other) == pytest.approx(0.8 if true else 0.2, abs=0.042)
 

@@ -3,15 +3,20 @@
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice, product
 from math import fsum
 from typing import Any
 
 from tpvqa.belief.priors import ROUNDED, Priors
 from tpvqa.belief.starts import opened
 from tpvqa.pddl import Atom, State, Task
+from tpvqa.pddl.pattern import Pattern
 
 _LEAST = 0.01
 """A fact that is at least so probable holds in some of the states that are looked at."""
+_LEFT_OPEN = "Where it may hold at first, write (unknown {}) into the problem's (:init …)."
+_LISTED = 20_000
+"""Facts that are looked at for one form."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +60,8 @@ def remarks(task: Task, priors: Priors, undo: Sequence[Any] = ()) -> Iterator[Re
     prior = Prior(task, priors, undo)
     # Where there are more states than are looked at, what none of them shows may yet be.
     states = [state for state, _ in prior.states()] if prior.covered() else []
-    yield from _scaled_up(task, priors, frozenset(known))
+    can_hold = frozenset(known)
+    yield from _scaled_up(task, priors, can_hold)
     deciding = priors.deciding(known, task)
     shared = _shared_out(task, priors)
     for nth, (pattern, probability) in enumerate(priors.facts):
@@ -63,8 +69,24 @@ def remarks(task: Task, priors: Priors, undo: Sequence[Any] = ()) -> Iterator[Re
         form = f"{pattern}: {probability:g} has no effect"
         fitting = [atom for atom in known if pattern.match(atom, {}, task) is not None]
         own = [atom for atom in fitting if deciding[atom] == nth]
-        if not fitting:
+        missing = [atom for atom in _only_at_first(pattern, task) if atom not in can_hold]
+        if missing and not fitting:
+            yield Remark(
+                f"{form}: the problem does not say {missing[0].pddl()}, and no action brings it "
+                "about",
+                _LEFT_OPEN.format(missing[0].pddl()),
+                line,
+            )
+        elif not fitting:
             yield Remark(f"{form}: no fact of this form can ever hold", "Leave it out.", line)
+        elif missing and not priors.nothing_known:
+            yield Remark(
+                f"{pattern}: {probability:g} has no effect on {missing[0].pddl()}"
+                f"{' and others' if len(missing) > 1 else ''}: the problem does not say so, and no "
+                "action brings it about",
+                _LEFT_OPEN.format(missing[0].pddl()),
+                line,
+            )
         elif not own:
             later = "what follows says otherwise of every fact of this form"
             yield Remark(f"{form}: {later}", "Of several that fit the last one counts.", line)
@@ -85,6 +107,19 @@ def remarks(task: Task, priors: Priors, undo: Sequence[Any] = ()) -> Iterator[Re
                 "priors say, what else may be the case instead.",
                 line,
             )
+
+
+def _only_at_first(pattern: Pattern, task: Task) -> Iterator[Atom]:
+    """The facts that a form fits, of a predicate that no action brings about."""
+    effects = (effect.literal for schema in task.schemas for effect in schema.effects)
+    if any(each.positive and each.predicate == pattern.predicate for each in effects):
+        return
+    kinds = task.predicates[pattern.predicate]
+    objects = ([obj for obj in task.objects if task.is_a(obj, kind)] for kind in kinds)
+    for arguments in islice(product(*objects), _LISTED):
+        atom = Atom(pattern.predicate, arguments)
+        if pattern.match(atom, {}, task) is not None:
+            yield atom
 
 
 def _shared_out(task: Task, priors: Priors) -> dict[int, float]:

@@ -12,7 +12,7 @@ from tpvqa.pddl import Action
 from tpvqa.worlds.outcome import Failure
 from tpvqa.worlds.simulation import Simulation
 
-_CALLED_DEAD = re.compile(r"[^;]+ failed \d+ times of \d+(?: that could[^;]*)?(;|$)")
+CALLED_DEAD = re.compile(r"[^;]+ failed in about \d+ of \d+ tries(?:, of which[^;]*)?(;|$)")
 """How a monitor says first of all that a skill seems never to work."""
 
 
@@ -74,7 +74,7 @@ class Judge:
                     truth = self._simulation.possible(action)
                 else:
                     truth = self._simulation.achieved(action)
-                if _CALLED_DEAD.match(event.reason):
+                if CALLED_DEAD.match(event.reason):
                     self._called_dead(action)
                 went_on = event.decision in (Decision.GO_ON, Decision.DONE)
                 self.decisions[f"{event.when}|{truth:d}|{went_on:d}"] += 1

@@ -9,6 +9,7 @@ from typing import Any
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.statistics import Paired, paired, wilson
+from tpvqa.events.events import BELIEVED
 
 REFERENCE = "tpvqa"
 """The monitor that all others are compared with, where nothing else is said."""
@@ -26,6 +27,7 @@ class Summary:
         recovery_rate: Completed episodes among those in which an action failed; None for none.
         ended_before_first_action: Episodes without any action.
         errors: Episodes that the program could not run to their end; not completed.
+        wrongly_done: Episodes that ended believing that the goal holds where it did not.
         endings: How episodes ended, most frequent first.
         against: Comparison with the reference on the same episodes; None for itself.
     """
@@ -50,6 +52,7 @@ class Summary:
     recovery_rate: float | None
     ended_before_first_action: int
     errors: int
+    wrongly_done: int
     endings: Mapping[str, int]
     against: Paired | None = None
 
@@ -96,6 +99,7 @@ def summarise(cell: Cell, rows: Sequence[EpisodeRow], reference: Sequence[Episod
         recovery_rate=fmean(row.completed for row in failed) if failed else None,
         ended_before_first_action=sum(not row.actions and not row.error for row in rows),
         errors=sum(bool(row.error) for row in rows),
+        wrongly_done=sum(row.ending == BELIEVED for row in rows),
         endings=dict(Counter(row.ending for row in rows).most_common()),
         against=_against(rows, reference),
     )

@@ -126,17 +126,18 @@ def _idle(task: Task, schema: ActionSchema) -> str:
     return f"it ends {said}, which never holds"
 
 
-def _needs(condition: Condition) -> Iterator[Literal]:
+def required_of(condition: Condition) -> Iterator[Literal]:
+    """The literals that a ground condition cannot do without."""
     if isinstance(condition, Literal):
         yield condition
     elif isinstance(condition, Conjunction):
         for part in condition.parts:
-            yield from _needs(part)
+            yield from required_of(part)
 
 
 def _excluded(action: Action, proved: Mutexes, undone: frozenset[str]) -> str:
     """Why a ground action is never possible although each of its preconditions may hold."""
-    needed = (literal.atom for literal in _needs(action.precondition) if literal.positive)
+    needed = (literal.atom for literal in required_of(action.precondition) if literal.positive)
     atoms = [atom for atom in needed if atom.predicate not in undone]
     for atom in atoms:
         if atom in proved.never:
@@ -150,7 +151,7 @@ def _excluded(action: Action, proved: Mutexes, undone: frozenset[str]) -> str:
 def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
     """A goal that cannot be reached, or for which no plan is found in time."""
     file, line = named(task.problem_path), line_of_goal(task)
-    demanded = dict.fromkeys(each.atom for each in _needs(task.goal) if each.positive)
+    demanded = dict.fromkeys(each.atom for each in required_of(task.goal) if each.positive)
     for one, other in combinations(demanded, 2):
         if any({one, other} <= group.atoms for group in task.mutex_groups):
             yield Finding(

@@ -12,9 +12,10 @@ from tpvqa.checking.places import (
     line_of_object,
     line_of_predicate,
 )
-from tpvqa.checking.possible import atoms_of
+from tpvqa.checking.possible import atoms_of, required_of
 from tpvqa.drafting import LOOK, Words
 from tpvqa.pddl import Action, Atom, Literal, Task
+from tpvqa.pddl.conditions import literals
 from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import QuestionBook
 from tpvqa.questions.wordings import Wordings
@@ -260,7 +261,7 @@ def _same_actions(task: Task, book: QuestionBook, file: Path | None) -> Iterator
         first = texts.setdefault(book.say(action), action)
         pair = frozenset((first.name, action.name))
         one = len(pair) == 1
-        if first is action or pair in told or (one and _brings(first) == _brings(action)):
+        if first is action or pair in told or (one and not _differ(task, first, action)):
             continue
         told.add(pair)
         yield Finding(
@@ -272,6 +273,25 @@ def _same_actions(task: Task, book: QuestionBook, file: Path | None) -> Iterator
             named(file),
             line_of_entry(file, "actions", action.name),
         )
+
+
+def _differ(task: Task, one: Action, other: Action) -> bool:
+    """Whether two ways of an action bring about other facts, or may both be possible and need
+    other facts: not to pick up a thing from where it is, and from where it is not."""
+    if _brings(one) != _brings(other):
+        return True
+    if frozenset(literals(one.precondition)) == frozenset(literals(other.precondition)):
+        return False
+    mine, its = (
+        frozenset(each.atom for each in required_of(action.precondition) if each.positive)
+        for action in (one, other)
+    )
+    return not any(
+        another in group.atoms
+        for atom in mine - its
+        for group in task.groups_of(atom)
+        for another in its - mine
+    )
 
 
 def _brings(action: Action) -> frozenset[Atom]:

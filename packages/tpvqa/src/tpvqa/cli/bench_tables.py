@@ -18,12 +18,12 @@ def print_results(results: "Results") -> None:
 
     console = ResultConsole()
     if not console.is_terminal:
-        console = ResultConsole(width=150)
+        console = ResultConsole(width=164)
     for group in results.groups:
         table = _table(group.title)
         beside = f"vs {results.reference}"
-        figures = ("completed", "95% interval", beside, "p", "questions", "looks", "actions")
-        _columns(table, ("task", "monitor"), (*figures, "repeats", "replans", "errors"))
+        figures = ("completed", "95% interval", beside, "p", "wrongly done", "questions", "looks")
+        _columns(table, ("task", "monitor"), (*figures, "actions", "repeats", "replans", "errors"))
         last = ""
         for each in results.summaries_of(group):
             if last not in ("", each.task):
@@ -36,6 +36,7 @@ def print_results(results: "Results") -> None:
                 f"{each.ci_low:.2f}–{each.ci_high:.2f}",
                 "" if paired is None else f"{paired.difference:+.3f}",
                 "" if paired is None else f"{paired.p:.2g}",
+                str(each.wrongly_done),
                 f"{each.questions:.1f}",
                 f"{each.looks:.1f}",
                 f"{each.actions:.1f}",

@@ -1,13 +1,15 @@
 """Actions put into words: what their names say, and what their effects say of their parameters."""
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import Noun, Phrases
-from tpvqa.drafting.forms import is_verb, participle, past
-from tpvqa.drafting.lexicon import PARTICLES, PREPOSITIONS, word_set
+from tpvqa.drafting.forms import is_verb, past
+from tpvqa.drafting.lexicon import BARE, PARTICLES, PREPOSITIONS, word_set
 from tpvqa.drafting.roles import End, Roles, roles_of
 from tpvqa.pddl.schema import ActionSchema
 
@@ -35,11 +37,6 @@ _PASSING = word_set("through over under across around behind past along beyond")
 _IN = word_set("in on at into onto")
 _LETTING = word_set("go idle rest run cool dry soak settle stand wait drip drain fall loose")
 """What a thing is let do, or be."""
-_BARE = word_set(
-    "foot hand board place line order half time hold bed power fire gear rest home reverse motion "
-    "use stock"
-)
-"""What goes without an article behind one of these: on foot, in half."""
 _SEEKING = word_set("find search seek look detect")
 
 
@@ -89,7 +86,6 @@ class Actions:
         tail = " ".join(piece for piece in pieces if piece)
         if verb == "pick" and not tail.startswith("up") and " of " not in tail:
             tail = f"up {tail}"
-        perfect = participle(verb) if is_verb(verb) else past(verb)
         unsure = (
             tail.count("with ") > 1
             or not is_verb(verb)
@@ -97,10 +93,11 @@ class Actions:
             or bool(self._lost(rest, tail, nouns))
             or any(self._guessed(verb, tail, n, noun, roles) for n, noun in told.items())
             or _either_way(verb, rest, tail)
+            or not self._has_parts(tail)
             or (verb == "let" and not told and bool(_LETTING & set(rest)))
         )
         if doer is None:
-            return Spoken(f"{verb} {tail}".strip(), f"{perfect} {tail}".strip(), unsure)
+            return Spoken(f"{verb} {tail}".strip(), f"{past(verb)} {tail}".strip(), unsure)
         said = f"have {doer.said} {verb} {tail}".strip()
         return Spoken(said, said.replace("have ", "had ", 1), unsure)
 
@@ -108,6 +105,20 @@ class Actions:
         """The words of the name that are not said, though nothing else says them."""
         said = {*tail.split()} | PREPOSITIONS | PARTICLES | {"robot"}
         return [word for word in rest if word not in said and not self._names(word, nouns)]
+
+    def _has_parts(self, tail: str) -> bool:
+        """Whether what is said to be of a thing is known to be: the lid of {x}, or the page, of
+        which the domain says something; not the actor, of dress-actor(x)."""
+        return all(
+            each.split()[-1] in self._task_words | lexicon.PARTS
+            for each in re.findall(r"the ([\w ]+) of (?:the )?{", tail)
+        )
+
+    @cached_property
+    def _task_words(self) -> frozenset[str]:
+        """The words of all predicates."""
+        names = self._things.task.predicates
+        return frozenset(word for name in names for word in self._things.words(name))
 
     def _guessed(self, verb: str, tail: str, name: str, noun: Noun, roles: Roles) -> bool:
         """Whether nothing tells that something is done with a thing: seal a bag with a knife."""
@@ -219,7 +230,7 @@ class Actions:
         preposition, _, thing = words.partition(" ")
         if not thing or thing.split()[0] in ("the", "a", "an"):
             return words
-        known = thing not in _BARE and self._a_thing(thing, schema)
+        known = thing not in BARE and self._a_thing(thing, schema)
         passing = preposition in _PASSING
         return f"{preposition} the {thing}" if passing or (preposition in _IN and known) else words
 
@@ -232,7 +243,11 @@ class Actions:
         if any(last == name.split()[-1] for name in (*called, *labels, *kinds)):
             return True
         effects = (self._things.words(each.literal.predicate) for each in schema.effects)
-        return any(words[0] == thing and len(words) > 1 for words in effects)
+        return any(
+            len(words) > 1
+            and (words[0] == thing or (words[-1] == thing and words[-2] in PREPOSITIONS))
+            for words in effects
+        )
 
     def _names(self, word: str, nouns: Mapping[str, Noun]) -> bool:
         """Whether a word of the name says again what a parameter is: load_truck, move-robot."""
@@ -256,6 +271,9 @@ class Actions:
         """The particle and the direct object."""
         particles = [word for word in joined if word in PARTICLES | _WAYS]
         named = [word for word in joined if word not in particles and word not in PREPOSITIONS]
+        where = self._stated(named, nouns[patients[0]], schema) if named and patients else ""
+        if where.split(" ")[0] in particles[-1:]:
+            particles = particles[:-1]  # put-lid-on(x): on the x says it
         yield " ".join(particles)
         if verb == "let" and named and _LETTING.issuperset(named):
             yield from (f"{named[0]} of", *first) if named == ["go"] and first else (*first, *named)
@@ -269,7 +287,6 @@ class Actions:
             yield f"the {' '.join(named)}"
             yield self._phrases.placed(nouns[patients[0]])
         else:
-            where = self._stated(named, nouns[patients[0]], schema) if patients else ""
             yield f"the {' '.join(named)} {where or f'of {first[0]}'}"
 
     def _stated(self, named: list[str], noun: Noun, schema: ActionSchema) -> str:
@@ -347,5 +364,5 @@ def _particles(verb: str) -> frozenset[str]:
 def _either_way(verb: str, rest: list[str], tail: str) -> bool:
     """Whether a name may mean that a thing is put on something, or that something is put on it:
     clip-on-halyard."""
-    named = len(rest) > 1 and rest[0] in _particles(verb) and rest[1] not in _BARE
+    named = len(rest) > 1 and rest[0] in _particles(verb) and rest[1] not in BARE
     return named and tail.endswith(rest[-1])

@@ -25,7 +25,7 @@ _HEAD = """\
 # - Is each question answered yes exactly if its fact is true, by who sees nothing but a picture?
 # - Where there is a list, its first question is asked, and the others where the errors of the first
 #   last: each is to ask the very same. `tpvqa vlm compare` tells which your VLM reads best.
-# - What no picture can show belongs under never_asked.
+# - What no picture can show belongs under never_asked, too; reasons keep the words of its question.
 # `tpvqa questions` prints what comes of this file, `tpvqa check` what does not fit.
 """
 

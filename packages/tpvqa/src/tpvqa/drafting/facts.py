@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, part, unknown
+from tpvqa.drafting.doubt import either_of, is_done, open_to_doubt, seldom_shown
 from tpvqa.drafting.facts_tables import PLAIN, ROADS, SAME
 from tpvqa.drafting.forms import (
     Form,
@@ -17,7 +18,7 @@ from tpvqa.drafting.forms import (
     verb_form,
 )
 from tpvqa.drafting.lexicon import ADJECTIVES, PREPOSITIONS
-from tpvqa.drafting.of_nothing import WEATHER, of_nothing
+from tpvqa.drafting.of_nothing import of_nothing
 from tpvqa.drafting.predicates import of_noun, of_verb, without_kind
 from tpvqa.drafting.things import Things, plural, some
 from tpvqa.questions.template import indefinite_article
@@ -59,7 +60,8 @@ class Facts:
         """The wordings of a predicate."""
         words = self._things.words(predicate)
         nouns = self._nouns(predicate)
-        denied = words[0] in _NEGATIONS and len(words) > 1
+        none = words[0] == "no" and len(nouns) == 1 and words[-1] in PREPOSITIONS and len(words) > 2
+        denied = words[0] in _NEGATIONS and len(words) > 1 and not none
         lacks = words[0] == "no" and len(nouns) == 1 and self._is_thing(words[1:])
         clauses = list(self._clauses(words[1:] if denied else words, nouns, predicate))
         if lacks:
@@ -81,14 +83,10 @@ class Facts:
             wordings += [affirmed or say(again)] if affirmed or clauses[0].auxiliary == "is" else []
         missing = [n.said for n in nouns if f"{{{n.parameter}" not in wordings[0]]
         unsure = unsure or (bool(missing) and not self._leaves_out(nouns, wordings[0]))
-        unsure = unsure or (
-            clauses[0].subject.said in ("it", "anything") and words[0] not in WEATHER
-        )
-        guessed = bool(nouns) and " of " in clauses[0].subject.said and len(words) > 1
-        unsure = unsure or (guessed and words[0] not in ADJECTIVES and _is_done(words[0]))
+        unsure = unsure or open_to_doubt(words, nouns, clauses[0])
+        unsure = unsure or either_of(words, [self._named(noun) for noun in nouns])
         opposite = self._opposite(predicate) if denied else None
-        unseen = words[-1] in lexicon.UNSEEN
-        return Said(tuple(wordings[:3]), unsure, opposite, unseen)
+        return Said(tuple(wordings[:3]), unsure, opposite, seldom_shown(words))
 
     def _may_end(self, predicate: str) -> bool:
         """Whether an action makes facts of a predicate false."""
@@ -143,8 +141,15 @@ class Facts:
         if words[-1] == "of" and len(words) > 1 and len(nouns) > 1 and words[-2] != "top":
             kept = words[0] in PREPOSITIONS or verb_form(words[0]) is not None  # in front of
             words = words if kept else words[:-1]
+            if not kept and words[-1] in self._named(nouns[0]) - self._named(nouns[1]):
+                whose = [f"the {' '.join(words)} of {nouns[1].said}", *self._others(nouns[2:])]
+                yield Clause("is", nouns[0], " ".join(whose))  # wheel_of(wheel, bike)
+                return
         if not nouns:
             yield from of_nothing(words)
+        elif words[0] == "no" and len(words) > 2 and words[-1] in PREPOSITIONS:
+            where = self._phrases.placed(nouns[0], words[-1])  # no-puncture-in(wheel)
+            yield Clause("is", Noun("there"), f"no {' '.join(words[1:-1])} {where}")
         elif (
             len(words) > 1
             and words[0] in lexicon.AGENTS | lexicon.HANDS
@@ -315,6 +320,8 @@ class Facts:
             place = f"{preposition} {first.said}"
             yield Clause("is", ROBOT, place)
             yield from self._elsewhere_said(ROBOT, place, preposition)
+        elif not rest and what in lexicon.BARE:
+            yield Clause("is", first, f"{preposition} {what}")
         elif not rest:
             yield Clause("is", first, f"{preposition} the {what}")
             if preposition in SAME:
@@ -323,8 +330,10 @@ class Facts:
     def _somebody_is_at(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
         """robot_at(place), lift-at(floor)."""
         *who, preposition = words
-        if len(who) > 1 and (_is_done(who[-1]) or is_ing(who[-1])):  # windlass-left-at
-            where = self._phrases.placed(nouns[0], preposition)
+        if len(who) > 1 and (is_done(who[-1]) or is_ing(who[-1])):  # windlass-left-at
+            aimed = (verb_form(who[-1]) or ("", None))[0] in lexicon.DIRECTED
+            plain = f"{preposition} {nouns[0].said}"
+            where = plain if aimed else self._phrases.placed(nouns[0], preposition)
             yield Clause("is", part(" ".join(who[:-1])), f"{who[-1]} {where}")
             return
         name = " ".join(who)
@@ -373,8 +382,3 @@ class Facts:
             else:
                 said.append(f"with {noun.said}")
         return said
-
-
-def _is_done(word: str) -> bool:
-    form = verb_form(word)
-    return form is not None and form[1] is Form.PARTICIPLE

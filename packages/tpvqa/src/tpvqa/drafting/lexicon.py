@@ -11,6 +11,8 @@ PREPOSITIONS = word_set(
     "for from in inside into near of off on onto outside over through to toward towards under "
     "underneath upon with within"
 )
+PLACING = word_set("at behind in inside into near on onto to under")
+"""Prepositions behind which a thing stands that is there: on the stand."""
 PARTICLES = word_set("away back down in off on open out over shut together up")
 """What follows a verb as a part of it: pick up, switch on, put back."""
 
@@ -27,7 +29,10 @@ PEOPLE = word_set(
 )
 """Agents that are made to do something: have driver 1 walk."""
 HANDS = word_set("arm claw effector gripper hand hands jaws manipulator fingers")
-PERSONS = word_set("person human patient man woman child customer guest employee resident")
+PERSONS = word_set(
+    "person human patient man woman child customer guest employee resident actor actress dancer "
+    "singer musician student pupil boy girl friend visitor neighbour neighbor"
+)
 """Who has a name of their own."""
 COLOURS = word_set("color colour paint")
 """What a thing is painted, without an article."""
@@ -79,6 +84,11 @@ ADJECTIVES = word_set(
 )
 PARTS = word_set("lid cap cover label handle wheel door plug seal stopper")
 """What a thing may have or lack."""
+BARE = word_set(
+    "foot hand board place line order half time hold bed power fire gear rest home reverse motion "
+    "use stock focus sync tune view sight tow transit tension position service bloom season"
+)
+"""What goes without an article behind a preposition: on foot, in half, in focus."""
 TOOLS = word_set(
     "tool wrench spanner hammer plier pliers shears scissors knife screwdriver driver drill saw "
     "tape tongs tweezers clamp key brush sponge cloth rope strap torch crowbar lever"
@@ -89,7 +99,9 @@ UNSEEN = word_set(
     "scheduled reserved registered known checked inspected metered measured calibrated tested "
     "sampled sterile sterilised sterilized disinfected contaminated infected diseased healthy ill "
     "tired hungry hot warm cold cool charged powered energised energized primed valid safe unsafe "
-    "paid booked assigned retired rebuilt faulty encoded coded recorded reported informed heavy"
+    "paid booked assigned retired rebuilt faulty encoded coded recorded reported informed heavy "
+    "fed watered dosed medicated vaccinated exposed photographed sketched scanned sampled weighed "
+    "greeted visited explored listened heard read learnt learned counted smelt tasted notified"
 )
 """What a picture seldom shows."""
 SIDES = word_set(
@@ -174,7 +186,8 @@ REGULAR = word_set(
     "shift shred sign smell spill steer sweeten tidy trace train trap triage undock unfold "
     "unhook unmount untie validate wet withdraw hitch unhitch gather stuff tumble extract clip "
     "unclip poll eject crimp solder pipette decant aspirate incubate stopper dilute sift "
-    "sieve haul drag tether untether rivet deploy dose bolt unbolt grapple convey escort shuttle"
+    "sieve haul drag tether untether rivet deploy dose bolt unbolt grapple convey escort shuttle "
+    "aim brace coil dim drape engage expose fuse net oil pry puff sketch slew smoke swab"
 )
 """Base forms of regular verbs."""
 
@@ -199,6 +212,8 @@ STATES = word_set(
 )
 """Verbs whose participle names what can be seen of a thing: it is cut, it is locked."""
 POSTURES = word_set("lie stand sit hang rest lean stay")
+DIRECTED = word_set("aim point direct look face focus gaze steer orient")
+"""What is done at a thing from elsewhere, wherever one would stand with it."""
 STATIVE = word_set(
     "belong contain cost exist fit have know like mean need own require want love work match "
     "depend hold cover support touch block"
@@ -249,7 +264,8 @@ SEVERAL = word_set("children feet geese men mice people teeth women")
 """Several things, without an s."""
 MASS = word_set(
     "water milk coffee tea juice food soil sugar sand liquid fuel dust rubbish trash dirt money "
-    "power energy rice flour salt oil soap ink glue grease"
+    "power energy rice flour salt oil soap ink glue grease algae mud snow ice rust moss foam mould "
+    "grime wax honey smoke steam sauce dough dew frost blood"
 )
 """What is not counted: any water, not a water."""
 SWITCHED = word_set(

@@ -7,7 +7,8 @@ from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, part
 from tpvqa.drafting.facts_tables import COMPARED, ELSE, HANDLING, LINKS, PICTURES, ROADS
 from tpvqa.drafting.forms import Form, ing, participle, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, STATES
-from tpvqa.drafting.things import plural
+from tpvqa.drafting.names import is_number
+from tpvqa.drafting.things import plural, some
 from tpvqa.questions.template import indefinite_article
 
 Others = Callable[[list[Noun]], list[str]]
@@ -95,6 +96,7 @@ def _done(
         if extra and extra not in PREPOSITIONS:
             said = f"{said} {extra}"
         place = joint in (None, "at", "on", "in") and things.are_places(rest[0].objects)
+        place = place and base not in lexicon.DIRECTED
         if place and extra not in PREPOSITIONS and all(map(things.holds_things, rest[0].objects)):
             joint = None  # stored: in a box, but on a shelf
         where = (
@@ -120,6 +122,8 @@ def _done(
     ):
         yield Clause("has", part(extra, first.said), f"been {said}")
         return
+    if len(words) > 2 and words[1] in lexicon.PLACING and _stands_for_one(words[2:]):
+        extra = " ".join([words[1], "the", *words[2:]])  # mounted-in-stand
     state = {"opened": "open", "shut": "closed"}.get(said, said)
     state = f"{state} {extra}".strip()
     been = f"been {said} {extra}".strip()
@@ -226,7 +230,11 @@ def of_noun(
     first, *rest = nouns
     last, said = words[-1], " ".join(words)
     kinds = things.nouns(first.objects)
-    if len(words) == 2 and words[0] in ADJECTIVES and last in kinds and not rest:
+    if last == "enough" and len(words) > 1 and not rest:
+        yield from _enough(words, first)
+    elif not rest and len(words) > 1 and _strewn(words):
+        yield Clause("is", first, f"{last} with {' '.join(words[:-1])}")  # dust-covered
+    elif len(words) == 2 and words[0] in ADJECTIVES and last in kinds and not rest:
         yield Clause("is", first, words[0])
         if words[0] in ELSE:
             yield Clause("is", first, ELSE[words[0]])
@@ -250,7 +258,7 @@ def of_noun(
         and not rest
         and (last not in ADJECTIVES | PARTICLES | kinds and verb_form(last) is None)
     ):
-        yield Clause("does", first, f"have {said}")
+        yield Clause("does", first, f"have {some(words)}")
     elif rest and last in LINKS:
         yield Clause("is", first, " ".join([said, LINKS[last], rest[0].said, *others(rest[1:])]))
     elif last in ROADS and len(rest) > 0:
@@ -266,6 +274,31 @@ def of_noun(
         yield Clause("is", first, said)
     elif len(words) > 1 and verb_form(last) is not None:
         yield Clause("is", part(" ".join(words[:-1]), first.said), last)
+
+
+def _enough(words: list[str], first: Noun) -> Iterator[Clause]:
+    """warm-enough(x), water-enough(x)."""
+    *before, enough = words
+    if before[-1] in ADJECTIVES:
+        yield Clause("is", first, " ".join(words))
+    else:
+        yield Clause("does", first, f"have {enough} {' '.join(before)}")
+
+
+def _strewn(words: list[str]) -> bool:
+    """Whether words say what a thing is covered or filled with: dust-covered."""
+    form = verb_form(words[-1])
+    if form is None or form[1] is not Form.PARTICIPLE:
+        return False
+    return lexicon.TAKES.get(form[0]) == "with" and words[-2] in lexicon.MASS
+
+
+def _stands_for_one(words: list[str]) -> bool:
+    """Whether an article goes before words: the stand; not half, water, red, bags or 2."""
+    bare = lexicon.BARE | lexicon.MASS | ADJECTIVES | PARTICLES | {"a", "an", "the"}
+    return bare.isdisjoint((words[0], words[-1])) and not (
+        plural(words[-1]) or is_number(words[0]) or any(not each.isalpha() for each in words)
+    )
 
 
 def _hand(phrases: Phrases, words: list[str], first: Noun) -> Iterator[Clause]:

@@ -14,6 +14,8 @@ _TARGETS = ("to", "into", "onto", "dest", "destination", "target", "eloc", "end"
 _LOCATING = lexicon.POSTURES | word_set(
     "load insert stow put place stack park locate mount store set dock shelve position pack"
 )
+_JOINING = word_set("with by")
+"""Prepositions behind which nothing is where something goes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class Roles:
         moved: What goes there.
         reversed: Of an action that brings about its own verb, "cover" of covers(lid, box): what it
             is done to, and with what.
-        counted: Those that only say how much is left of something.
+        counted: Those that only say how much is left of something, or what it no longer points at.
     """
 
     changing: frozenset[str]
@@ -67,6 +69,7 @@ def roles_of(schema: ActionSchema, things: Things) -> Roles:
             del ends[place]  # it is both left and reached
     changed = list(_changed(schema, names))
     counted = frozenset(name for pair in changed for name in pair if ends) - frozenset(ends)
+    counted |= _turned_from(schema, things)
     ends = ends or (changed[0] if changed else {})
     for name in names:
         plain = name.lstrip("?").split("-")[-1].split("_")[-1]
@@ -85,13 +88,31 @@ def _placing(schema: ActionSchema, things: Things) -> Iterator[tuple[str, tuple[
         literal = effect.literal
         words = things.words(literal.predicate)
         form = verb_form(words[0])
-        located = not PREPOSITIONS.isdisjoint((words[0], words[-1])) or (
-            form is not None and form[0] in _LOCATING
+        joints = PREPOSITIONS - _JOINING
+        located = not joints.isdisjoint((words[0], words[-1])) and (
+            literal.positive or not _directed(words)
         )
+        located = located or (form is not None and form[0] in _LOCATING)
         if not located or not literal.arguments:
             continue
         if len(literal.arguments) > 1 or len(unary[literal.predicate]) > 1:
             yield literal.predicate, literal.arguments, literal.positive
+
+
+def _directed(words: list[str]) -> bool:
+    return any((verb_form(word) or ("", None))[0] in lexicon.DIRECTED for word in words)
+
+
+def _turned_from(schema: ActionSchema, things: Things) -> frozenset[str]:
+    """What something is turned away from: s of an action that ends (pointed-at ?t ?s) alone."""
+    brought = {w for e in schema.effects if e.literal.positive for w in e.literal.arguments}
+    ended = (e.literal for e in schema.effects if not e.literal.positive)
+    found = {
+        each.arguments[-1]
+        for each in ended
+        if len(each.arguments) > 1 and _directed(things.words(each.predicate))
+    }
+    return frozenset(found - brought)
 
 
 def _preposition(predicate: str, things: Things, kind: str) -> str | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from tpvqa.drafting.lexicon import (
+    ADJECTIVES,
     AGENTS,
     COLOURS,
     GENERIC,
@@ -133,8 +134,8 @@ class Things:
             return Label(f"{kind} {obj[-1].upper()}", article=False)
         if any(any(map(str.isdigit, word)) for word in words) or is_number(words[-1]):
             return Label(_enumerated(words, kind, obj), article=False)
-        if noun in PERSONS and raw.isalpha() and raw.lower() not in AGENTS | PERSONS:
-            return Label(raw.capitalize(), article=False)
+        if noun in PERSONS and _is_own_name(words):
+            return Label(" ".join(map(str.capitalize, words)), article=False)
         if noun in COLOURS and all(map(str.isalpha, words)):
             return Label(" ".join(words), article=False)
         if kind and noun not in words and set(words) <= SIDES:
@@ -216,12 +217,20 @@ class Things:
         return counted.most_common(1)[0][0] if counted else "at"
 
 
+def _is_own_name(words: list[str]) -> bool:
+    """Whether words are what somebody is called, not what tells somebody from others: king lear,
+    not the old man."""
+    telling = AGENTS | PERSONS | SIDES | COLOURS | ADJECTIVES
+    return all(map(str.isalpha, words)) and telling.isdisjoint(words)
+
+
 def _enumerated(words: list[str], kind: str, obj: str) -> str:
     """A name that ends in numbers: crate 2, location 0-1."""
     head = [word for word in words if word.isalpha() and len(word) > 1 and not is_number(word)]
     tail = words[len(head) :] if words[: len(head)] == head else []
     if not head:
         return f"{kind} {obj.replace('_', '-')}" if kind else obj
+    head = [kind] if kind and GENERIC.issuperset(head) else head
     if kind and set(head) <= SIDES and kind not in head:
         return " ".join([*head, kind, *tail])
     if not tail:
@@ -229,7 +238,7 @@ def _enumerated(words: list[str], kind: str, obj: str) -> str:
     if all(len(word) <= 2 for word in tail):
         said = re.sub(r"(?<=[a-z])-(?=\d)", "", "-".join(tail))
         return f"{' '.join(head)} {said}"
-    return " ".join(words)
+    return " ".join([*head, *tail])
 
 
 def plural(word: str, kind: str = "") -> bool:
@@ -247,7 +256,9 @@ def plural(word: str, kind: str = "") -> bool:
 
 
 def some(words: Sequence[str]) -> str:
-    """A thing that is named without saying which: a cup, any water, any keys."""
+    """A thing that is named without saying which: a cup, any water, any keys, 2 keys."""
     noun = " ".join(words)
+    if is_number(words[0]):
+        return noun
     many = words[-1] in MASS or plural(words[-1])
     return f"any {noun}" if many else f"{indefinite_article(noun)} {noun}"

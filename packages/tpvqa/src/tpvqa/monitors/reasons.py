@@ -181,7 +181,7 @@ def _why_on(grounds: Grounds, action: Action, missing: Sequence[Literal]) -> lis
     for need in missing[:1]:
         parts.append(f"{grounds.say(need)} {_figure(grounds.probability(need))} is for later")
     able = grounds.belief.where(lambda state: task.applicable(state, action))
-    return parts or [f"it can be done with {_figure(able)}"]
+    return parts or [f"{said} can be done with {_figure(able)}"]
 
 
 def _most_telling(grounds: Grounds) -> list[str]:

@@ -180,13 +180,15 @@ class Ways:
         )
 
     def failing(self, step: Step) -> str:
-        """The skill of a step where it seems to be dead, in words."""
+        """The skill of a step where it seems to be dead, in words: of no try is it known for sure
+        that it could have worked, or failed."""
         if self._chances.skill(step.action).shown < NAMED:
             return ""
         able, failed = self._chances.times(step.action)
         tries = self._chances.tries(step.action)
-        said = f"{step.book.say(step.action)} failed {round(failed)} times of {round(able)}"
-        return said if round(able) == tries else f"{said} that could have worked, of {tries} tries"
+        said = f"{step.book.say(step.action)} failed in about {round(failed)} of {tries} tries"
+        in_vain = tries - able >= 1  # as far as is known
+        return f"{said}, of which about {round(able)} could have worked" if in_vain else said
 
     def take(self, plan: Plan, state: State) -> None:
         """Know a plan from a state."""

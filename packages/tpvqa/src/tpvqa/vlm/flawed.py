@@ -159,7 +159,8 @@ class Biased(Flawed):
     def told(cls, trial: Trial, spec: str, words: list[str]) -> "Biased":
         """From PREDICATE:YES_IF_TRUE:YES_IF_FALSE[:ACCURACY]."""
         true, false, accuracy = _numbers(spec, words[1:], (None, None, 0.8))
-        return cls(trial, spec, predicate=words[0], yes=(false, true), accuracy=accuracy)
+        name = words[0].lower()  # PDDL knows no capitals
+        return cls(trial, spec, predicate=name, yes=(false, true), accuracy=accuracy)
 
     def right_of(self, question: Question, *, truth: bool) -> float:
         """By the two rates of yes, where it is about the predicate."""

@@ -2,7 +2,7 @@
 
 import base64
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -159,18 +159,16 @@ class Results:
         ]
 
 
-def draw(results: Results) -> dict[str, Any]:
-    """All figures by name."""
-    drawn: dict[str, Any] = {}
+def draw(results: Results) -> Iterator[tuple[str, Any]]:
+    """All figures with their names, each made when it is asked for: they take much memory."""
     for group in results.groups:
         own = results.summaries_of(group)
         if own:
-            drawn[f"completion-{group.file}"] = figures.completion(own)
-            drawn[f"endings-{group.file}"] = figures.endings(results.of(group))
-            drawn[f"limits-{group.file}"] = figures.limits(results.of(group))
+            yield f"completion-{group.file}", figures.completion(own)
+            yield f"endings-{group.file}", figures.endings(results.of(group))
+            yield f"limits-{group.file}", figures.limits(results.of(group))
     if results.curves:
-        drawn["accuracy"] = figures.accuracy_curves(results.curves)
-    return drawn
+        yield "accuracy", figures.accuracy_curves(results.curves)
 
 
 def write_bench_report(folder: Path, results: Results) -> Path:
@@ -189,11 +187,10 @@ def write_bench_report(folder: Path, results: Results) -> Path:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    drawn = draw(results)
     pictures = {}
     try:
         (folder / "figures").mkdir(exist_ok=True)
-        for name, figure in drawn.items():
+        for name, figure in draw(results):
             for kind in ("svg", "png"):
                 data = figures.saved(figure, kind)
                 write_whole(folder / "figures" / f"{name}.{kind}", data, remedy=REMEDY)

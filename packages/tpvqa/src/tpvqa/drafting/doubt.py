@@ -1,0 +1,61 @@
+"""What the name of a predicate leaves open, and what of it a picture seldom shows."""
+
+import re
+from collections.abc import Sequence
+
+from tpvqa.drafting import lexicon
+from tpvqa.drafting.clauses import Clause, Noun
+from tpvqa.drafting.forms import Form, verb_form
+from tpvqa.drafting.lexicon import ADJECTIVES, PREPOSITIONS
+from tpvqa.drafting.of_nothing import WEATHER
+
+
+def open_to_doubt(words: list[str], nouns: Sequence[Noun], clause: Clause) -> bool:
+    """Whether a name may as well mean something else than what it was put into.
+
+    Args:
+        words: Of the predicate's name.
+        nouns: Its arguments.
+        clause: What it was put into.
+    """
+    if clause.subject.said in ("it", "anything"):
+        return words[0] not in WEATHER
+    coded = [at for at, word in enumerate(words) if re.match(r"\d+[a-z]", word)]
+    if any(at == 0 or words[at - 1] not in PREPOSITIONS for at in coded):
+        return True  # ready4show, not inflated-to-4bar
+    if not nouns or " of " not in clause.subject.said or len(words) < 2:
+        return False
+    return (words[0] not in ADJECTIVES and is_done(words[0])) or _covering(words, clause)
+
+
+def _covering(words: list[str], clause: Clause) -> bool:
+    """Whether a thing may be covered with what it is asked to be covered of: lens-covered(x)."""
+    form = verb_form(words[-1])
+    done = form is not None and form[1] is Form.PARTICIPLE and clause.rest == words[-1]
+    with_it = form is not None and lexicon.TAKES.get(form[0]) == "with"
+    return done and with_it and words[-2] not in lexicon.PARTS
+
+
+def either_of(words: list[str], named: Sequence[frozenset[str]]) -> bool:
+    """Whether neither of two arguments is what the other is said to have: twin_of(x, y).
+
+    Args:
+        words: Of the predicate's name.
+        named: What each argument may be called.
+    """
+    if len(named) < 2 or len(words) < 2 or words[-1] != "of":
+        return False
+    begun = words[0] in PREPOSITIONS or verb_form(words[0]) is not None
+    return not begun and words[-2] != "top" and not any(words[-2] in each for each in named)
+
+
+def seldom_shown(words: list[str]) -> bool:
+    """Whether a name says what a picture seldom shows: inspected, warm-enough."""
+    said = words[:-1] if words[-1] == "enough" and len(words) > 1 else words
+    return said[-1] in lexicon.UNSEEN
+
+
+def is_done(word: str) -> bool:
+    """Whether a word says what was done with a thing: washed."""
+    form = verb_form(word)
+    return form is not None and form[1] is Form.PARTICIPLE
