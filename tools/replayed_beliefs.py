@@ -3,8 +3,9 @@
 The actions and the answers of recorded episodes go through the filter of a belief monitor that
 knows nothing of the VLM; what it then believes, at every decision, of the facts that the log tells
 there is compared with the truth. So two versions, or two priors, are compared on the very same
-evidence: what each would have done with it, which differs by chance, is left out. Episodes of
-symbolic worlds alone tell the truth that this takes.
+evidence: what each would have done with it, which differs by chance, is left out. So are a person's
+answers, what sensors said, what tries in vain make doubtful, and priors. Episodes of symbolic
+worlds alone tell the truth that this takes.
 """
 
 import sys
@@ -16,11 +17,13 @@ from statistics import fmean
 from tpvqa.episodes import read_episode
 from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided, Observed, Started
 from tpvqa.monitors.belief import MOST_FACTS, BeliefMonitor
-from tpvqa.pddl import Action, Atom, Literal, load_task
+from tpvqa.pddl import Action, Atom, Literal, task_from_text
 from tpvqa.questions import FactQuestion, QuestionBook
 from tpvqa.vlm import Answer
+from tpvqa.worlds.protocol import Report
 from tpvqa.worlds.world_file import load_world_file
 
+TOLD = Report.DONE, Report.FAILED
 LEAST = 1e-3
 """Nothing is taken to be believed with less, nor its contrary."""
 
@@ -33,7 +36,7 @@ def compared(folder: Path) -> Iterator[tuple[float, bool]]:
     """
     started, *events = read_episode(folder)
     assert isinstance(started, Started)
-    task = load_task(Path(started.domain_file), Path(started.problem_file))
+    task = task_from_text(started.domain, started.problem)
     book = QuestionBook.load(started.questions_file, task)
     rules = load_world_file(Path(started.world_file), task) if started.world_file else None
     monitor = BeliefMonitor(task, rules=rules, noise_model=started.noise_model)
@@ -46,7 +49,7 @@ def compared(folder: Path) -> Iterator[tuple[float, bool]]:
                 truth, view = _truth(event.snapshot), event.view
             case Asked():
                 asked = event
-            case Answered():
+            case Answered() if not asked.person:
                 for each, said in zip(asked.questions, event.answers, strict=True):
                     if question := questions.get(each.text):
                         answer = Answer(question, said.reply, said.p_yes)
@@ -57,7 +60,8 @@ def compared(folder: Path) -> Iterator[tuple[float, bool]]:
                 monitor.belief.act(done, monitor.chances.rates_of(done))
             case Acted():
                 assert done is not None
-                monitor.evidence.acted(done.name)
+                failed = event.report is Report.FAILED
+                monitor.evidence.acted(done.name, failed=failed if event.report in TOLD else None)
                 truth = _truth(event.snapshot)
             case Decided():
                 for name in event.belief:
@@ -97,6 +101,8 @@ def main() -> None:
             lost = fmean(-log(p if true else 1 - p) for p, true in told)
             scores.append((squared, lost))
             print(f"{folder.name}: squared error {squared:.4f}, log loss {lost:.4f}")
+    if not scores:
+        raise SystemExit("Name folders of episodes whose monitor was belief.")
     squared, lost = (fmean(each) for each in zip(*scores, strict=True))
     print(f"{len(scores)} episodes: squared error {squared:.4f}, log loss {lost:.4f}")
 

@@ -12,6 +12,7 @@ from tpvqa.belief.calibration import Calibration
 from tpvqa.belief.doubts import Doubts, moved
 from tpvqa.belief.evidence import Evidence
 from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.kinds import FRESH
 from tpvqa.belief.places import further_places, things
 from tpvqa.belief.priors import Priors
 from tpvqa.belief.starts import drawn_start, opened
@@ -61,8 +62,9 @@ def test_a_doubt_is_weighed_by_answers_and_given_once() -> None:
     doubts.learn((TABLE,), 0.1, 0.9)  # says nothing of the counter
     doubts.leave()
     expected = 0.1 * 0.2 / (0.1 * 0.2 + 0.9 * 0.8)
-    assert isclose(doubts.taken((COUNTER,), held=True), expected)
-    assert doubts.taken((COUNTER,), held=True) == 0
+    assert isclose(doubts.of((COUNTER,), held=True), expected)
+    doubts.give((COUNTER,))
+    assert doubts.of((COUNTER,), held=True) == 0
 
 
 def test_an_action_that_rests_on_a_place_takes_its_doubt_in_once() -> None:
@@ -120,10 +122,34 @@ def test_it_is_the_same_whether_a_doubt_is_taken_in_before_answers_or_after(
     assert likely[0] == pytest.approx(likely[1], rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("yeses", "trust"), [(0, None), (4, None), (8, None), (4, Trust.after(10**6))]
+)
+def test_what_many_noes_say_is_believed_after_yeses_too(yeses: int, trust: Trust | None) -> None:
+    belief = Belief(FaultModel(TASK))
+    calibration = Calibration.default().model_copy(update={"lasting": FRESH})
+    evidence = Evidence(belief, calibration, trust, doubts=Doubts(TASK))
+    asked = FactQuestion("Is the bread there?", Way.PRECONDITION, COUNTER)
+    for look in range(yeses + 60):
+        reply = Reply.YES if look < yeses else Reply.NO
+        evidence.take(asked, Answer(asked, reply), look, None)
+    assert belief.probability(COUNTER) < 0.5
+
+
+def test_an_answer_that_agrees_leaves_a_doubt_for_the_next_scene() -> None:
+    belief, doubts = Belief(FaultModel(TASK)), Doubts(TASK, 0.1)
+    evidence = Evidence(belief, Calibration.default(), None, doubts=doubts)
+    asked = FactQuestion("Is the bread there?", Way.PRECONDITION, COUNTER)
+    evidence.take(asked, Answer(asked, Reply.YES), 0, None)
+    assert isclose(doubts.gone(COUNTER), 0.1)  # as in this scene the belief weighs it itself
+    evidence.acted()
+    assert 0.01 < doubts.gone(COUNTER) < 0.05
+
+
 def test_another_place_has_its_share_of_a_doubt() -> None:
     (bread,) = (thing for thing in things(TASK) if thing.stated == COUNTER)
-    assert isclose(Doubts(TASK, 0.1).taken((TABLE,), held=False), 0.1 / (len(bread.places) - 1))
-    assert Doubts(TASK, 0.1).taken((Atom.parse("(near sink)"),), held=True) == 0
+    assert isclose(Doubts(TASK, 0.1).of((TABLE,), held=False), 0.1 / (len(bread.places) - 1))
+    assert Doubts(TASK, 0.1).of((Atom.parse("(near sink)"),), held=True) == 0
 
 
 def test_worlds_move_things_as_often_as_they_are_doubted() -> None:

@@ -39,8 +39,18 @@ def test_where_a_key_may_lie_that_nobody_gets_out_again_is_asked_about(tmp_path:
     ahead = Outlook(model, Costs(), Sight(model), task)
     assert lost(belief, ahead) == frozenset()  # nobody knows yet that no plan leads on
     ahead.give_up_on(gone)
-    assert lost(belief, ahead) == {SHAFT}
+    assert lost(belief, ahead) == {DESK, SHAFT}
     belief.begin([(gone, 1.0)])
-    assert lost(belief, ahead) == {SHAFT}
+    assert lost(belief, ahead) == {DESK, SHAFT}
     belief.begin([(task.init, 0.99), (gone, 0.01)])
     assert lost(belief, ahead) == frozenset()
+
+
+def test_so_is_what_has_to_hold_and_may_hold_no_more(tmp_path: Path) -> None:
+    task = office(tmp_path)
+    model, nowhere = FaultModel(task), task.init - {DESK}
+    belief = Belief(model)
+    belief.begin([(nowhere, 1.0)])
+    ahead = Outlook(model, Costs(), Sight(model), task)
+    ahead.give_up_on(nowhere)
+    assert lost(belief, ahead) == {DESK}

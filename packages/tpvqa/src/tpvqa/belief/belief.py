@@ -313,33 +313,33 @@ class Belief:
         """Take in that a fact may have changed without the action model knowing.
 
         From every joint state with a share of at least a hundredth, the nearest consistent ones
-        in which the fact is the other way get `chance` of its probability, as far as what was seen
-        since is as probable in them.
+        in which the fact is the other way get `chance` of its probability, as far as what was said
+        is as probable in them.
 
         Returns:
-            How many joint states that added.
+            How many of these are kept.
         """
-        grown, before, most = dict(self.weights), self.weights.keys(), 1
+        grown, met, most = dict(self.weights), set[int](), 1
+        rows = dict(zip(grown, self._noise.rows(tuple(grown)), strict=True))
         for number, weight in self.weights.items():
-            if weight < 0.01:
-                continue
             state = self.model.state(number)
-            others = self._surprise.flips(state, atoms)
+            others = self._surprise.flips(state, atoms) if weight >= 0.01 else ()
             if not others:
                 continue
             grown[number] -= chance * weight
             most = max(most, len(others))
             for other in others:
                 there = self.model.become(number, other)
-                row = self._noise.rows((number,))[0]
+                row = rows[number]
                 if instead and (more := instead(number, there)) is not None:
                     row = row * np.exp(more)
                 share = chance * weight / len(others) * (likely := float(row.sum()))
                 if share > 0.0:
+                    met.add(there)
                     self._noise.mix(there, grown.get(there, 0.0), row / likely, share)
                     grown[there] = grown.get(there, 0.0) + share
         self._become(grown, self._smallest / most)
-        return len(self.weights.keys() - before)
+        return len(met & self.weights.keys())
 
     def where_noise(self, part: NDArray[np.bool_]) -> dict[int, float]:
         """The probabilities of the joint states where the VLM's noise is one of some.

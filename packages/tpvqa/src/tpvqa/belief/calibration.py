@@ -85,7 +85,8 @@ class Group(_Model):
     def log_ratio(self, reply: Reply, p_yes: float | None) -> float:
         """What an answer of this kind is worth, see `Calibration.log_ratio`.
 
-        Where nothing was learnt of a VLM whose P(yes) contradicts its word, the word counts.
+        Where nothing was learnt of a VLM whose P(yes) contradicts its word, the word counts, as if
+        P(yes) lay as far on its side, but no more than a bare word.
         """
         if reply is Reply.YES:
             yes = True
@@ -94,7 +95,10 @@ class Group(_Model):
         else:
             return 0.0
         curve, rates = self.curve, self.rates
-        if curve is not None and p_yes is not None and not self._unlearnt(p_yes, yes=yes):
+        if curve is not None and p_yes is not None:
+            if not self.rows and (p_yes < 0.5 if yes else p_yes > 0.5):
+                told = self.log_ratio(reply, 1 - p_yes), self.log_ratio(reply, None)
+                return min(told, key=abs)
             p = min(max(p_yes, EDGE), 1 - EDGE)
             sign = curve.sign if yes else -curve.sign
             ratio = curve.slope * math.log(p / (1 - p)) + curve.intercept + sign
@@ -103,10 +107,6 @@ class Group(_Model):
         else:
             ratio = _log_odds(1 - rates.yes_if_true, 1 - rates.yes_if_false)
         return min(max(ratio, -BOUND), BOUND)
-
-    def _unlearnt(self, p_yes: float, *, yes: bool) -> bool:
-        """Whether P(yes) contradicts the word, and nothing was learnt of what that means."""
-        return not self.rows and (p_yes < 0.5 if yes else p_yes > 0.5)
 
 
 NEAREST: Mapping[Way, tuple[Way, ...]] = {

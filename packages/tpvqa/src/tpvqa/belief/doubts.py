@@ -31,10 +31,8 @@ class Doubts:
             for atom in thing.places:
                 self._things.setdefault(atom, []).append(thing)
 
-    def taken(self, atoms: tuple[Atom, ...], *, held: bool) -> float:
+    def of(self, atoms: tuple[Atom, ...], *, held: bool) -> float:
         """The chance that a fact is the other way as its thing was elsewhere all the time.
-
-        It is given once: from then on the belief has it.
 
         Args:
             atoms: The fact, and others that no answer tells from it.
@@ -42,17 +40,19 @@ class Doubts:
         """
         none = 1.0
         for thing in {thing for atom in atoms for thing in self._things.get(atom, ())}:
-            chance = self._chances.pop(thing, 0.0)
+            chance = self._chances.get(thing, 0.0)
             none *= 1 - (chance if held else chance / (len(thing.places) - 1))
         return 1 - none
 
     def gone(self, atom: Atom) -> float:
-        """The chance that a thing which the problem says to be here never was; given once."""
-        return sum(
-            self._chances.pop(thing, 0.0)
-            for thing in self._things.get(atom, ())
-            if thing.stated == atom
-        )
+        """The chance that a thing which the problem says to be here never was."""
+        there = (each for each in self._things.get(atom, ()) if each.stated == atom)
+        return sum(self._chances.get(thing, 0.0) for thing in there)
+
+    def give(self, atoms: tuple[Atom, ...]) -> None:
+        """Leave the doubts about some facts to the belief, which has them from now on."""
+        for thing in (thing for atom in atoms for thing in self._things.get(atom, ())):
+            self._chances.pop(thing, None)
 
     def learn(self, atoms: tuple[Atom, ...], if_true: float, if_false: float) -> None:
         """Weigh the doubts by an answer about a fact, as Bayes' rule says, from the next scene on:

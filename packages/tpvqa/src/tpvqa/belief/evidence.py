@@ -164,10 +164,13 @@ class Evidence(Expected):
     def _open(self, atoms: tuple[Atom, ...], *, held: bool) -> None:
         """Take in, once between two actions, that a fact may have changed unexplained, or that it
         never was as the problem says."""
-        if atoms not in self._opened and self._unexplained:
+        if atoms in self._opened or not self._unexplained:
+            return
+        elsewhere = self._doubts.of(atoms, held=held) if self._doubts else 0.0
+        if self._weighed.open(atoms, max(self._unexplained, elsewhere), self._instead):
             self._opened.add(atoms)
-            elsewhere = self._doubts.taken(atoms, held=held) if self._doubts else 0.0
-            self._weighed.open(atoms, max(self._unexplained, elsewhere), self._instead)
+            if self._doubts:
+                self._doubts.give(atoms)
 
     def rests_on(self, action: Action, sight: Sight | None = None, *, dead: float = 0.0) -> None:
         """Take in that what an action needs may not be so, before it is done.
@@ -195,8 +198,8 @@ class Evidence(Expected):
         for each in needed:
             if each.positive and self._belief.probability(each.atom) >= 0.5:
                 chance = self._doubts.gone(each.atom)
-                if chance:
-                    self._belief.open((each.atom,), chance, self._instead)
+                if chance and self._belief.open((each.atom,), chance, self._instead):
+                    self._doubts.give((each.atom,))
 
     def _instead(self, one: int, other: int) -> Floats | None:
         return self._hearing.instead(one, other, self._belief.model)
@@ -271,8 +274,6 @@ class Evidence(Expected):
         last.pictures.add(picture)
         if probable < SURPRISING:
             self._open(atoms, held=true >= 0.5)
-        elif self._doubts is not None:
-            self._doubts.learn(atoms, if_true, if_false)
         if self._weighed is not self._belief or self._belief.masses()[1] is not cases.mass:
             cases = self._cases(question, heard)
             taken = self.worth.take(said, cases, rates)
@@ -329,6 +330,7 @@ class Evidence(Expected):
         if self._weighed is self._belief:
             numbers, both = tuple(self._belief.weights), cases.by_truth(heard)
             so = self.worth.take(said, both, rates)
+            self._doubt(question, so)
             if others := self._words.besides(question):
                 shares = self.worth.shares[cases.columns]
                 last, model = self._hearing.last, self._belief.model
@@ -342,10 +344,11 @@ class Evidence(Expected):
                 self._belief.hear(taken.likely, self._left_out(said, cases, rates))
                 self._tell_apart()
             else:
-                heard.say(_alike(both, so) + np.zeros_like(both.mass), so.drawn)
+                heard.say(np.broadcast_to(_alike(both, so), both.mass.shape), so.drawn)
                 self._belief.hear(_alike(cases, taken))
             self.worth.believe(self._belief.noise)
             return
+        self._doubt(question, taken)
         self._weighed.see(question.atoms, *taken.whole)
         heard.told((), taken.drawn)
         heard.believed = self._weighed.probability(question.atom, question.alike)
@@ -353,6 +356,10 @@ class Evidence(Expected):
         both = np.maximum(masses.sum(axis=0), 1e-300)
         heard.true = np.clip(masses[0] / both, SURE, 1 - SURE)
         self.worth.believe(np.maximum(both / both.sum(), NEVER))
+
+    def _doubt(self, question: FactQuestion, taken: Taken) -> None:
+        if self._doubts is not None:
+            self._doubts.learn(question.atoms, *taken.whole)
 
     def _left_out(self, said: Said, cases: Cases, rates: Pair) -> Floats | None:
         """How probable an answer is with each of what is left out of the joint states."""

@@ -157,7 +157,7 @@ class Heard:
         """
         self.said = None
         if led is None:
-            self.numbers, self.rows = (), None
+            self.numbers, self.rows, self.by_truth = (), None, None
             return
         was, now = (np.array([truth[n] for n in each]) for each in (led.before, led.after))
         known = Drawn(*(k[led.begun] for k in self.drawn(led.before, was, led.mixed.shape[1])))

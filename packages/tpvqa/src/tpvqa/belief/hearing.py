@@ -4,6 +4,8 @@ from collections import deque
 from collections.abc import Mapping
 from typing import Protocol
 
+import numpy as np
+
 from tpvqa.belief.heard import Heard
 from tpvqa.belief.information import Floats
 from tpvqa.belief.last_answer import LastAnswer, Picture
@@ -14,6 +16,8 @@ from tpvqa.pddl import Atom
 from tpvqa.questions.question import FactQuestion
 from tpvqa.vlm import Reply
 
+LARGEST = 500.0
+"""No logarithm of how many times as probable something is counts for more."""
 REMEMBERED = 8
 """Actions after which it is forgotten what was heard of a question."""
 
@@ -110,7 +114,7 @@ class Hearing:
         return any(atom in last.atoms and last.reply is reply for last in self.last.values())
 
     def instead(self, one: int, other: int, truths: Truths) -> Floats | None:
-        """How many times as probable what was said in this scene is in another joint state.
+        """How many times as probable what the VLM said in this scene is in another joint state.
 
         Args:
             one: The number of a joint state.
@@ -118,8 +122,8 @@ class Hearing:
             truths: Says what holds in them.
 
         Returns:
-            A logarithm for everything that is told apart of the noise; None where all that was
-            asked about is alike in both.
+            The logarithm of that, for everything that is told apart of the noise; None where all
+            that was asked about is alike in both.
         """
         found: Floats | None = None
         for last in self.last.values():
@@ -131,7 +135,7 @@ class Hearing:
                 if truth[one] != truth[other]:
                     less = each[0] - each[1] if truth[other] else each[1] - each[0]
                     found = less if found is None else found + less
-        return found
+        return None if found is None else np.minimum(found, LARGEST)
 
     def asked_of(self, text: str, picture: Picture) -> bool:
         """Whether a question was answered on a picture since the last action."""

@@ -7,8 +7,9 @@ from tpvqa.belief.information import Floats
 from tpvqa.pddl import Atom
 
 Instead = Callable[[int, int], Floats | None]
-"""How many times as probable what was seen before is in the second of two joint states, by their
-numbers: a logarithm for everything that is told apart of the noise; None for as probable."""
+"""The logarithm of how many times as probable what was said in this scene is in the second of two
+joint states, by their numbers, for everything that is told apart of the noise; None for as
+probable."""
 
 
 class Weighed(Protocol):

@@ -22,7 +22,7 @@ from tpvqa.labelling import LABELS, RecordedEpisode, check_apart, read_labels, r
 from tpvqa.labelling.inferring import inferred_rows, likelier
 from tpvqa.labelling.labels import Said
 from tpvqa.labelling.recorded import Stretches, said_in_trial
-from tpvqa.labelling.rows import answers_some, labelled_rows, stray_labels
+from tpvqa.labelling.rows import answers_some, labelled_rows, labels_for, stray_labels
 from tpvqa.labelling.session import check_vlm
 from tpvqa.pddl import Atom, Task, task_from_text
 from tpvqa.vlm.making import as_logged, in_full
@@ -136,13 +136,13 @@ def label_episodes(
         stray += _of_no_question(file, stray_labels(recorded))
         played: _Played | None = None
         if any(map(_tells_truth, events)):
-            labels = read_labels(recorded) if answering else {}
+            labels = labels_for(recorded) if answering else {}
             with suppress(CalibrationError) if answering else nullcontext():
                 played = _play(events, started, folder, labels)  # it may know of some actions alone
         if played is not None:
             rows += played.rows
             heard.add(played.own)
-            corrected += played.labels
+            corrected += len(played.labelled & read_labels(recorded).keys())
         elif answering or any(map(said_in_trial, recorded.askings)):
             labelled.append(recorded)
         elif useless:
@@ -207,12 +207,12 @@ class _Played:
     Attributes:
         rows: The answers.
         own: What the robot itself said.
-        labels: Labels that went before the log's truth.
+        labelled: What labels went before the log's truth of.
     """
 
     rows: list[LabelledAnswer]
     own: OwnWords
-    labels: int
+    labelled: frozenset[tuple[int, str]]
 
 
 def _play(
@@ -249,7 +249,7 @@ def _play(
             elif said is None:
                 rows.append(row)
         labeller.rows.clear()
-    return _Played(rows, labeller.own, len(counted))
+    return _Played(rows, labeller.own, frozenset(counted))
 
 
 def _tells_truth(event: Event) -> bool:

@@ -11,7 +11,7 @@ from tpvqa.labelling.recorded import Asking, RecordedEpisode, said_in_trial
 def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAnswer], int]:
     """The answers that a person has told the truth about, and how many labels told it.
 
-    A label holds for every answer to the same words between two actions. Where there is none, what
+    A label holds for every answer to the same words in one stretch. Where there is none, what
     a person answered in the trial itself counts as one.
 
     Raises:
@@ -19,10 +19,9 @@ def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAns
     """
     known: dict[int, Said] = {}
     for episode in episodes:
-        told = read_labels(episode)
-        of_fact = {_fact(each): told[each.key] for each in episode.askings if each.key in told}
+        told = labels_for(episode)
         for asking in episode.askings:
-            said = told.get(asking.key) or said_in_trial(asking) or of_fact.get(_fact(asking))
+            said = told.get(asking.key) or said_in_trial(asking)
             if said is not None:
                 known[id(asking)] = said
     order = Order([asking for episode in episodes for asking in episode.askings])
@@ -35,6 +34,19 @@ def labelled_rows(episodes: Sequence[RecordedEpisode]) -> tuple[list[LabelledAns
             labels += 1
             rows += rows_of(asking, truth=said == "yes", weight=weights[id(asking)])
     return rows, labels
+
+
+def labels_for(episode: RecordedEpisode) -> dict[tuple[int, str], Said]:
+    """What the labels beside an episode say of all that was asked in it: one of one wording holds
+    for all that have none of their own.
+
+    Raises:
+        CalibrationError: The file of labels is damaged.
+    """
+    told = read_labels(episode)
+    of_fact = {_fact(each): told[each.key] for each in episode.askings if each.key in told}
+    said = {each.key: told.get(each.key) or of_fact.get(_fact(each)) for each in episode.askings}
+    return {key: each for key, each in said.items() if each is not None}
 
 
 def answers_some(episode: RecordedEpisode) -> bool:

@@ -9,7 +9,7 @@ LIKELY = 0.02
 
 
 def lost(belief: Belief, ahead: Outlook) -> frozenset[Atom]:
-    """What holds only where the goal is out of reach.
+    """What is so only where the goal is out of reach.
 
     A key that is believed to lie where nobody can take it from may be looked for there before the
     trial is given up.
@@ -24,4 +24,4 @@ def lost(belief: Belief, ahead: Outlook) -> frozenset[Atom]:
         return frozenset()
     on = next((number for number in likely if number not in astray), None)
     usual: State = belief.model.task.init if on is None else belief.model.state(on)
-    return frozenset[Atom]().union(*(belief.model.state(n) - usual for n in astray))
+    return frozenset[Atom]().union(*(belief.model.state(n) ^ usual for n in astray))
