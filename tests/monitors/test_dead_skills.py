@@ -19,7 +19,7 @@ def test_it_is_tried_some_twenty_times_with_a_look_and_no_more() -> None:
     """Until it is given up, how it came out is seen: that much is in vain says nothing of answers,
     and what is worth more as it has to be done unseen is not worth more such tries."""
     looked: list[bool] = []
-    for seed in range(1, 5):
+    for seed in range(1, 9):
         looked += looked_after_tries(seed)
     assert sum(looked) >= 0.9 * len(looked)
 
@@ -44,7 +44,7 @@ def looked_after_tries(seed: int) -> list[bool]:
     assert isinstance(end, Ended)
     assert (end.completed, end.believed_goal) == (False, False)
     tried = [e for e in writer.events if isinstance(e, Acting) and e.action.name == "open"]
-    assert 8 <= len(tried) <= 25
+    assert 8 <= len(tried) <= 30
     last = [e for e in writer.events if isinstance(e, Decided)][-1]
     said = COUNTED.match(last.reason)
     assert said is not None, last.reason
