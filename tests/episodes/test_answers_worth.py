@@ -68,7 +68,7 @@ def questions(events: list[Event]) -> int:
 
 def test_the_default_is_named_and_what_it_costs() -> None:
     asked = less = then = 0
-    for episode in range(1, 5):
+    for episode in (1, 2, 3, 6):  # whose answers are enough to tell
         events = events_of(CONFIG.but(episode=episode))
         assert calibration_used(started(events)) == "default: nothing was known of this VLM"
         told = saves(events)
@@ -106,7 +106,7 @@ def test_answers_that_are_worse_than_believed_are_told() -> None:
 
 def test_nothing_is_saved_by_answers_that_mostly_settled_nothing() -> None:
     """Ended in doubt: the few answers that were counted as right are those that were believed."""
-    events = events_of(CONFIG)
+    events = events_of(CONFIG.but(episode=6))
     half = len(events) // 2
     events = [*events[:half], *map(_in_doubt, events[half:])]
     told = saves(events)
