@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from math import log
 from pathlib import Path
 from statistics import fmean
+from tempfile import TemporaryDirectory
 
 from tpvqa.episodes import read_episode
 from tpvqa.events.events import Acted, Acting, Answered, Asked, Decided, Observed, Started
@@ -37,8 +38,12 @@ def compared(folder: Path) -> Iterator[tuple[float, bool]]:
     started, *events = read_episode(folder)
     assert isinstance(started, Started)
     task = task_from_text(started.domain, started.problem)
-    book = QuestionBook.load(started.questions_file, task)
-    rules = load_world_file(Path(started.world_file), task) if started.world_file else None
+    with TemporaryDirectory() as place:
+        words, world = Path(place) / "questions.yaml", Path(place) / "world.yaml"
+        words.write_text(started.questions or "", encoding="utf-8")
+        world.write_text(started.rules or "", encoding="utf-8")
+        book = QuestionBook.load(words if started.questions else None, task)
+        rules = load_world_file(world, task) if started.rules else None
     monitor = BeliefMonitor(task, rules=rules, noise_model=started.noise_model)
     questions = {q.text: q for atom in task.atoms() for q in _worded(book, atom)}
     truth, asked, view = frozenset[str](), Asked(look=0, questions=()), None

@@ -52,6 +52,7 @@ SAID = {
     "(handEmpty)": "Is the robot's hand empty?",
     "(handempty)": "Is the robot's hand empty?",
     "(free_hands)": "Are the robot's hands free?",
+    "(free-handed)": "Are the robot's hands free?",
     "(in_the_air ?b - block)": "Is the red block in the air?",
     "(running ?b - block)": "Is the red block running?",
     "(arm-free ?a - arm)": "Is the left arm free?",

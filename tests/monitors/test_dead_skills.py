@@ -1,6 +1,8 @@
 """A skill that never works, where the world disturbs and answers err."""
 
 import re
+from itertools import chain
+from statistics import fmean
 
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
@@ -18,10 +20,9 @@ COUNTED = re.compile(
 def test_it_is_tried_some_twenty_times_with_a_look_and_no_more() -> None:
     """Until it is given up, how it came out is seen: that much is in vain says nothing of answers,
     and what is worth more as it has to be done unseen is not worth more such tries."""
-    looked: list[bool] = []
-    for seed in range(1, 9):
-        looked += looked_after_tries(seed)
-    assert sum(looked) >= 0.9 * len(looked)
+    looked = [looked_after_tries(seed) for seed in range(1, 9)]
+    assert fmean(map(len, looked)) + 1 <= 25
+    assert fmean(chain.from_iterable(looked)) >= 0.9
 
 
 def looked_after_tries(seed: int) -> list[bool]:

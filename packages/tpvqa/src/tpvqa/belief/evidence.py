@@ -328,7 +328,7 @@ class Evidence(Expected):
     ) -> None:
         self.worth.compare(said, rates)
         if self._weighed is self._belief:
-            numbers, both = tuple(self._belief.weights), cases.by_truth(heard)
+            numbers, both = tuple(self._belief.weights), cases.either_way(heard)
             so = self.worth.take(said, both, rates)
             self._doubt(question, so)
             if others := self._words.besides(question):

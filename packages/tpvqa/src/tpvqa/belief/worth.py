@@ -33,6 +33,7 @@ ANSWERS = 40.0
 """Answers' worth of belief that they say as much as the calibration's rates of yes and no."""
 Pair = tuple[float, float]
 _NONE = np.zeros(1), np.zeros(1)
+_EITHER = np.array([True, False])
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,18 +56,17 @@ class Cases:
         """What may be the case when it is asked in another scene; see `Drawn.elsewhere`."""
         return replace(self, drawn=self.drawn.elsewhere(stays[self.columns]))
 
-    def by_truth(self, heard: Heard) -> "Cases":
+    def either_way(self, heard: Heard) -> "Cases":
         """The two cases that yes is right and that no is, each taken to be so, by what was said in
         this scene.
 
         Args:
             heard: What was heard of the question.
         """
-        every = np.arange(self.mass.shape[1])
-        both = self.standing_for(every, every)
+        _, drawn = self._averaged(EVERY)
         present = np.array([self.truth.any(), not self.truth.all()])
         mass = np.stack([self.mass.sum(axis=0)] * 2)
-        return Cases(mass, both.truth, heard.begun(present, both.drawn), self.columns)
+        return Cases(mass, _EITHER, heard.begun(present, drawn), self.columns)
 
     def standing_for(self, places: Places, columns: Columns) -> "Cases":
         """The two cases that yes is right and that no is, for what is left out of these.
@@ -75,17 +75,22 @@ class Cases:
             places: Which of the columns here stand for it.
             columns: What is left out.
         """
-        where, drawn = np.array([self.truth, ~self.truth], float), self.drawn
         kinds, index = np.unique(places, return_inverse=True)
-        mass = self.mass[:, kinds]
+        weights, drawn = self._averaged(kinds)
+        weights = weights / weights.sum(axis=0)
+        return Cases(weights[:, index], _EITHER, drawn.only(index), columns)
+
+    def _averaged(self, columns: Columns) -> tuple[Floats, Drawn]:
+        """How probable it is that yes is right and that no is, and what is known of the scene's own
+        answer then: two rows of some columns."""
+        where, drawn = np.array([self.truth, ~self.truth], float), self.drawn
+        mass = self.mass[:, columns]
         weights = np.maximum(where @ mass, 1e-300)
-        yes, new = (where @ (mass * each[:, kinds]) / weights for each in (drawn.yes, drawn.new))
+        yes, new = (where @ (mass * each[:, columns]) / weights for each in (drawn.yes, drawn.new))
         rows = where * self.mass.sum(axis=1)
         once = rows @ np.stack([drawn.kept, drawn.answers, drawn.yeses], axis=1)
         once /= np.maximum(rows.sum(axis=1, keepdims=True), 1e-300)
-        known = Drawn(yes[:, index], new[:, index], *once.T)
-        weights = weights / weights.sum(axis=0)
-        return Cases(weights[:, index], np.array([True, False]), known, columns)
+        return weights, Drawn(yes, new, *once.T)
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,7 +44,8 @@ def of_nothing(words: list[str]) -> Iterator[Clause]:
         if words[1] in PARTICLES:
             yield Clause("is", ROBOT, " ".join(words))
             return
-        words = [*words[1:], words[0]]  # free_hands: the hands are free
+        named = ("hands" if word == "handed" else word for word in words[1:])  # free-handed
+        words = [*named, words[0]]  # free_hands: the hands are free
     split = next(
         (
             at
