@@ -325,7 +325,7 @@ class Chooser:
     def _followed(
         self, action: Action, number: int, rates: Rates, *, near: bool
     ) -> list[tuple[float, int, float]]:
-        outcomes, undone = self._model.outcomes(action)[number], self._model.undone
+        outcomes, undone = self._model.outcomes(action)[number], self._sight.undone
         if outcomes.achieved:
             more = self._idling(number, rates, near=near)
             if near:

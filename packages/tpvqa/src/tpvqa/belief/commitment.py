@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from enum import Enum, auto
+from itertools import islice
 from typing import NamedTuple
 
 from tpvqa.belief.annotated import AnnotatedPlan
@@ -74,10 +75,8 @@ class Commitments:
 
     def _together(self, numbers: list[int], masses: dict[int, float]) -> dict[int, float]:
         ranked = [number for number, _ in self._model.ranked({n: masses[n] for n in numbers})]
-        ways = [self._ahead.best(number) for number in ranked[:WAYS]]
-        found = [
-            self._costs(*way, ranked, masses) for way in dict.fromkeys(ways) if way is not None
-        ]
+        ways = dict.fromkeys(way for way in map(self._ahead.best, ranked) if way is not None)
+        found = [self._costs(*way, ranked, masses) for way in islice(ways, WAYS)]
         if not found:
             return {}
         return min(found, key=lambda costs: sum(masses[n] * cost for n, cost in costs.items()))

@@ -15,7 +15,7 @@ def fallen(
     Args:
         share: Its share of what an action leads to.
         number: Of the joint state.
-        undone: What undoing leads to, with shares.
+        undone: What undoing leads to, with shares; what is missing to one leaves it as it is.
         rate: How probable that is.
         more: What it costs besides.
 
@@ -23,4 +23,5 @@ def fallen(
         Shares, joint states, and what each costs besides.
     """
     falls = [(share * rate * each, other, 0.0) for each, other in undone] if rate else []
-    return [(share * (1 - rate) if falls else share, number, more), *falls]
+    left = share - sum(each for each, _, _ in falls)
+    return [(left, number, more), *falls]

@@ -1,6 +1,6 @@
 """What can be seen at all: facts that some question is about, or some sensor."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from tpvqa.belief.faults import FaultModel
 from tpvqa.pddl import Action, Atom
@@ -82,6 +82,18 @@ class Sight:
             known = self._kinds.setdefault(seen, len(self._kinds))
             self._looks[number, felt] = known
         return known
+
+    def undone(self, number: int) -> Sequence[tuple[float, int]]:
+        """What undoing leads to from a joint state, with shares, where anything shows it.
+
+        What nothing shows is left out of what the next action may undo: of later ones it is not
+        known either, and whatever puts the next one off would look cheaper.
+        """
+        found = self._model.undone(number)
+        if self.complete:
+            return found
+        look = self.look(number)
+        return [(share, other) for share, other in found if self.look(other) != look]
 
     def _felt_of(self, action: Action) -> frozenset[Atom]:
         known = self._felt_by.get(action)
