@@ -12,6 +12,7 @@ from tpvqa.vlm.connection import Connection
 from tpvqa.vlm.prompt import Prompt
 from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.server_text import ServerText
+from tpvqa.vlm.surroundings import innermost
 
 if TYPE_CHECKING:
     from openai import APIStatusError, AsyncOpenAI
@@ -114,7 +115,11 @@ class Server:
             for cause in (error, error.__cause__):
                 if isinstance(cause, ReplyTooLargeError):
                     return Reading(Reply.UNKNOWN, text=f"garbled reply: {cause}")
-            why = str(error.__cause__ or error) or type(error.__cause__).__name__
+            cause = innermost(error.__cause__ or error)
+            # httpx's, or that of its successor: nothing was sent, so asking again does not help
+            if type(cause).__name__ == "LocalProtocolError":
+                raise cause from None
+            why = str(cause) or type(cause).__name__
             raise Retry(f"no connection: {why}", unreachable=True) from None
         except openai.APIStatusError as error:
             with suppress(RecursionError):
