@@ -9,6 +9,9 @@ from PIL import Image
 from tests.cli.conftest import Run
 from tests.vlm.chat_server import ChatServer
 from tests.vlm.test_hostile_server import QUESTION
+from tests.vlm.test_openai_compatible import look, questions
+from tpvqa.errors import AnswerError
+from tpvqa.vlm.openai_compatible import OpenAICompatibleVLM
 
 
 @pytest.fixture
@@ -48,3 +51,42 @@ def test_what_cannot_be_sent_is_told_with_its_cause_and_what_to_look_at(
     assert name in err
     assert "TaskGroup" not in err
     assert not server.requests
+
+
+@pytest.mark.parametrize("value", ["sk-Zk83hTq9é", "sk-Zk83\r\nX: y", "sk-Zk83\x1bhTq9"])
+@pytest.mark.parametrize("name", ["OPENAI_API_KEY", "OPENAI_ORG_ID", "OPENAI_PROJECT_ID"])
+def test_what_no_header_can_hold_is_refused_by_the_name_of_its_variable(
+    name: str,
+    value: str,
+    server: ChatServer,
+    tpvqa: Run,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv(name, value)
+    code, out, err = asked(tpvqa, server, tmp_path)
+    assert (code, out) == (2, "")
+    assert name in err
+    assert "Zk83" not in err
+    assert not server.requests
+
+
+def test_a_question_that_cannot_be_sent_is_no_answer_of_the_servers(server: ChatServer) -> None:
+    vlm = OpenAICompatibleVLM("m", base_url=server.url)
+    with pytest.raises(AnswerError, match="UnicodeEncodeError"):
+        vlm.ask(look(), questions("Is the \udce9 open?"))
+    vlm.close()
+    assert not server.requests
+
+
+def test_several_headers_may_be_given(
+    server: ChatServer, tpvqa: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OPENAI_CUSTOM_HEADERS", "X-Team: a\r\nX-Task: b\tc\n")
+    code, out, _ = asked(tpvqa, server, tmp_path)
+    assert code == 0
+    assert "no" in out
+    monkeypatch.setenv("OPENAI_CUSTOM_HEADERS", "X-Team: a\nX-Task: é")
+    code, out, err = asked(tpvqa, server, tmp_path)
+    assert (code, out) == (2, "")
+    assert "OPENAI_CUSTOM_HEADERS" in err

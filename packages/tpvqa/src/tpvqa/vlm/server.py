@@ -12,7 +12,7 @@ from tpvqa.vlm.connection import Connection
 from tpvqa.vlm.prompt import Prompt
 from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.server_text import ServerText
-from tpvqa.vlm.surroundings import innermost
+from tpvqa.vlm.surroundings import check_headers, innermost
 
 if TYPE_CHECKING:
     from openai import APIStatusError, AsyncOpenAI
@@ -52,7 +52,8 @@ class Server:
         """The connection, made where there is none.
 
         Raises:
-            AnswerError: There is no key, or the address cannot be used.
+            AnswerError: There is no key, the address cannot be used, or the environment holds
+                what cannot be sent.
         """
         if self._connection is None or not self._connection.alive:
             import openai
@@ -65,10 +66,9 @@ class Server:
                     "OpenAI needs a key. Set the environment variable OPENAI_API_KEY, or name a "
                     "server of your own by --base-url."
                 )
-            if not key.isascii():
-                raise AnswerError("OPENAI_API_KEY has characters that no key has. Set it again.")
             self.text = ServerText(key)
             try:
+                check_headers(key)
                 client = openai.AsyncOpenAI(
                     api_key=key or "none-needed",
                     base_url=self.base_url,
@@ -125,6 +125,8 @@ class Server:
             with suppress(RecursionError):
                 return self._refused(error)
             return Reading(Reply.UNKNOWN, text="garbled reply: nested too deeply")
+        except UnicodeEncodeError:  # nothing was sent, so this is no answer of the server's
+            raise
         except _UNDECODED as error:
             return Reading(Reply.UNKNOWN, text=f"garbled reply: {type(error).__name__}: {error}")
         if "html" in response.headers.get("content-type", ""):

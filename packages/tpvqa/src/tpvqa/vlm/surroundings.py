@@ -11,6 +11,28 @@ _HEADERS = ("OPENAI_ORG_ID", "OPENAI_PROJECT_ID", "OPENAI_CUSTOM_HEADERS")
 _PROXIES = ("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")  # in either case
 
 
+def check_headers(key: str) -> None:
+    """See that a request can be built of what openai's package puts into its headers.
+
+    Args:
+        key: The value of `OPENAI_API_KEY`, without white space around it.
+
+    Raises:
+        ValueError: A variable has characters that no header has. The message names it.
+    """
+    told = {name: [os.environ.get(name, "")] for name in _HEADERS}
+    lines = told["OPENAI_CUSTOM_HEADERS"][0].split("\n")
+    told["OPENAI_CUSTOM_HEADERS"] = [line.strip().replace("\t", " ") for line in lines]
+    for name, values in {"OPENAI_API_KEY": [key], **told}.items():
+        if not all(
+            each.isascii() and each.isprintable() and each == each.strip() for each in values
+        ):
+            raise ValueError(
+                f"{name} has characters that cannot be sent: letters beyond ASCII, a line break, a "
+                "control character, or a space at an end. Set it again."
+            )
+
+
 def innermost(error: BaseException) -> BaseException:
     """What a group of errors comes from: the first of them, before others an error of ours."""
     while isinstance(error, BaseExceptionGroup):
