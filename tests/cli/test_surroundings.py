@@ -1,5 +1,6 @@
 """An environment in which a server cannot be asked: an error that names what is to be mended."""
 
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -90,3 +91,32 @@ def test_several_headers_may_be_given(
     code, out, err = asked(tpvqa, server, tmp_path)
     assert (code, out) == (2, "")
     assert "OPENAI_CUSTOM_HEADERS" in err
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("ALL_PROXY", "socks5://me:hunter2@127.0.0.1:1", "pip install socksio"),
+        ("HTTP_PROXY", "http://me:hunter2/x@127.0.0.1:1", "http://HOST:PORT"),
+        ("https_proxy", "gopher://hunter2@127.0.0.1:1", "http://HOST:PORT"),
+        ("SSL_CERT_FILE", "hunter2.pem", "No such file"),
+        ("SSL_CERT_FILE", "p.png", "no certificate"),
+    ],
+)
+def test_a_proxy_or_certificates_that_cannot_be_used_are_named_with_the_remedy(
+    name: str,
+    value: str,
+    said: str,
+    server: ChatServer,
+    tpvqa: Run,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "socksio", None)
+    monkeypatch.setenv(name, value)
+    code, out, err = asked(tpvqa, server, tmp_path)
+    assert (code, out) == (2, "")
+    assert name in err
+    assert said in err
+    assert "hunter2" not in err
+    assert "broke" not in err

@@ -175,5 +175,8 @@ def test_openai_needs_a_key(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("OPENAI_API_KEY")
     with pytest.raises(GeneratorError, match="OPENAI_API_KEY"):
         OpenAIImages("dall-e-2").generate("a plate", seed=1)
+    monkeypatch.setenv("OPENAI_API_KEY", "sk-\x1bsecret")
+    with pytest.raises(GeneratorError, match="OPENAI_API_KEY has characters"):
+        OpenAIImages("dall-e-2").generate("a plate", seed=1)
     with pytest.raises(GeneratorError, match="http://"):
         OpenAIImages("dall-e-2", base_url="localhost:8000")

@@ -3,6 +3,8 @@
 from collections.abc import AsyncIterator
 from typing import TYPE_CHECKING, Any
 
+from tpvqa.vlm.surroundings import why_no_client
+
 if TYPE_CHECKING:
     from openai import DefaultAsyncHttpxClient
 
@@ -36,11 +38,19 @@ async def _bound(response: Any) -> None:
 
 
 def bounded_client() -> "DefaultAsyncHttpxClient":
-    """A client that sends to the address that it is given, and reads no more than it should."""
+    """A client that sends to the address that it is given, and reads no more than it should.
+
+    Raises:
+        ValueError: There can be none with the environment's proxies or certificates. The message
+            names what to mend.
+    """
     from openai import DefaultAsyncHttpxClient
 
-    return DefaultAsyncHttpxClient(
-        follow_redirects=False,
-        headers={"Accept-Encoding": "identity"},
-        event_hooks={"response": [_bound]},
-    )
+    try:
+        return DefaultAsyncHttpxClient(
+            follow_redirects=False,
+            headers={"Accept-Encoding": "identity"},
+            event_hooks={"response": [_bound]},
+        )
+    except Exception as error:  # noqa: BLE001  httpx and ssl raise of many kinds
+        raise ValueError(why_no_client(error)) from None

@@ -69,11 +69,15 @@ class Server:
             self.text = ServerText(key)
             try:
                 check_headers(key)
+                http = bounded_client()
+            except ValueError as error:
+                raise AnswerError(f"{self.where()} cannot be asked: {error}") from None
+            try:
                 client = openai.AsyncOpenAI(
                     api_key=key or "none-needed",
                     base_url=self.base_url,
                     max_retries=0,
-                    http_client=bounded_client(),
+                    http_client=http,
                 )
             except (openai.OpenAIError, ValueError) as error:
                 raise AnswerError(f"{self.where()} cannot be asked: {error}") from error

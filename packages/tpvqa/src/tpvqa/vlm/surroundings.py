@@ -9,6 +9,7 @@ from tpvqa.errors import AnswerError
 
 _HEADERS = ("OPENAI_ORG_ID", "OPENAI_PROJECT_ID", "OPENAI_CUSTOM_HEADERS")
 _PROXIES = ("HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")  # in either case
+_CERTIFICATES = ("SSL_CERT_FILE", "SSL_CERT_DIR")
 
 
 def check_headers(key: str) -> None:
@@ -31,6 +32,31 @@ def check_headers(key: str) -> None:
                 f"{name} has characters that cannot be sent: letters beyond ASCII, a line break, a "
                 "control character, or a space at an end. Set it again."
             )
+
+
+def why_no_client(error: Exception) -> str:
+    """What of proxies and certificates keeps a client from being made, and the remedy.
+
+    Args:
+        error: What making it raised. Its text is told only where it cannot hold a proxy's password.
+    """
+    proxies, certificates = _given(_PROXIES), _given(_CERTIFICATES)
+    socks = [name for name in proxies if os.environ[name].lower().startswith("socks")]
+    if isinstance(error, OSError):
+        why = error.strerror or str(error)
+        named = certificates[-1] if certificates else "the system"  # of both the file is read alone
+        return f"no certificates can be read from {named} ({why}). Mend or unset it."
+    if isinstance(error, ImportError) and socks:
+        return (
+            f"{', '.join(socks)} names a SOCKS proxy, which needs a package: pip install socksio. "
+            "Or unset it."
+        )
+    if proxies:
+        return (
+            f"no proxy can be used as the environment names it: {', '.join(proxies)}. Write "
+            "http://HOST:PORT, or unset what is wrong."
+        )
+    return f"{type(error).__name__}: {error}."
 
 
 def innermost(error: BaseException) -> BaseException:
