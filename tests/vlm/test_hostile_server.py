@@ -172,6 +172,49 @@ def test_a_compressed_reply_is_not_unpacked() -> None:
     assert "compressed" in answer.text
 
 
+BROKEN = {
+    "junk": b"\x00\xffgarbage\r\n\r\n",
+    "no length": b"HTTP/1.1 200 OK\r\nContent-Length: -5\r\n\r\n{}",
+    "cut off": b"HTTP/1.1 200 OK\r\nContent-Length: 9000\r\n\r\n{}",
+    "endless headers": b"HTTP/1.1 200 OK\r\n" + b"X: a\r\n" * 50_000 + b"\r\n",
+}
+
+
+@pytest.mark.parametrize("way", BROKEN)
+def test_broken_http_is_an_unknown_answer_of_a_server_that_has_spoken(way: str) -> None:
+    broken: list[Act] = []
+    with ChatServer(lambda *_: "no", script=lambda *_: broken[0] if broken else None) as server:
+        vlm = OpenAICompatibleVLM("test", base_url=server.url, retries=1)
+        vlm.check()
+        broken.append(Act(raw=BROKEN[way]))
+        (answer,) = vlm.ask(look(1), questions(QUESTION))
+        assert len(server.requests) == 3  # it was tried again
+        broken.clear()
+        (after,) = vlm.ask(look(1), questions(QUESTION))
+        vlm.close()
+    assert answer.reply is Reply.UNKNOWN
+    assert answer.text.startswith("garbled reply: ")
+    assert after.reply is Reply.NO
+
+
+@pytest.mark.parametrize("way", BROKEN)
+def test_what_answers_with_broken_http_at_first_is_no_server(way: str) -> None:
+    with pytest.raises(AnswerError, match=r"answers with broken HTTP .*/v1"):
+        asked(Act(raw=BROKEN[way]))
+
+
+@pytest.mark.parametrize("act", [Act(reset=True), Act(raw=b"")], ids=["reset", "hung up"])
+def test_a_server_that_is_lost_after_it_has_spoken_cannot_be_reached(act: Act) -> None:
+    lost: list[Act] = []
+    with ChatServer(lambda *_: "no", script=lambda *_: lost[0] if lost else None) as server:
+        vlm = OpenAICompatibleVLM("test", base_url=server.url, retries=0)
+        vlm.check()
+        lost.append(act)
+        with pytest.raises(AnswerError, match="cannot be reached"):
+            vlm.ask(look(1), questions(QUESTION))
+        vlm.close()
+
+
 def test_a_reply_that_drips_is_late() -> None:
     act = Act(body=completion("Yes", logprobs=False), drip=0.1)
     answer = asked(act, deadline=0.6, request_timeout=0.4)

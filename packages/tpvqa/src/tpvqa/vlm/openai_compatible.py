@@ -289,10 +289,11 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         except ExceptionGroup as group:  # what is raised in an `except*` stays in a group
             raise innermost(group) from None
         outcomes = [task.result() for task in tasks]
-        if outcomes and all(each.unreachable for found in outcomes for each in found):
+        first = outcomes[0][0] if outcomes else None
+        if first and all(each.no_server for found in outcomes for each in found):
             raise AnswerError(
-                f"{self._server.where()} cannot be reached ({outcomes[0][0].reading.text}). Is "
-                "the server running, and is the address right, with its path (usually /v1)?"
+                f"{self._server.where()} {first.no_server} ({first.reading.text}). Is the server "
+                "running, and is the address right, with its path (usually /v1)?"
             )
         return outcomes
 
@@ -327,7 +328,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
             failed = TimedReading(
                 Reading(Reply.UNKNOWN, text=why),
                 time.monotonic() - started,
-                unreachable=last.unreachable,
+                no_server=last.no_server,
                 final=False,
             )
             return [failed] * len(inquiry.texts)

@@ -19,13 +19,15 @@ if TYPE_CHECKING:
 
 
 class Retry(Exception):  # noqa: N818 — a request to try again, not an error
-    def __init__(self, why: str, *, pause: float | None = None, unreachable: bool = False):
+    def __init__(self, why: str, *, pause: float | None = None, no_server: str = ""):
         super().__init__(why)
-        self.why, self.pause, self.unreachable = why, pause, unreachable
+        self.why, self.pause, self.no_server = why, pause, no_server
 
 
 _UNDECODED = (AssertionError, LookupError, RecursionError, ValueError)
 """What openai's package raises of an error's body that says nothing it can read."""
+_HUNG_UP = "Server disconnected"
+"""How httpx begins to say that there was no reply at all, by the same error as of a broken one."""
 
 
 class Server:
@@ -41,7 +43,7 @@ class Server:
         self.model, self.base_url, self._request_timeout = model, base_url, timeout
         self.text = ServerText("")
         self._connection: Connection | None = None
-        self._speaks = False  # once a reply was no web page
+        self._speaks = False  # once a reply was neither a web page nor broken HTTP
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
@@ -124,7 +126,10 @@ class Server:
             if type(cause).__name__ == "LocalProtocolError":
                 raise cause from None
             why = str(cause) or type(cause).__name__
-            raise Retry(f"no connection: {why}", unreachable=True) from None
+            if type(cause).__name__ != "RemoteProtocolError" or why.startswith(_HUNG_UP):
+                raise Retry(f"no connection: {why}", no_server="cannot be reached") from None
+            no_server = "" if self._speaks else "answers with broken HTTP"
+            raise Retry(f"garbled reply: {why}", no_server=no_server) from None
         except openai.APIStatusError as error:
             with suppress(RecursionError):
                 return self._refused(error)
