@@ -1,6 +1,8 @@
 """The HTTP client for a server that is not trusted: no redirects, and replies of bounded size."""
 
 from collections.abc import AsyncIterator
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.vlm.surroundings import why_no_client
@@ -35,6 +37,19 @@ async def _bound(response: Any) -> None:
             yield part
 
     response.aiter_raw = bounded
+
+
+def seconds_to_wait(retry_after: str, now: datetime | None = None) -> float | None:
+    """What the header Retry-After asks for, as seconds or as a date; None where it is neither."""
+    if retry_after.replace(".", "", 1).isdecimal():
+        return float(retry_after)
+    try:
+        until = parsedate_to_datetime(retry_after)
+    except (ValueError, OverflowError):
+        return None
+    if until.tzinfo is None:
+        until = until.replace(tzinfo=UTC)
+    return max(0.0, (until - (now or datetime.now(UTC))).total_seconds())
 
 
 def bounded_client() -> "DefaultAsyncHttpxClient":

@@ -9,6 +9,7 @@ from tpvqa.errors import AnswerError
 from tpvqa.vlm.answer import Reply
 from tpvqa.vlm.chat_completions import Dialect, Inquiry, complaint, messages, refuses_form
 from tpvqa.vlm.connection import Connection
+from tpvqa.vlm.http_client import ReplyTooLargeError, bounded_client, seconds_to_wait
 from tpvqa.vlm.prompt import Prompt
 from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.server_text import ServerText
@@ -60,8 +61,6 @@ class Server:
         if self._connection is None or not self._connection.alive:
             import openai
 
-            from tpvqa.vlm.http_client import bounded_client
-
             key = os.environ.get("OPENAI_API_KEY", "").strip()
             if not key and self.base_url is None:
                 raise AnswerError(
@@ -101,8 +100,6 @@ class Server:
             AnswerError: Asking again does not help.
         """
         import openai
-
-        from tpvqa.vlm.http_client import ReplyTooLargeError
 
         count = len(inquiry.texts) if inquiry.together else 0
         parameters: dict[str, Any] = dialect.parameters(count, samples)
@@ -174,9 +171,8 @@ class Server:
         if "insufficient_quota" in parts.values():
             raise AnswerError(f"{self.where()}: the account has no credit left. {said}")
         if status in (408, 409, 429) or status >= 500:
-            pause = error.response.headers.get("retry-after", "")
-            wanted = float(pause) if pause.replace(".", "", 1).isdecimal() else None
-            raise Retry(f"HTTP status {status}: {said}", pause=wanted)
+            pause = seconds_to_wait(error.response.headers.get("retry-after", ""))
+            raise Retry(f"HTTP status {status}: {said}", pause=pause)
         raise AnswerError(f"{self.where()} refuses to be asked (HTTP status {status}): {said}")
 
     def where(self) -> str:

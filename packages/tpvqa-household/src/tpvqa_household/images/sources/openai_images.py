@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from tpvqa.addresses import checked_address
 from tpvqa.chance import chance
 from tpvqa.errors import GeneratorError, MissingExtraError, PictureRefused
+from tpvqa.vlm.http_client import seconds_to_wait
 from tpvqa.vlm.server_text import ServerText
 from tpvqa.vlm.surroundings import check_headers
 from tpvqa.worlds.pictures import digest
@@ -18,7 +19,6 @@ from tpvqa_household.images.sources.images_reply import (
     Elsewhere,
     complaint,
     read_reply,
-    seconds_to_wait,
     whole,
 )
 from tpvqa_household.images.sources.picture_file import as_png, read_picture, square
