@@ -61,6 +61,16 @@ def test_sixteen_bits_of_grey_are_as_light_as_they_were() -> None:
     assert np.asarray(in_colour(file.getvalue())).tolist() == [[[0] * 3, [137] * 3]]
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_palette_with_transparent_colours_is_read_without_a_warning() -> None:
+    file = BytesIO()
+    picture = Image.new("P", (2, 1))
+    picture.putpalette([200, 30, 30, 30, 200, 30])
+    picture.putdata([0, 1])
+    picture.save(file, "PNG", transparency=b"\xff\x40")
+    assert np.asarray(in_colour(file.getvalue())).tolist() == [[[200, 30, 30], [30, 200, 30]]]
+
+
 @pytest.mark.parametrize(
     ("data", "said"),
     [

@@ -39,6 +39,11 @@ def test_without_a_file_the_problem_is_believed() -> None:
         ("(in ?t hal): 0.5", 1, "this problem has no object 'hal'. Did you mean 'hall'?"),
         ("(lies anna hall): 0.5", 1, "no action changes 'lies'"),
         ("in: 0.5", 1, "'in' is not known here. Known: elsewhere, nothing_known, and facts"),
+        (
+            "elsewere: 0.1",
+            1,
+            "'elsewere' is not known here. Did you mean 'elsewhere'? Known: elsewh",
+        ),
         ("nothing_known: maybe", 1, "expected true or false"),
         ("- 3", 1, "expected 'name: value' entries"),
         ("(in lamp hall): .2\n(in  lamp hall): .2", 2, "(in lamp hall) is given twice"),

@@ -189,7 +189,7 @@ class Bright(NeedsPictures, Deterministic):
         for each in questions:
             half = pixels[:7, :4] if "left" in each.text else pixels[:7, 4:]
             if "lit" not in each.text:
-                found.append(Answer(each, Reply.UNKNOWN, text="no such word"))
+                found.append(Answer(each, Reply.UNKNOWN, text="no such \\x1b[1mword"))
                 continue
             p = float((half > 128).mean())
             found.append(Answer(each, Reply.YES if p > 0.5 else Reply.NO, p_yes=p, source="light"))
@@ -220,6 +220,8 @@ def test_vlms_are_compared_on_pictures(tpvqa: Run, lamps: tuple[object, ...]) ->
     assert len(rows) == bright["score"]["answers"]
     answered = [each for each in rows if each["reply"] != "unknown"]
     assert all((each["reply"] == "yes") == (each["truth"] == "True") for each in answered)
+    unknown = {each["text"] for each in rows if each["reply"] == "unknown"}
+    assert unknown == {r"no such \x1b[1mword"}
     follows = [each["truth"] for each in rows if each["predicate"] == "bright"]
     assert follows == ["True"]  # by an axiom: the manifest does not say it
     assert Path("vlm-compare/compare.png").read_bytes().startswith(b"\x89PNG")

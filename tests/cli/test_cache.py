@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 
 from tests.cli.conftest import Run
 from tests.conftest import Install
@@ -128,6 +129,19 @@ def test_it_is_counted_and_exported(tpvqa: Run, asked: Path) -> None:
     with Path("a.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["p_yes"] for row in rows] == [repr(line["p_yes"]) for line in lines]
+
+
+def test_an_export_holds_nothing_that_a_terminal_obeys(tpvqa: Run, install: Install) -> None:
+    said = "\x1b[2Jred\r\n\x9b" + "a" * 3000
+    install("coins", COIN.replace('source="coin"', f"text={said!r}"), "coin = coins:Coin")
+    Image.linear_gradient("L").save("p.png")
+    tpvqa("ask", "p.png", "Is it \x1b[31mopen?", "--vlm", "coin", "--record", "a.db")
+    tpvqa("cache", "export", "a.db", "--out", "a.csv")
+    (row,) = csv.DictReader(Path("a.csv").read_text().splitlines())
+    assert row["question"] == r"Is it \x1b[31mopen?"
+    assert row["text"] == r"\x1b[2Jred\r\n\x9b" + "a" * 3000
+    _, out, _ = tpvqa("cache", "export", "a.db", "--format", "csv")
+    assert out.splitlines() == Path("a.csv").read_text().splitlines()
 
 
 def test_it_is_pruned(tpvqa: Run, asked: Path) -> None:

@@ -44,6 +44,7 @@ class Act:
         wait: Seconds before anything is sent.
         reset: Cut the connection without a reply.
         drip: Seconds between one byte of the body and the next.
+        raw: What is sent, status line, headers and all; then the connection is closed.
     """
 
     status: int = 200
@@ -52,6 +53,7 @@ class Act:
     wait: float = 0.0
     reset: bool = False
     drip: float = 0.0
+    raw: bytes | None = None
 
 
 Script = Callable[[Request, int], Act | None]
@@ -108,7 +110,7 @@ class ChatServer:
         try:
             act = self.script(request, before) or Act()
             time.sleep(act.wait)
-            if act.body is None and act.status == 200 and not act.reset:
+            if act.body is None and act.status == 200 and not act.reset and act.raw is None:
                 answer = self.answerer(request.pictures, request.question)
                 wanted = self.logprobs and bool(request.body.get("logprobs"))
                 act = Act(body=completion(answer, logprobs=wanted))
@@ -188,6 +190,10 @@ class _Handler(BaseHTTPRequestHandler):
             self.connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
             self.close_connection = True
             self.connection.close()
+            return
+        if act.raw is not None:
+            self.connection.sendall(act.raw)
+            self.close_connection = True
             return
         body = act.body if isinstance(act.body, (str, bytes)) else json.dumps(act.body or {})
         data = body.encode() if isinstance(body, str) else body

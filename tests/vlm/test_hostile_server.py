@@ -24,6 +24,7 @@ from tpvqa.vlm.chat_completions import read_completion
 from tpvqa.vlm.openai_compatible import OpenAICompatibleVLM
 from tpvqa.vlm.server_text import KEY as TAKEN_OUT
 from tpvqa.vlm.server_text import ServerText
+from tpvqa.vlm.together import read_together
 
 KEY = "sk-proj-Zk83hTq9_vXw2LmN-04rBcYd7"
 QUESTION = "Is the fridge open?"
@@ -171,6 +172,49 @@ def test_a_compressed_reply_is_not_unpacked() -> None:
     assert "compressed" in answer.text
 
 
+BROKEN = {
+    "junk": b"\x00\xffgarbage\r\n\r\n",
+    "no length": b"HTTP/1.1 200 OK\r\nContent-Length: -5\r\n\r\n{}",
+    "cut off": b"HTTP/1.1 200 OK\r\nContent-Length: 9000\r\n\r\n{}",
+    "endless headers": b"HTTP/1.1 200 OK\r\n" + b"X: a\r\n" * 50_000 + b"\r\n",
+}
+
+
+@pytest.mark.parametrize("way", BROKEN)
+def test_broken_http_is_an_unknown_answer_of_a_server_that_has_spoken(way: str) -> None:
+    broken: list[Act] = []
+    with ChatServer(lambda *_: "no", script=lambda *_: broken[0] if broken else None) as server:
+        vlm = OpenAICompatibleVLM("test", base_url=server.url, retries=1)
+        vlm.check()
+        broken.append(Act(raw=BROKEN[way]))
+        (answer,) = vlm.ask(look(1), questions(QUESTION))
+        assert len(server.requests) == 3  # it was tried again
+        broken.clear()
+        (after,) = vlm.ask(look(1), questions(QUESTION))
+        vlm.close()
+    assert answer.reply is Reply.UNKNOWN
+    assert answer.text.startswith("garbled reply: ")
+    assert after.reply is Reply.NO
+
+
+@pytest.mark.parametrize("way", BROKEN)
+def test_what_answers_with_broken_http_at_first_is_no_server(way: str) -> None:
+    with pytest.raises(AnswerError, match=r"answers with broken HTTP .*/v1"):
+        asked(Act(raw=BROKEN[way]))
+
+
+@pytest.mark.parametrize("act", [Act(reset=True), Act(raw=b"")], ids=["reset", "hung up"])
+def test_a_server_that_is_lost_after_it_has_spoken_cannot_be_reached(act: Act) -> None:
+    lost: list[Act] = []
+    with ChatServer(lambda *_: "no", script=lambda *_: lost[0] if lost else None) as server:
+        vlm = OpenAICompatibleVLM("test", base_url=server.url, retries=0)
+        vlm.check()
+        lost.append(act)
+        with pytest.raises(AnswerError, match="cannot be reached"):
+            vlm.ask(look(1), questions(QUESTION))
+        vlm.close()
+
+
 def test_a_reply_that_drips_is_late() -> None:
     act = Act(body=completion("Yes", logprobs=False), drip=0.1)
     answer = asked(act, deadline=0.6, request_timeout=0.4)
@@ -225,6 +269,73 @@ def test_what_the_rest_of_a_reply_says_counts_too(sent: dict[str, Any], reply: R
     reading = read_completion(json.dumps(sent), QUESTION)
     assert reading.reply is reply
     assert reading.text
+
+
+NAN, ENDLESS = float("nan"), float("inf")
+
+
+@pytest.mark.parametrize(
+    "logprobs",
+    [
+        tokens(("Yes", -0.1), top=(("No", NAN),)),
+        tokens(("Yes", -0.3), top=(("No", 5.0),)),
+        tokens(("Yes", NAN), top=(("No", NAN),)),
+        tokens(("Yes", ENDLESS), top=(("No", -0.1),)),
+        tokens(("Yes", 0.9), top=(("No", 0.1),)),
+        {"logprobs": {"content": [{"token": "Yes", "logprob": "-0.1"}]}},
+        {"logprobs": {"content": [{"token": "Yes", "logprob": 10**400}]}},
+    ],
+)
+def test_a_logprob_that_is_none_leaves_the_bare_word(logprobs: dict[str, Any]) -> None:
+    reading = read_completion(json.dumps(body(**logprobs)), QUESTION)
+    assert (reading.reply, reading.source, reading.p_yes) == (Reply.YES, "word", None)
+    logprobs["logprobs"]["content"][0]["token"] = "No"
+    assert read_completion(json.dumps(body(**logprobs)), QUESTION).reply is Reply.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("top", "most"),
+    [
+        ((), 0.905),  # yes has .905, and the rest may all be a no's
+        ((("yes", -4.0),), 0.981),  # no has at most what the last listed has
+        ((("Maybe", -3.0),), 0.953),
+        ((("Maybe", -2.4), ("It", -9.0)), 0.9999),
+        ((("No", -9999.0),), 1.0),  # OpenAI's for "hardly ever"
+    ],
+)
+def test_p_yes_is_no_surer_than_what_is_listed(
+    top: tuple[tuple[str, float], ...], most: float
+) -> None:
+    top = (("Yes", -0.1), *top) if top else ()
+    reading = read_completion(json.dumps(body(**tokens(("Yes", -0.1), top=top))), QUESTION)
+    assert reading.reply is Reply.YES
+    assert reading.p_yes == pytest.approx(most, abs=1e-3)
+    no = tuple((word.replace("Yes", "No"), p) for word, p in top if word != "No")
+    if len(no) == len(top):
+        opposite = json.dumps(body("No", **tokens(("No", -0.1), top=no)))
+        reading = read_completion(opposite.replace('"yes"', '"no"'), QUESTION)
+        assert reading.p_yes == pytest.approx(1 - most, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("contrary", "p_yes"), [({"no": NAN}, None), ({"no": 5.0}, None), ({}, 0.905)]
+)
+def test_together_the_same_holds_for_each_answer(
+    contrary: dict[str, float], p_yes: float | None
+) -> None:
+    rows = [
+        {"token": text, "logprob": -0.1, "top_logprobs": top}
+        for text, top in (
+            ('{"q1": "', []),
+            ("yes", [{"token": "no", "logprob": p} for p in contrary.values()]),
+            ('"}', []),
+        )
+    ]
+    sent = body('{"q1": "yes"}', logprobs={"content": rows})
+    ((reading,),) = read_together(json.dumps(sent), 1)
+    assert reading.reply is Reply.YES
+    assert reading.source == ("word" if p_yes is None else "logprobs")
+    assert reading.p_yes == (None if p_yes is None else pytest.approx(p_yes, abs=1e-3))
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
+from datetime import UTC, datetime, timedelta
+from email.utils import format_datetime
 from pathlib import Path
 
 import pytest
@@ -19,6 +21,7 @@ from tpvqa.observation import Frame, Observation
 from tpvqa.plugins import Kind, make
 from tpvqa.questions import Question
 from tpvqa.vlm import VLM, Answer, Reply
+from tpvqa.vlm.http_client import seconds_to_wait
 from tpvqa.vlm.openai_compatible import OpenAICompatibleVLM
 
 PICTURE = b"\xff\xd8 a picture"
@@ -191,6 +194,27 @@ def test_a_pause_longer_than_the_deadline_is_not_begun_and_the_reason_is_kept() 
     assert answer.text.startswith("HTTP status 429: slow down; asking again in 5000 s")
     assert len(server.requests) == 1
     assert seconds < 15
+
+
+def test_retry_after_may_be_a_date() -> None:
+    now = datetime(2026, 1, 1, tzinfo=UTC)
+    assert seconds_to_wait(format_datetime(now + timedelta(seconds=30)), now) == 30
+    assert seconds_to_wait("Thu, 01 Jan 2026 00:00:30 -0000", now) == 30
+    assert seconds_to_wait(format_datetime(now - timedelta(seconds=30)), now) == 0
+    assert seconds_to_wait("7.5") == 7.5
+    far = f"Thu, 01 Jan {'9' * 30} 00:00:00 GMT"
+    assert {seconds_to_wait(none) for none in ("soon", "", "-5", "nan", "\xb2", far)} == {None}
+
+
+@pytest.mark.parametrize(("seconds", "requests"), [(-60, 2), (5000, 1)])
+def test_a_date_is_waited_for_within_the_deadline(seconds: float, requests: int) -> None:
+    then = format_datetime(datetime.now(UTC) + timedelta(seconds=seconds), usegmt=True)
+    act = Act(429, {"error": {"message": "slow down"}}, {"Retry-After": then})
+    with ChatServer(scripted, script=at_first(act)) as server:
+        (answer,) = ask(server, "Is the plate clean?", deadline=30.0)
+    assert len(server.requests) == requests
+    assert (answer.reply is Reply.YES) == (requests == 2)
+    assert requests == 2 or "later than the 30 s" in answer.text
 
 
 def test_what_failed_before_the_deadline_is_said() -> None:

@@ -86,9 +86,10 @@ def plainly(picture: Path, question: str, address: str) -> float:
     )
     with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request) as reply:
         first = json.load(reply)["choices"][0]["logprobs"]["content"][0]
-    found = mass([(each["token"], each["logprob"]) for each in first["top_logprobs"]]).p_yes
+    found = mass([(each["token"], each["logprob"]) for each in first["top_logprobs"]])
     assert found is not None
-    return found
+    assert found.p_yes is not None
+    return found.p_yes
 
 
 def test_p_yes_is_that_of_its_tokens_and_depends_on_the_picture(address: str, tpvqa: Run) -> None:

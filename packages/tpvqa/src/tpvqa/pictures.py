@@ -161,6 +161,8 @@ def as_colour(picture: "Image.Image") -> "Image.Image":
     """Pixels in red, green and blue; 16 bits of grey, which Pillow would cut off at 255, too."""
     if picture.mode.startswith("I"):
         picture = picture.point(lambda grey: grey / 257).convert("L")
+    if picture.mode == "P" and "transparency" in picture.info:  # Pillow warns of the direct way
+        picture = picture.convert("RGBA")
     return picture.convert("RGB")
 
 

@@ -3,8 +3,6 @@
 import base64
 import time
 from collections.abc import Iterator
-from datetime import UTC, datetime, timedelta
-from email.utils import format_datetime
 from io import BytesIO
 from itertools import pairwise
 
@@ -14,7 +12,6 @@ from PIL import Image
 from tests.household.images.sources.images_server import Act, ImagesServer, Script, picture, refusal
 from tpvqa.errors import GeneratorError, PictureRefused
 from tpvqa_household.images.sources.generator import Original
-from tpvqa_household.images.sources.images_reply import seconds_to_wait
 from tpvqa_household.images.sources.openai_images import OpenAIImages
 
 ORIGINAL = Original(picture(200), "the same kitchen in other light")
@@ -86,14 +83,6 @@ def test_a_busy_server_is_given_the_time_that_it_asks_for() -> None:
         assert len(keys) == 1, "a server that knows the header makes the picture once"
         images.generate("a plate", seed=2)
         assert server.requests[-1].headers["idempotency-key"] not in keys
-
-
-def test_retry_after_may_be_a_date() -> None:
-    now = datetime(2026, 1, 1, tzinfo=UTC)
-    assert seconds_to_wait(format_datetime(now + timedelta(seconds=30)), now) == 30
-    assert seconds_to_wait("7.5") == 7.5
-    assert seconds_to_wait("soon") is None
-    assert seconds_to_wait("") is None
 
 
 def test_a_wait_beyond_the_deadline_is_not_begun() -> None:
@@ -174,6 +163,9 @@ def test_nothing_answers() -> None:
 def test_openai_needs_a_key(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("OPENAI_API_KEY")
     with pytest.raises(GeneratorError, match="OPENAI_API_KEY"):
+        OpenAIImages("dall-e-2").generate("a plate", seed=1)
+    monkeypatch.setenv("OPENAI_API_KEY", "sk-\x1bsecret")
+    with pytest.raises(GeneratorError, match="OPENAI_API_KEY has characters"):
         OpenAIImages("dall-e-2").generate("a plate", seed=1)
     with pytest.raises(GeneratorError, match="http://"):
         OpenAIImages("dall-e-2", base_url="localhost:8000")

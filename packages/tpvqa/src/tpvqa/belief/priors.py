@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from math import fsum
 from pathlib import Path
 
-from tpvqa.errors import PDDLError, PriorsError
+from tpvqa.errors import PDDLError, PriorsError, shown, suggestion
 from tpvqa.pddl import Atom, Task
 from tpvqa.pddl.pattern import Pattern
 from tpvqa.yaml_places import Place, read_yaml
@@ -96,8 +96,8 @@ def load_priors(task: Task, path: Path | str | None, start: str = "known") -> Pr
             keys.append(key)
         else:
             raise key.wrong(
-                f"{name!r} is not known here. Known: {ELSEWHERE}, {NOTHING_KNOWN}, and facts such "
-                "as '(in ?thing fridge): 0.1'."
+                f"{shown(name)} is not known here{suggestion(name, (ELSEWHERE, NOTHING_KNOWN))} "
+                f"Known: {ELSEWHERE}, {NOTHING_KNOWN}, and facts such as '(in ?thing fridge): 0.1'."
             )
     empty = path is not None and (root is None or not root.entries())
     lines = tuple(key.line for key in keys)

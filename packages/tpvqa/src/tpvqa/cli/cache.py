@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TextIO
 
 import typer
 
-from tpvqa.cli.saying import cell, plain, tell
+from tpvqa.cli.saying import cell, plain_row, tell
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -192,10 +192,8 @@ def _write(file: Path, form: str, stream: TextIO) -> int:
         writer.writeheader()
     for entry in exported(file):
         count += 1
-        if writer is not None and stream is sys.stdout:
-            writer.writerow({k: plain(v) if isinstance(v, str) else v for k, v in entry.items()})
-        elif writer is not None:
-            writer.writerow(entry)
+        if writer is not None:
+            writer.writerow(plain_row(entry))
         else:
             told = {**entry, "parameters": json.loads(entry["parameters"])}
             stream.write(json.dumps(told) + "\n")

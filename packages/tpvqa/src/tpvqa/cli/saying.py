@@ -10,6 +10,8 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rich.text import Text
 
 LONGEST = 2_000
@@ -63,6 +65,14 @@ def cell(text: object) -> "Text":
     from rich.text import Text
 
     return Text(plain(text))
+
+
+def plain_row(row: "Mapping[str, object]") -> dict[str, object]:
+    """A row of a table that is written as text: its texts as `plain`, none cut."""
+    return {
+        name: plain(value, longest=len(value)) if isinstance(value, str) else value
+        for name, value in row.items()
+    }
 
 
 def tell(text: object, *, error: bool = False) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tpvqa.cli.options import ANSWERING, trial_options
-from tpvqa.cli.saying import tell
+from tpvqa.cli.saying import plain_row, tell
 from tpvqa.config.layers import Layer, combined, settings
 
 if TYPE_CHECKING:
@@ -273,5 +273,5 @@ def _csv(rows: "Sequence[dict[str, Any]]") -> bytes:
     text = StringIO(newline="")
     writer = csv.DictWriter(text, list(rows[0]))
     writer.writeheader()
-    writer.writerows(rows)
+    writer.writerows(map(plain_row, rows))
     return text.getvalue().encode()

@@ -2,6 +2,7 @@
 
 import base64
 import json
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -166,7 +167,7 @@ def data_url(frame: Frame) -> str:
 
 class _Alternative(ToldModel):
     token: str
-    logprob: float
+    logprob: Any = None
 
 
 class _Token(_Alternative):
@@ -268,12 +269,12 @@ def _read_choice(choice: Choice, question: str | None) -> Reading:
 def weighed(word: Reply, said: str, tokens: Sequence[Token]) -> Reading:
     """A clear word, with the probabilities of its tokens; *unknown* where these say otherwise."""
     token = answer_token(tokens)
-    if token is None:
+    found = None if token is None else mass(token.alternatives.items())
+    if token is None or found is None:
         other = spelt(tokens)
         if other and not said.strip().startswith(other) and not says(word.value, other):
             return Reading(Reply.UNKNOWN, text=f"its tokens say otherwise ({other[:40]!r}): {said}")
         return Reading(word, text=said)
-    found = mass(token.alternatives.items())
     p_yes = found.p_yes
     if p_yes is None or found.leftover > 0.5:
         return Reading(Reply.UNKNOWN, "logprobs", said, leftover=found.leftover)
@@ -292,11 +293,21 @@ def tokens_of(logprobs: Any) -> list[Token]:
     return [
         Token(
             text=token.token,
-            alternatives={token.token: token.logprob}
-            | {other.token: other.logprob for other in token.top_logprobs or []},
+            alternatives={
+                each.token: _logarithm(each.logprob)
+                for each in (token, *(token.top_logprobs or ()))
+            },
         )
         for token in content
     ]
+
+
+def _logarithm(told: object) -> float:
+    """A number that is told; NaN where it is none."""
+    try:
+        return float(told) if isinstance(told, (int, float)) else math.nan
+    except OverflowError:
+        return math.nan
 
 
 def refuses_form(status: int, said: str) -> bool:

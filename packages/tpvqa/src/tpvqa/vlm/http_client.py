@@ -1,7 +1,11 @@
 """The HTTP client for a server that is not trusted: no redirects, and replies of bounded size."""
 
 from collections.abc import AsyncIterator
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
 from typing import TYPE_CHECKING, Any
+
+from tpvqa.vlm.surroundings import why_no_client
 
 if TYPE_CHECKING:
     from openai import DefaultAsyncHttpxClient
@@ -35,12 +39,33 @@ async def _bound(response: Any) -> None:
     response.aiter_raw = bounded
 
 
+def seconds_to_wait(retry_after: str, now: datetime | None = None) -> float | None:
+    """What the header Retry-After asks for, as seconds or as a date; None where it is neither."""
+    if retry_after.replace(".", "", 1).isdecimal():
+        return float(retry_after)
+    try:
+        until = parsedate_to_datetime(retry_after)
+    except (ValueError, OverflowError):
+        return None
+    if until.tzinfo is None:
+        until = until.replace(tzinfo=UTC)
+    return max(0.0, (until - (now or datetime.now(UTC))).total_seconds())
+
+
 def bounded_client() -> "DefaultAsyncHttpxClient":
-    """A client that sends to the address that it is given, and reads no more than it should."""
+    """A client that sends to the address that it is given, and reads no more than it should.
+
+    Raises:
+        ValueError: There can be none with the environment's proxies or certificates. The message
+            names what to mend.
+    """
     from openai import DefaultAsyncHttpxClient
 
-    return DefaultAsyncHttpxClient(
-        follow_redirects=False,
-        headers={"Accept-Encoding": "identity"},
-        event_hooks={"response": [_bound]},
-    )
+    try:
+        return DefaultAsyncHttpxClient(
+            follow_redirects=False,
+            headers={"Accept-Encoding": "identity"},
+            event_hooks={"response": [_bound]},
+        )
+    except Exception as error:  # noqa: BLE001  httpx and ssl raise of many kinds
+        raise ValueError(why_no_client(error)) from None

@@ -29,6 +29,7 @@ from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.sampled import frequency
 from tpvqa.vlm.sent_pictures import LONGEST, SentPictures
 from tpvqa.vlm.server import Retry, Server
+from tpvqa.vlm.surroundings import innermost, what_to_look_at
 from tpvqa.vlm.timed_reading import Key, TimedReading, answer_from, key_of, pause_before
 from tpvqa.vlm.together import read_together
 from tpvqa.vlm.usage import Budget, Usage, usage_told
@@ -245,8 +246,10 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         except AnswerError as error:
             raise AnswerError(self._server.text(str(error))) from None
         except Exception as error:  # noqa: BLE001  its text may be the server's
-            why = self._server.text(f"{type(error).__name__}: {error}")
-            raise AnswerError(f"{self._server.where()} cannot be asked: {why}") from None
+            why = self._server.text(f"{type(error).__name__}: {error}").rstrip(".")
+            raise AnswerError(
+                f"{self._server.where()} cannot be asked: {why}.{what_to_look_at()}"
+            ) from None
         return [
             [
                 replace(
@@ -284,15 +287,13 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
             async with asyncio.TaskGroup() as asking:
                 tasks = [asking.create_task(one(inquiry)) for inquiry in asked]
         except ExceptionGroup as group:  # what is raised in an `except*` stays in a group
-            refused, other = group.split(AnswerError)
-            if refused is None or other is not None:
-                raise
-            raise refused.exceptions[0] from None
+            raise innermost(group) from None
         outcomes = [task.result() for task in tasks]
-        if outcomes and all(each.unreachable for found in outcomes for each in found):
+        first = outcomes[0][0] if outcomes else None
+        if first and all(each.no_server for found in outcomes for each in found):
             raise AnswerError(
-                f"{self._server.where()} cannot be reached ({outcomes[0][0].reading.text}). Is "
-                "the server running, and is the address right, with its path (usually /v1)?"
+                f"{self._server.where()} {first.no_server} ({first.reading.text}). Is the server "
+                "running, and is the address right, with its path (usually /v1)?"
             )
         return outcomes
 
@@ -327,7 +328,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
             failed = TimedReading(
                 Reading(Reply.UNKNOWN, text=why),
                 time.monotonic() - started,
-                unreachable=last.unreachable,
+                no_server=last.no_server,
                 final=False,
             )
             return [failed] * len(inquiry.texts)

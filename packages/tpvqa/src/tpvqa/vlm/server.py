@@ -9,22 +9,26 @@ from tpvqa.errors import AnswerError
 from tpvqa.vlm.answer import Reply
 from tpvqa.vlm.chat_completions import Dialect, Inquiry, complaint, messages, refuses_form
 from tpvqa.vlm.connection import Connection
+from tpvqa.vlm.http_client import ReplyTooLargeError, bounded_client, seconds_to_wait
 from tpvqa.vlm.prompt import Prompt
 from tpvqa.vlm.reading import Reading
 from tpvqa.vlm.server_text import ServerText
+from tpvqa.vlm.surroundings import check_headers, innermost
 
 if TYPE_CHECKING:
     from openai import APIStatusError, AsyncOpenAI
 
 
 class Retry(Exception):  # noqa: N818 — a request to try again, not an error
-    def __init__(self, why: str, *, pause: float | None = None, unreachable: bool = False):
+    def __init__(self, why: str, *, pause: float | None = None, no_server: str = ""):
         super().__init__(why)
-        self.why, self.pause, self.unreachable = why, pause, unreachable
+        self.why, self.pause, self.no_server = why, pause, no_server
 
 
 _UNDECODED = (AssertionError, LookupError, RecursionError, ValueError)
 """What openai's package raises of an error's body that says nothing it can read."""
+_HUNG_UP = "Server disconnected"
+"""How httpx begins to say that there was no reply at all, by the same error as of a broken one."""
 
 
 class Server:
@@ -40,7 +44,7 @@ class Server:
         self.model, self.base_url, self._request_timeout = model, base_url, timeout
         self.text = ServerText("")
         self._connection: Connection | None = None
-        self._speaks = False  # once a reply was no web page
+        self._speaks = False  # once a reply was neither a web page nor broken HTTP
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
@@ -51,12 +55,11 @@ class Server:
         """The connection, made where there is none.
 
         Raises:
-            AnswerError: There is no key, or the address cannot be used.
+            AnswerError: There is no key, the address cannot be used, or the environment holds
+                what cannot be sent.
         """
         if self._connection is None or not self._connection.alive:
             import openai
-
-            from tpvqa.vlm.http_client import bounded_client
 
             key = os.environ.get("OPENAI_API_KEY", "").strip()
             if not key and self.base_url is None:
@@ -64,15 +67,18 @@ class Server:
                     "OpenAI needs a key. Set the environment variable OPENAI_API_KEY, or name a "
                     "server of your own by --base-url."
                 )
-            if not key.isascii():
-                raise AnswerError("OPENAI_API_KEY has characters that no key has. Set it again.")
             self.text = ServerText(key)
+            try:
+                check_headers(key)
+                http = bounded_client()
+            except ValueError as error:
+                raise AnswerError(f"{self.where()} cannot be asked: {error}") from None
             try:
                 client = openai.AsyncOpenAI(
                     api_key=key or "none-needed",
                     base_url=self.base_url,
                     max_retries=0,
-                    http_client=bounded_client(),
+                    http_client=http,
                 )
             except (openai.OpenAIError, ValueError) as error:
                 raise AnswerError(f"{self.where()} cannot be asked: {error}") from error
@@ -95,8 +101,6 @@ class Server:
         """
         import openai
 
-        from tpvqa.vlm.http_client import ReplyTooLargeError
-
         count = len(inquiry.texts) if inquiry.together else 0
         parameters: dict[str, Any] = dialect.parameters(count, samples)
         said: Any = messages(inquiry, prompt)
@@ -114,12 +118,21 @@ class Server:
             for cause in (error, error.__cause__):
                 if isinstance(cause, ReplyTooLargeError):
                     return Reading(Reply.UNKNOWN, text=f"garbled reply: {cause}")
-            why = str(error.__cause__ or error) or type(error.__cause__).__name__
-            raise Retry(f"no connection: {why}", unreachable=True) from None
+            cause = innermost(error.__cause__ or error)
+            # httpx's, or that of its successor: nothing was sent, so asking again does not help
+            if type(cause).__name__ == "LocalProtocolError":
+                raise cause from None
+            why = str(cause) or type(cause).__name__
+            if type(cause).__name__ != "RemoteProtocolError" or why.startswith(_HUNG_UP):
+                raise Retry(f"no connection: {why}", no_server="cannot be reached") from None
+            no_server = "" if self._speaks else "answers with broken HTTP"
+            raise Retry(f"garbled reply: {why}", no_server=no_server) from None
         except openai.APIStatusError as error:
             with suppress(RecursionError):
                 return self._refused(error)
             return Reading(Reply.UNKNOWN, text="garbled reply: nested too deeply")
+        except UnicodeEncodeError:  # nothing was sent, so this is no answer of the server's
+            raise
         except _UNDECODED as error:
             return Reading(Reply.UNKNOWN, text=f"garbled reply: {type(error).__name__}: {error}")
         if "html" in response.headers.get("content-type", ""):
@@ -158,9 +171,8 @@ class Server:
         if "insufficient_quota" in parts.values():
             raise AnswerError(f"{self.where()}: the account has no credit left. {said}")
         if status in (408, 409, 429) or status >= 500:
-            pause = error.response.headers.get("retry-after", "")
-            wanted = float(pause) if pause.replace(".", "", 1).isdecimal() else None
-            raise Retry(f"HTTP status {status}: {said}", pause=wanted)
+            pause = seconds_to_wait(error.response.headers.get("retry-after", ""))
+            raise Retry(f"HTTP status {status}: {said}", pause=pause)
         raise AnswerError(f"{self.where()} refuses to be asked (HTTP status {status}): {said}")
 
     def where(self) -> str:

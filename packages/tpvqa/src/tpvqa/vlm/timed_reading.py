@@ -20,7 +20,7 @@ class TimedReading:
 
     reading: Reading
     seconds: float
-    unreachable: bool = False
+    no_server: str = ""  # what an address does where nothing at it is a server
     final: bool = True  # a failure may pass; a reading stays
 
 

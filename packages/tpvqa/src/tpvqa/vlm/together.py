@@ -83,6 +83,8 @@ def _one(key: str, times: int, value: object, tokens: "_Tokens") -> Reading:
     if token is None or meaning(token.text) != word:
         return reading
     found = mass(token.alternatives.items())
+    if found is None:
+        return reading
     if found.p_yes is None or found.leftover > 0.5 or (found.p_yes > 0.5) != (word == "yes"):
         why = f"its tokens say otherwise: {word}"
         return Reading(Reply.UNKNOWN, "logprobs", why, leftover=found.leftover)

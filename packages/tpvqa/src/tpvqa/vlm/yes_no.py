@@ -35,11 +35,13 @@ class YesNoMass:
     Attributes:
         yes: Probability of all ways of writing yes.
         no: Probability of all ways of writing no.
+        unlisted: Where one of the two is not listed, as much as it may have all the same.
         leftover: What remains, for everything else.
     """
 
     yes: float
     no: float
+    unlisted: float = 0.0
 
     @property
     def leftover(self) -> float:
@@ -48,9 +50,11 @@ class YesNoMass:
 
     @property
     def p_yes(self) -> float | None:
-        """P(yes | yes or no); None where both have no probability at all."""
-        total = self.yes + self.no
-        return min(1.0, self.yes / total) if total > 0 else None
+        """P(yes | yes or no), no surer than what is listed; None where both have no probability."""
+        if self.yes + self.no <= 0:
+            return None
+        yes, no = self.yes or self.unlisted, self.no or self.unlisted
+        return min(1.0, yes / (yes + no))
 
 
 def spelt(tokens: Sequence[Token]) -> str:
@@ -77,20 +81,31 @@ def answer_token(tokens: Sequence[Token]) -> Token | None:
     return None
 
 
-def mass(alternatives: Iterable[tuple[str, float]]) -> YesNoMass:
+def mass(alternatives: Iterable[tuple[str, float]]) -> YesNoMass | None:
     """Sum the probabilities of yes and of no over case, leading space and punctuation.
+
+    What is listed are the likeliest tokens. So one of the two that is not listed is no likelier
+    than the last of them, and than all that they leave.
 
     Args:
         alternatives: Tokens, each at most once, with the natural logarithms of their
-            probabilities. Values that are no logarithm of a probability count as nothing.
+            probabilities. Where that of a yes or a no is none, there is nothing to go by: None.
     """
     total = {"yes": 0.0, "no": 0.0}
+    listed, words = [], set()
     for text, logarithm in alternatives:
-        word = meaning(text)
-        if word is not None and logarithm < _ROUNDING:
-            total[word] += math.exp(min(0.0, logarithm))
+        word, sound = meaning(text), logarithm < _ROUNDING
+        probability = math.exp(min(0.0, logarithm)) if sound else 0.0
+        if sound:
+            listed.append(probability)
+        if word is not None:
+            if not sound:
+                return None
+            words.add(word)
+            total[word] += probability
+    unlisted = min(max(0.0, 1.0 - sum(listed)), min(listed)) if len(words) == 1 else 0.0
     scale = max(1.0, total["yes"] + total["no"])
-    return YesNoMass(yes=total["yes"] / scale, no=total["no"] / scale)
+    return YesNoMass(total["yes"] / scale, total["no"] / scale, unlisted)
 
 
 def meaning(token: str) -> str | None:

@@ -5,8 +5,6 @@ import binascii
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
-from email.utils import parsedate_to_datetime
 
 from pydantic import Field, ValidationError
 
@@ -75,16 +73,3 @@ def complaint(body: object) -> Mapping[str, str]:
         return {} if inner is None else {"message": str(inner)[:300]}
     parts = {key: inner.get(key) for key in ("message", "code", "type", "detail")}
     return {key: str(value)[:300] for key, value in parts.items() if value}
-
-
-def seconds_to_wait(retry_after: str, now: datetime | None = None) -> float | None:
-    """What the header Retry-After asks for, as seconds or as a date; None where it is neither."""
-    if retry_after.replace(".", "", 1).isdecimal():
-        return float(retry_after)
-    try:
-        until = parsedate_to_datetime(retry_after)
-    except ValueError:
-        return None
-    if until.tzinfo is None:
-        until = until.replace(tzinfo=UTC)
-    return max(0.0, (until - (now or datetime.now(UTC))).total_seconds())

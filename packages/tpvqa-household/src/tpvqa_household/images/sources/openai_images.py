@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from tpvqa.addresses import checked_address
 from tpvqa.chance import chance
 from tpvqa.errors import GeneratorError, MissingExtraError, PictureRefused
+from tpvqa.vlm.http_client import seconds_to_wait
 from tpvqa.vlm.server_text import ServerText
+from tpvqa.vlm.surroundings import check_headers
 from tpvqa.worlds.pictures import digest
 from tpvqa_household.images.sources.generator import Drawn, Original
 from tpvqa_household.images.sources.images_reply import (
     Elsewhere,
     complaint,
     read_reply,
-    seconds_to_wait,
     whole,
 )
 from tpvqa_household.images.sources.picture_file import as_png, read_picture, square
@@ -146,10 +147,9 @@ class OpenAIImages:
                     "OpenAI needs a key. Set the environment variable OPENAI_API_KEY, or name a "
                     "server of your own by --base-url."
                 )
-            if not key.isascii():
-                raise GeneratorError("OPENAI_API_KEY has characters that no key has. Set it again.")
             self._text = ServerText(key)
             try:
+                check_headers(key)
                 self._client = openai.OpenAI(
                     api_key=key or "none-needed",
                     base_url=self.base_url,
