@@ -146,3 +146,27 @@ def test_that_something_is_done_with_a_gripper_is_no_guess() -> None:
     text = draft(task_from_text(GRIPPER, BALLS))
     assert "with {gripper.the}" in yaml.safe_load(text)["actions"]["pick"]["say"]
     assert LOOK not in text.partition("actions:")[2]
+
+
+def test_underwater_robots_act_and_grip() -> None:
+    """Acronyms without a vowel keep their capitals."""
+    task = task_from_text(
+        """(define (domain sea) (:requirements :typing) (:types rov tool station van - object)
+        (:predicates (isAt ?r - rov ?s - station) (gripped ?r - rov ?t - tool)
+          (inBasket ?t - tool) (linked ?t - tool ?p - van))
+        (:action takeTool :parameters (?r - rov ?t - tool) :precondition (inBasket ?t)
+          :effect (and (gripped ?r ?t) (not (inBasket ?t))))
+        (:action plug-in :parameters (?t - tool ?p - van) :precondition (inBasket ?t)
+          :effect (linked ?t ?p))
+        (:action transit :parameters (?r - rov ?a ?b - station) :precondition (isAt ?r ?a)
+          :effect (and (isAt ?r ?b) (not (isAt ?r ?a)))))""",
+        """(define (problem p) (:domain sea) (:objects Triton_XL - rov jet-1 - tool
+          TMS manifold - station board - van)
+        (:init (isAt Triton_XL TMS) (inBasket jet-1)) (:goal (gripped Triton_XL jet-1)))""",
+    )
+    told = yaml.safe_load(draft(task))
+    asked = ["Is {t.the} gripped by the {r}?", "Is the {r} gripping {t.the}?"]
+    assert told["predicates"]["gripped"] == asked
+    assert told["actions"]["taketool"]["say"] == "take {t.the}"
+    assert told["actions"]["plug-in"]["say"].startswith("plug ")
+    assert told["objects"] == {"triton_xl": "triton XL", "tms": "TMS"}

@@ -36,7 +36,7 @@ def _action(needed: st.SearchStrategy[str]) -> st.SearchStrategy[tuple[str, str]
 
 
 @st.composite
-def tasks(draw: st.DrawFn, *, derived: bool = False) -> Task:
+def tasks(draw: st.DrawFn, *, derived: bool = False, goal: str = "(full)") -> Task:
     """Tasks with a few actions over five facts, and where wished one that follows from others."""
     actions = draw(st.lists(_action(_DERIVED if derived else _CONDITION), min_size=1, max_size=4))
     rule = f"(:derived (seen) {draw(_RULE)})" if derived else ""
@@ -49,5 +49,5 @@ def tasks(draw: st.DrawFn, *, derived: bool = False) -> Task:
         f"""(define (domain d) (:types place) (:constants a b c - place)
         (:predicates (here ?p - place) (full) (locked) (seen))
         {rule} {written})""",
-        f"(define (problem p) (:domain d) (:init {' '.join(sorted(init))}) (:goal (full)))",
+        f"(define (problem p) (:domain d) (:init {' '.join(sorted(init))}) (:goal {goal}))",
     )

@@ -3,22 +3,25 @@
 from collections.abc import Iterable
 from functools import cached_property, lru_cache
 
-from tpvqa.pddl import Atom, Condition, Conjunction, Literal, State, Task, literals
+from tpvqa.pddl import Atom, Condition, Conjunction, Disjunction, State, Task, literals
 
 KEPT = 20_000
 """States of which it is kept."""
 _Needs = tuple[int, int]
 """What has to hold and what must not, as bits."""
+_Way = tuple[_Needs, int, int]
+"""What something needs, what it makes true and what false."""
 
 
 class DeadEnds:
     """Tells from where a task's goal is out of reach even if nothing were ever undone.
 
     That is the delete relaxation (Bonet and Geffner 2001), a literal and its contrary each by
-    itself: the goal may be out of reach where it says nothing. What is no conjunction is taken to
-    hold. Nothing is told of large tasks of which a part was left out, of numbers and time, nor of
-    states with facts that no action brings about, or without some that none ends: what they allow
-    was not grounded.
+    itself: the goal may be out of reach where it says nothing. What is derived is reached where
+    what it follows from is; that a derived fact does not hold is taken to be so, and so is what is
+    no conjunction. Nothing is told of large tasks of which a part was left out, of numbers and
+    time, nor of states with facts that no action brings about, or without some that none ends:
+    what they allow was not grounded.
 
     Args:
         task: Gives actions and goal.
@@ -26,7 +29,8 @@ class DeadEnds:
 
     def __init__(self, task: Task):
         self._task = task
-        self._bits: dict[Atom, int] = {}
+        self._bits: dict[Atom | Disjunction, int] = {}
+        self._unruled: list[Atom | Disjunction] = []
         self._known: dict[tuple[State, State], bool] = {}
         plain = not task.left_out and task.numeric is None and task.lasting is None
         self._fluents = task.fluents - task.derived
@@ -47,7 +51,7 @@ class DeadEnds:
             if len(self._known) >= KEPT:
                 self._known.clear()
             true = self._numbered(atom for atom in state if atom.predicate in self._fluents)
-            mended = bool(before) and self._mended(state, before, true)
+            mended = bool(before) and self._mended(state, before, self._with_what_follows(true))
             found = self._known[state, before] = not (mended or self._reaches(true, self._goal))
         return found
 
@@ -65,7 +69,7 @@ class DeadEnds:
         """What it takes to make facts true, and to make them false."""
         found: dict[tuple[Atom, bool], list[_Needs]] = {}
         changes = self._changes  # they number their atoms
-        atoms = {bit: atom for atom, bit in self._bits.items()}
+        atoms = {bit: atom for atom, bit in self._bits.items() if isinstance(atom, Atom)}
         for needs, *made in changes:
             for positive, bits in zip((True, False), made, strict=True):
                 while bits:
@@ -83,7 +87,7 @@ class DeadEnds:
         )
 
     @cached_property
-    def _changes(self) -> list[tuple[_Needs, int, int]]:
+    def _changes(self) -> list[_Way]:
         """What each action needs for some of its effects, what it makes true and what false."""
         found: dict[_Needs, tuple[int, int]] = {}
         for action in self._task.ground_actions():
@@ -98,23 +102,44 @@ class DeadEnds:
                 found[own] = (add | bit, delete) if positive else (add, delete | bit)
         return [(needs, *made) for needs, made in found.items()]
 
-    def _needs(self, conditions: Iterable[Condition]) -> _Needs:
-        """The literals of conjunctions of what actions change, as bits."""
-        parts, told = list(conditions), list[Literal]()
+    @cached_property
+    def _rules(self) -> list[_Way]:
+        """What the derived facts that are asked for follow from, and their parts."""
+        found: list[_Way] = []
+        bodies: dict[Atom, list[Condition]] = {}
+        _ = self._changes  # what they need is asked for, too
+        if self._unruled and self._task.axioms:
+            for rule in self._task.derivation(self._task.init).rules:
+                bodies.setdefault(rule.head, []).append(rule.condition)
+        while self._unruled:
+            each = self._unruled.pop()
+            parts = each.parts if isinstance(each, Disjunction) else bodies.get(each, ())
+            found += [(self._needs([part], derived=True), self._bits[each], 0) for part in parts]
+        return found
+
+    def _needs(self, conditions: Iterable[Condition], *, derived: bool = False) -> _Needs:
+        """The literals of conjunctions of what actions change, and what follows, as bits."""
+        parts, need, bar = list(conditions), 0, 0
         while parts:
             part = parts.pop()
             if isinstance(part, Conjunction):
                 parts += part.parts
-            elif isinstance(part, Literal) and part.atom.predicate in self._fluents:
-                told.append(part)
-        need, bar = (
-            self._numbered(each.atom for each in told if each.positive == positive)
-            for positive in (True, False)
-        )
+            elif isinstance(part, Disjunction):
+                need |= self._followed(part) if derived else 0
+            elif part.atom.predicate in self._fluents:
+                bit = self._numbered([part.atom])
+                need, bar = (need | bit, bar) if part.positive else (need, bar | bit)
+            elif part.positive and part.atom.predicate in self._task.derived:
+                need |= self._followed(part.atom)
         return need, bar
 
+    def _followed(self, what: Atom | Disjunction) -> int:
+        if what not in self._bits:
+            self._unruled.append(what)
+        return self._numbered([what])
+
     def _reaches(self, true: int, goal: _Needs) -> bool:
-        waiting = self._changes
+        waiting = [*self._rules, *self._changes]
         false, before = ~true, (-1, -1)
         while goal[0] & ~true or goal[1] & ~false:
             if before == (true, false):
@@ -129,7 +154,16 @@ class DeadEnds:
             waiting = left
         return True
 
-    def _numbered(self, atoms: Iterable[Atom]) -> int:
+    def _with_what_follows(self, true: int) -> int:
+        before = -1
+        while before != true:
+            before = true
+            for (need, bar), add, _ in self._rules:
+                if not (need & ~true or bar & true):
+                    true |= add
+        return true
+
+    def _numbered(self, atoms: Iterable[Atom | Disjunction]) -> int:
         """Facts as bits of a number, one for each fact that was ever asked for."""
         found = 0
         for atom in atoms:

@@ -86,6 +86,8 @@ class Actions:
         tail = " ".join(piece for piece in pieces if piece)
         if verb == "pick" and not tail.startswith("up") and " of " not in tail:
             tail = f"up {tail}"
+        if verb == "plug" and tail.startswith("in ") and " into " in tail:
+            tail = tail.removeprefix("in ")
         unsure = (
             tail.count("with ") > 1
             or not is_verb(verb)

@@ -20,12 +20,12 @@ AGENTS = word_set(
     "agent agv arm astronaut car chef cook crane craft doctor driver drone ferry forklift "
     "gripper hand hands helicopter hoist human lift lorry manipulator miner nurse operator "
     "passenger person plane airplane aeroplane aircraft player pilot robby robot rover "
-    "satellite ship taxi technician train truck tug van vehicle waiter worker"
+    "satellite ship taxi technician train truck tug van vehicle waiter worker rov auv uav ugv"
 )
 """What acts, or is where it is by itself."""
 PEOPLE = word_set(
     "agent astronaut chef cook doctor driver drone human miner nurse operator passenger person "
-    "player pilot robby robot rover technician waiter worker"
+    "player pilot robby robot rover technician waiter worker rov auv uav ugv"
 )
 """Agents that are made to do something: have driver 1 walk."""
 HANDS = word_set("arm claw effector gripper hand hands jaws manipulator fingers")

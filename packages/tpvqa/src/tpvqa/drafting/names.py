@@ -18,6 +18,8 @@ from tpvqa.drafting.lexicon import (
     word_set,
 )
 
+_VOWEL = re.compile("[AEIOUY]")
+"""Where one stands, capitals may be a habit: TABLE, but TMS."""
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z0-9])(?=[A-Z][a-z])")
 _PREFIXES = ("is", "has", "have", "not", "get", "can")
 _LONE = frozenset(
@@ -129,6 +131,7 @@ def as_written(words: str, raw: str) -> str:
     """
     mixed = raw != raw.upper()
     for code in re.findall(r"(?<![A-Za-z0-9])[A-Z0-9]+(?![a-z0-9])|[A-Z]\d+", raw):
-        if not code.isdigit() and (mixed or not code.isalpha() or len(code) == 1):
+        telling = mixed or not code.isalpha() or len(code) == 1 or not _VOWEL.search(code)
+        if not code.isdigit() and telling:
             words = re.sub(rf"(?<!\w){code.lower()}(?!\w)", code, words)
     return words

@@ -11,6 +11,8 @@ from tpvqa.drafting.names import is_number
 from tpvqa.drafting.things import plural, some
 from tpvqa.questions.template import indefinite_article
 
+HELD = ("hold", "carry", "grasp", "lift", "grip")
+"""What is done to a thing that is in a hand."""
 Others = Callable[[list[Noun]], list[str]]
 """Says further things with their prepositions."""
 
@@ -71,6 +73,10 @@ def _done(
     said, extra = words[0], " ".join(words[1:])
     if rest:
         acting = things.act(first.objects) and not things.act(rest[0].objects)
+        if acting and base in HELD and not extra:  # gripped(robot, x)
+            yield Clause("is", rest[0], f"{said} by {first.said}")
+            yield Clause("is", first, f"{ing(base)} {rest[0].said}")
+            return
         if acting and base not in STATES | {"deliver", "take", "transport", "move", "assign"}:
             joined = " ".join([extra, rest[0].said, *others(rest[1:])])
             yield Clause("has", first, f"{participle(base)} {joined}")
@@ -79,7 +85,7 @@ def _done(
             yield Clause("has", rest[0], f"{participle(base)} {first.said}")
             yield Clause("has", first, f"been {said} by {rest[0].said}")
             return
-        if things.act(rest[0].objects) and base in ("hold", "carry", "grasp", "lift", "grip"):
+        if things.act(rest[0].objects) and base in HELD:
             held = "in" if things.hold(rest[0].objects) else "by"
             yield Clause("is", first, f"{said} {held} {rest[0].said}")
             yield Clause("is", rest[0], f"{ing(base)} {first.said}")
@@ -204,7 +210,9 @@ def _does(
     joint = f"{at} " if at else usual
     if base in lexicon.STATIVE:
         yield Clause("does", first, f"{base} {joint}{tail}")
-        if base in ("contain", "hold"):
+        if base == "hold" and things.act(first.objects) and not things.hold(first.objects):
+            yield Clause("is", second, f"held by {first.said}")
+        elif base in ("contain", "hold"):
             yield Clause("is", second, f"in {first.said}")
         elif base in ("cover", "support", "touch", "block"):
             yield Clause("is", first, f"{ing(base)} {tail}")

@@ -20,10 +20,10 @@ def elsewhere(
 ) -> State:
     """A first state in which some things are elsewhere than in the task's.
 
-    A thing stands first in a fact of an exactly-one group about it, its place after it, as in `(on
-    bread table)`. It is elsewhere where another fact of that group and predicate holds, at a place
-    where anything can be, and all mutex groups still hold: a place for one thing is free, and the
-    one that it left is.
+    A thing is what all facts of an exactly-one group name, as `(on bread table)` and `(gripped
+    robot bread)` do; it stands first in the one that holds, its place after it. It is elsewhere
+    where another fact of that group and predicate holds, at a place where anything can be, and all
+    mutex groups still hold: a place for one thing is free, and the one that it left is.
 
     Args:
         task: Gives the groups and the initial state.
@@ -72,7 +72,11 @@ def _why(task: Task, handled: Collection[str], places: Mapping[str, Sequence[Ato
         )
     if bound:
         why.append(f"no action brings {' or '.join(bound)} to another place of that kind")
-    if not (places or loose):
+    unary = (atom for atom in task.init - task.static if len(atom.arguments) == 1)
+    lone = sorted(atom.pddl() for atom in unary if atom.arguments[0] in handled)
+    if not (places or loose) and lone:
+        why.append(f"{' and '.join(lone)} names no place of which there could be another")
+    elif not (places or loose):
         why.append("no action changes a fact that says where one is, as (on bread table)")
     return f" ({'; '.join(why)})" if why else ""
 
@@ -92,7 +96,7 @@ def places_of(task: Task) -> dict[str, list[Atom]]:
         if not group.exactly_one or len(here) != 1 or len(here[0].arguments) < 2:
             continue
         thing = here[0].arguments[0]
-        if all(atom.arguments[:1] == (thing,) for atom in group.atoms):
+        if all(thing in atom.arguments for atom in group.atoms):
             found[thing] = [
                 atom
                 for atom in sorted(group.atoms)
