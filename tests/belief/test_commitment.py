@@ -13,7 +13,7 @@ from tpvqa.belief.faults import FaultModel, JointState, Rates
 from tpvqa.belief.outlook import Outlook
 from tpvqa.belief.sight import Sight
 from tpvqa.belief.skills import SkillState
-from tpvqa.pddl import load_task
+from tpvqa.pddl import Atom, load_task
 from tpvqa.planning.regression import regress
 
 FOLDER = Path(__file__).parents[1] / "fixtures" / "drawer"
@@ -51,3 +51,55 @@ def test_what_no_plan_is_known_for_is_not_cheaper_than_what_is_planned() -> None
     elsewhere = model.number(JointState(frozenset()))
     assert ahead.best(elsewhere) is None
     assert ahead.to_go(elsewhere) > ahead.to_go(model.number(JointState(TASK.init)))
+
+
+def test_what_nothing_shows_does_not_make_the_next_action_look_dearer() -> None:
+    """It may as well be undone by later ones, which is not counted either."""
+    for seen, shown in (
+        (("open", "shut"), {False}),
+        (("open", "shut", "contaminated"), {True, False}),
+    ):
+        model, _, sight = known(0.25, *seen)
+        number: int | None = model.number(JointState(TASK.init))
+        for action in (OPEN, DISINFECT):
+            assert number is not None
+            number = model.outcomes(action)[number].intended
+        assert number is not None
+        assert model.state(number) == CLEAN
+        undone = {model.state(other): other for _, other in model.undone(number)}
+        assert DIRTY in undone
+        assert {other == undone[DIRTY] for _, other in sight.undone(number)} == shown
+
+
+def test_the_way_of_an_unlikely_state_is_compared_though_likely_ones_share_another(
+    tmp_path: Path,
+) -> None:
+    """Where the drawer may still be dirty it is disinfected again, whatever else is in doubt."""
+    text = (FOLDER / "domain.pddl").read_text()
+    marks = " ".join(f"(mark{n} ?d)" for n in range(2))
+    text = text.replace("(contaminated ?d", f"{marks} (contaminated ?d", 1)
+    wipe = "".join(
+        f"(:action wipe{n} :parameters (?d) :precondition (open ?d) :effect (not (mark{n} ?d)))"
+        for n in range(2)
+    )
+    end = text.rindex(")")
+    (tmp_path / "domain.pddl").write_text(text[:end] + wipe + text[end:])
+    task = load_task(tmp_path / "domain.pddl", FOLDER / "problem.pddl")
+    drawer = ["drawer"]
+    plan = [task.action(name, drawer) for name in ("open_drawer", "disinfect", "close_drawer")]
+    dirty = task.apply(task.init, plan[0])
+    clean = task.apply(dirty, plan[1])
+    model = FaultModel(task)
+    sight = Sight(model, lambda atom: atom.predicate in ("open", "shut"))
+    ahead = Outlook(model, Costs(), sight)
+    ahead.add(AnnotatedPlan(task, plan, regress(task, plan)))
+    ahead.learned(lambda _: SkillState(0.25, 0.0, 4 / 3), Rates(0.25))
+    marked = ((), ("mark0",), ("mark1",), ("mark0", "mark1"))
+    likely = [
+        model.number(JointState(clean | {Atom(name, ("drawer",)) for name in names}))
+        for names in marked
+    ]
+    unlikely = model.number(JointState(dirty))
+    shares = [*((n, 0.2) for n in likely), (unlikely, 0.2 - 1e-9)]
+    found = Commitments(model, ahead, sight).made(plan[1], shares)
+    assert found[unlikely] < ahead.failure / 2
