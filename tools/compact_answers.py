@@ -8,10 +8,11 @@ which P(yes), by environment, kind of question, predicate, truth, and half of th
 import argparse
 import csv
 import gzip
-import hashlib
 import json
 from collections import Counter
 from pathlib import Path
+
+from tpvqa.vlm.recorded.answers import half_of
 
 OUT = Path(__file__).parents[1] / "packages/tpvqa/src/tpvqa/vlm/recorded/answers.json.gz"
 SHORT = {
@@ -24,11 +25,6 @@ SHORT = {
     "Phi-4-multimodal-instruct": "phi-4-multimodal",
     "llava-onevision-qwen2-7b-ov-hf": "llava-onevision-7b",
 }
-
-
-def half(problem: str) -> int:
-    """Half of the problems to which one belongs, the same on every machine."""
-    return hashlib.sha256(problem.encode()).digest()[0] % 2
 
 
 def main() -> None:
@@ -45,7 +41,7 @@ def main() -> None:
                 row["kind"],
                 row["fact"].split(" ")[0],
                 int(row["truth"]),
-                half(row["problem"]),
+                half_of(row["problem"]),
                 row["answer"],
                 round(float(row["p_yes"]), 2),
             )

@@ -138,7 +138,7 @@ def test_blocksworld_and_igibson_are_never_pooled() -> None:
             assert halves[0].by_kind.keys() == halves[1].by_kind.keys() <= own.by_kind.keys()
             for key in halves[0].by_kind:
                 told = own.by_kind[key]
-                both = Counter[tuple[bool, float]]()
+                both = Counter[tuple[bool, float | None]]()
                 for half in halves:
                     for r in half.by_kind.get(key, ()):
                         both[r.yes, r.p_yes] += r.count

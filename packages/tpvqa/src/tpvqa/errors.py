@@ -148,6 +148,10 @@ class AnswerError(TpvqaError):
     """A VLM could not be asked at all (no key, say). A bad answer is *unknown* instead."""
 
 
+class RecordError(PlacedError):
+    """A table of a VLM's answers is broken, or lacks what is asked for."""
+
+
 class CacheError(TpvqaError):
     """A file of recorded answers cannot be used, or lacks an answer that is asked for."""
 

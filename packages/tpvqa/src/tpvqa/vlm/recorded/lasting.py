@@ -34,7 +34,7 @@ class Lasting:
 
 @cache
 def lasting(model: str, environment: str) -> Lasting:
-    """What was fitted to a model in an environment.
+    """What was fitted to a model in an environment; to all models, where none is named.
 
     Raises:
         AnswerError: The file of it cannot be read.

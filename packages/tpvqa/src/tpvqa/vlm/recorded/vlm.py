@@ -16,8 +16,8 @@ from tpvqa.vlm.other_words import SHARED, words_drawn_for
 from tpvqa.vlm.out_of_sight import out_of_sight
 from tpvqa.vlm.protocol import TruthSource
 from tpvqa.vlm.recorded.answers import Recording, Recordings
-from tpvqa.vlm.recorded.lasting import Lasting, lasting
-from tpvqa.vlm.recorded.spec import Errors, RecordedSpec
+from tpvqa.vlm.recorded.lasting import Lasting
+from tpvqa.vlm.recorded.spec import HOUSEHOLD, Errors, RecordedSpec
 from tpvqa.vlm.scenes import scene_of, tells_scenes
 
 COUNTERPART: Mapping[str, str] = {
@@ -89,23 +89,23 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments, SaidInFull):
         cls, arguments: str, *, truth: TruthSource, task: Task, seed: int = 0, episode: int = 0
     ) -> "Recorded":
         """Make it from `recorded:MODEL[:HALF][:fresh]`, with HALF 0 or 1 for one half of the
-        problems.
+        problems; instead of MODEL also FILE or FILE:MODEL for a table of one's own.
 
         The environment is blocksworld for a domain of that name, else igibson.
 
         Raises:
             UnknownNameError: No such model was recorded, or not in that environment.
+            RecordError: The table is broken, or holds no answers of that kind.
             PluginError: The arguments are others, or errors are to last in a world that does not
                 tell scenes apart.
         """
         spec = RecordedSpec.parse(arguments).with_errors(Errors.LASTING)
         told = spec.told(task)
-        fresh = spec.errors is Errors.FRESH
         return cls(
             truth,
             told,
             spec=f"recorded:{spec}",
-            lasts=None if fresh else lasting(told.model, told.environment),
+            lasts=spec.lasts(told),
             words=spec.words,
             seed=seed,
             episode=episode,
@@ -185,6 +185,7 @@ def told_by(arguments: str, task: Task) -> Recordings:
 
     Raises:
         UnknownNameError: No such model was recorded, or not in that environment.
+        RecordError: A table is broken, or holds no answers of that kind.
         PluginError: The arguments are others.
     """
     return RecordedSpec.parse(arguments).told(task)
@@ -194,9 +195,10 @@ def drawn_from(told: Recordings, way: Way, predicate: str, *, truth: bool) -> tu
     """The recorded answers that one is drawn from; none where nothing was recorded."""
     if way not in _KIND:
         return ()
-    if told.environment == "igibson":
+    kind = _KIND[way]
+    if told.environment == HOUSEHOLD and (kind, predicate, truth) not in told.by_kind:
         predicate = COUNTERPART.get(predicate, predicate)
-    return told.of(_KIND[way], predicate, truth=truth)
+    return told.of(kind, predicate, truth=truth)
 
 
 def _silent(question: Question, why: str) -> Answer:
