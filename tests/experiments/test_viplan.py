@@ -43,6 +43,7 @@ PROBLEM = """(define (problem {name}) (:domain blocksworld)
   (:objects r g b - block c1 c2 c3 c4 - column)
   (:init (on g r) (clear g) (clear b) (inColumn r c1) (inColumn g c1) (inColumn b c3))
   (:goal (and (on r b) (inColumn r {goal}) (inColumn g c1))))"""
+FACTS = ("on", "incolumn", "clear")
 COLUMNS = "environment,setting,split,model,episodes,goal_reached,ended_before_first_action,answers"
 GROUNDER = f"""{COLUMNS},right
 blocksworld,no_cot,simple,Qwen2.5-VL-7B-Instruct,25,19,2,495,489
@@ -238,6 +239,23 @@ def test_the_command_prints_the_table(folder: Path, tmp_path: Path) -> None:
     (row,) = json.loads(result.stdout)
     assert (row["model"], row["episodes"]) == ("gemma-3-12b", 2)
     assert "As recorded" in (tmp_path / "viplan.md").read_text()
+
+
+def test_a_record_of_ones_own_is_run_on_the_problems(folder: Path, tmp_path: Path) -> None:
+    table = tmp_path / "mine.csv"
+    right = [f"{fact},{'yes' if truth else 'no'},{truth}" for fact in FACTS for truth in (0, 1)]
+    table.write_text("\n".join(["fact,answer,truth", *right * 30]))
+    named = ["--problems", str(folder), "--splits", "simple", "--models", str(table)]
+    common = ["--monitors", "knowing", "--workers", "1", "--json", "--out"]
+    ran = CliRunner().invoke(
+        app, ["bench", "viplan", *named, "--noise", "recorded", *common, str(tmp_path)]
+    )
+    assert ran.exit_code == 0
+    (line,) = json.loads(ran.stdout)
+    assert (line["model"], line["completion_rate"]) == (str(table), 1.0)
+    assert line["recorded_completion_rate"] is None
+    refused = CliRunner().invoke(app, ["bench", "viplan", *named, *common, str(tmp_path / "other")])
+    assert "holds no whole scenes. Say --noise recorded" in str(refused.exception)
 
 
 def test_a_folder_without_problems_is_said(tmp_path: Path) -> None:

@@ -22,7 +22,10 @@ def viplan(
     splits: Annotated[str, typer.Option(help="Splits, with commas.")] = "simple,medium,hard",
     models: Annotated[
         str,
-        typer.Option(help="Recorded models, or oracle[:ACCURACY], with commas. Default: all."),
+        typer.Option(
+            help="Recorded models, tables of your own (FILE[:MODEL], not with scenes), or "
+            "oracle[:ACCURACY], with commas. Default: all recorded models."
+        ),
     ] = "",
     monitors: Annotated[
         str,
@@ -61,6 +64,8 @@ def viplan(
     import os
 
     from tpvqa.config import TrialConfig
+    from tpvqa.errors import BenchError
+    from tpvqa.vlm.recorded.spec import RecordedSpec
     from tpvqa_experiments.viplan.bench import NOISES, ORACLE, ViPlanBench, run_viplan_bench
     from tpvqa_experiments.viplan.group import LIMITS, SETTINGS
     from tpvqa_experiments.viplan.problems import SPLITS, Environment, problems_in
@@ -73,10 +78,13 @@ def viplan(
         for name, problem in problems_in(problems, Environment(where), wanted).items()
     }
     oracles = [name for name in listed(models) if name.partition(":")[0] == ORACLE]
+    tables = [name for name in listed(models) if RecordedSpec.names_table(name)]
+    if tables and noise == "scenes":
+        raise BenchError(f"{tables[0]} holds no whole scenes. Say --noise recorded, or fresh")
     names = sorted(MODELS.values())
     bench = ViPlanBench(
         problems=chosen,
-        models=_known(models, [*names, *oracles], "recorded model") or names,
+        models=_known(models, [*names, *oracles, *tables], "recorded model") or names,
         monitors=listed(monitors),
         settings=_known(settings, SETTINGS, "setting"),
         limits=_known(limit, LIMITS, "limit"),

@@ -12,8 +12,8 @@ from tpvqa.errors import BenchError
 from tpvqa.pddl import Task
 from tpvqa.questions.question import Way
 from tpvqa.vlm.answer import Reply
-from tpvqa.vlm.recorded.lasting import Lasting, lasting
-from tpvqa.vlm.recorded.spec import Errors, RecordedSpec
+from tpvqa.vlm.recorded.lasting import Lasting
+from tpvqa.vlm.recorded.spec import RecordedSpec
 from tpvqa.vlm.recorded.vlm import told_by
 from tpvqa_experiments.viplan.noise import PREDICATES
 from tpvqa_experiments.viplan.scenes import Scene, scenes, true_facts
@@ -51,10 +51,10 @@ def exact(vlm: str, task: Task) -> Calibration:
             f"Nothing says exactly how {vlm} errs, as knowing has to be told. Say --noise recorded"
         )
     rates = _of_answers(vlm, task)
-    if RecordedSpec.parse(arguments).errors is Errors.FRESH:
+    spec = RecordedSpec.parse(arguments)
+    lasts = spec.lasts(spec.told(task))
+    if lasts is None:
         return rates.model_copy(update={"lasting": FRESH})
-    told = told_by(arguments, task)
-    lasts = lasting(told.model, told.environment)
     near = min(KINDS, key=lambda kind: (kind.coin, *_apart(kind, lasts)))
     return rates.model_copy(update={"lasting": tuple(float(kind == near) for kind in KINDS)})
 

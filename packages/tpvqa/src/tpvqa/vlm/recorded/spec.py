@@ -51,7 +51,7 @@ class RecordedSpec:
         model, *words = said.split(":")
         errors = Errors(words.pop()) if words and words[-1] in (*Errors,) else None
         half = words.pop() if words and words[-1] in ("0", "1") else None
-        table = model if is_table(model) else None
+        table = model if cls.names_table(model) else None
         if table is not None:
             model = words.pop() if len(words) == 1 else ""
         if not (model or table) or words:
@@ -63,6 +63,11 @@ class RecordedSpec:
                 "where it has several."
             )
         return cls(model, None if half is None else int(half), errors, share, table)
+
+    @staticmethod
+    def names_table(arguments: str) -> bool:
+        """Whether such arguments begin with a table of the user's own."""
+        return is_table(arguments.partition(":")[0])
 
     def told(self, task: Task) -> Recordings:
         """The answers that it stands for in the environment of a task.
