@@ -20,10 +20,19 @@ PROBLEM = """(define (problem lamps) (:domain ward)
 SHOWN = "shown: [{fact: '(in ?t ?r)', where: '(at ?r)'}]"
 
 
-def run(folder: Path, episode: int, shown: str = SHOWN) -> tuple[Ended, list[Event]]:
+def run(
+    folder: Path,
+    episode: int,
+    shown: str = SHOWN,
+    *,
+    problem: str = PROBLEM,
+    vlm: str = "oracle:0.9",
+    failure: float = 0.4,
+    disturbance: float = 0.9,
+) -> tuple[Ended, list[Event]]:
     for name, text in (
         ("domain.pddl", DOMAIN),
-        ("problem.pddl", PROBLEM),
+        ("problem.pddl", problem),
         ("world.yaml", shown),
     ):
         (folder / name).write_text(text)
@@ -35,10 +44,10 @@ def run(folder: Path, episode: int, shown: str = SHOWN) -> tuple[Ended, list[Eve
         },
         seed=3,
         episode=episode,
-        vlm={"spec": "oracle:0.9"},
+        vlm={"spec": vlm},
         world={"spec": "symbolic"},
         monitor={"spec": "belief"},
-        simulation={"failure": 0.4, "disturbance": 0.9},
+        simulation={"failure": failure, "disturbance": disturbance},
         limits={"repeats": "none", "replans": "none", "actions": "50x"},
     )
     writer = MemoryWriter(resumable=False)
@@ -103,3 +112,15 @@ def test_where_everything_is_shown_there_is_nothing_to_go_back_for(
 ) -> None:
     told = [run(tmp_path, episode, shown="shown: []")[1] for episode in {0, 1, went[0]}]
     assert not any(isinstance(event, PlanMade) and event.towards for each in told for event in each)
+
+
+def test_a_place_is_not_gone_back_to_for_what_it_would_say_again(tmp_path: Path) -> None:
+    # Two goals, each shown in a place of its own: the robot went to and fro between them.
+    both = PROBLEM.replace("(in lamp store)", "(in lamp store) (in pump theatre)")
+    vlm = "oracle:0.8:0:0.74"
+    ended, events = run(tmp_path, 2, problem=both, vlm=vlm, failure=0.3, disturbance=0.5)
+    assert ended.completed
+    sets_out = [e for e in events if isinstance(e, PlanMade) and e.towards == ("(at store)",)]
+    assert sets_out
+    assert len(errands(events)) == 1
+    assert {Reply.YES, Reply.NO} & {*seen(events)}

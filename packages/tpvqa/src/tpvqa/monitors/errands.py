@@ -56,14 +56,15 @@ class Errand:
         there = belief.where(lambda state: self.needed <= state) >= 0.5
         if not there or now.questions >= ENOUGH:
             return None
-        return least_known(self.facts, now, belief, book, budget, views)
+        return least_known(self.facts, now, belief, book, budget, views, at_first=DOUBT)
 
 
 class Errands:
     """Decides whether to go to where facts of the goal are shown, before the trial ends.
 
     It is worth it where what a wrong *done* is expected to cost, less what it would cost to mend
-    it, is more than the way there and back and the answers there.
+    it, as far as answers will tell, is more than the way there and back and the answers there. On
+    the way something may come undone, and the less answers tell, the more of that stays.
 
     Args:
         task: The task.
@@ -74,6 +75,7 @@ class Errands:
     def __init__(self, task: Task, shown: Sequence[Showing], costs: Costs):
         self._task, self._shown, self._costs = task, shown, costs
         self._gone: Counter[frozenset[Atom]] = Counter()
+        self._left: dict[frozenset[Atom], float] = {}
 
     def seek(
         self,
@@ -97,10 +99,18 @@ class Errands:
         state, book = belief.most_probable()[0], step.book
         if not self._shown or step.replans_left == 0:
             return None
-        savings = self._savings(belief, chooser, state, book)
+        full = self._task.extend(state)
+        savings = self._savings(belief, chooser, book)
+        self._left |= {here: saving for here, saving in savings.items() if here <= full}
         asking = evidence.answers_to_be_sure() * (self._costs.question + self._costs.look)
+        told = evidence.settling().share
+        unseen = (1 - told) * chances.rates.undone * chooser.ahead.failure
+        going = self._costs.action + unseen
         for needed, saving in sorted(savings.items(), key=lambda each: (-each[1], sorted(each[0]))):
-            if saving <= self._costs.action + asking or self._gone[needed] >= OFTEN:
+            worth = told * saving - asking
+            if worth <= going or self._gone[needed] >= OFTEN:
+                continue
+            if needed <= full or saving <= self._left.get(needed, 0.0):  # it would say the same
                 continue
             there = yield PlanFrom(state, towards=needed)
             if not isinstance(there, Plan):
@@ -110,32 +120,32 @@ class Errands:
                 continue
             steps = len(there.actions) + back
             too_many = step.actions_left is not None and steps > step.actions_left
-            if too_many or saving <= steps * self._costs.action + asking:
+            if too_many or worth <= steps * going:
                 continue
             self._gone[needed] += 1
             task = replace(self._task, goal=Conjunction(tuple(map(Literal, sorted(needed)))))
             # At its end nothing is reported.
             costs = self._costs.model_copy(update={"misreport": 0.0})
-            going = Chooser(belief.model, costs, sight, task)
-            going.ahead.learned(chances.skill, chances.rates)
-            ways = Ways(task, going, chances, self._costs, towards=needed)
+            towards = Chooser(belief.model, costs, sight, task)
+            towards.ahead.learned(chances.skill, chances.rates)
+            ways = Ways(task, towards, chances, self._costs, towards=needed)
             ways.take(there, state)
-            words = FactWords(book)
-            facts = [a for a in self._doubted(belief, book) if self._needed(a) == needed]
-            why = " and ".join(f"{words.of(a)} {belief.probability(a):.2f}" for a in facts)
-            return Errand(ways, f"{why} cannot be seen from here", frozenset(facts), needed)
+            seen = [g for g in self._doubted(belief, book) if self._needed(g.atom) == needed]
+            why = " and ".join(self._said(goal, belief, book) for goal in seen)
+            facts = frozenset(goal.atom for goal in seen)
+            return Errand(ways, f"{why} cannot be seen from here", facts, needed)
         return None
 
     def _savings(
-        self, belief: Belief, chooser: Chooser, state: State, book: QuestionBook
+        self, belief: Belief, chooser: Chooser, book: QuestionBook
     ) -> Mapping[frozenset[Atom], float]:
         """What it would save to see each place from which some doubted goal is shown."""
-        full, lost = self._task.extend(state), chooser.ahead.failure
+        lost = chooser.ahead.failure
         doubted: dict[frozenset[Atom], list[Literal]] = {}
-        for literal in literals(self._task.goal):
-            needed = self._needed(literal.atom)
-            if needed - full and literal.atom in self._doubted(belief, book):
-                doubted.setdefault(needed, []).append(literal)
+        for goal in self._doubted(belief, book):
+            needed = self._needed(goal.atom)
+            if needed:
+                doubted.setdefault(needed, []).append(goal)
         found = {}
         for needed, goals in doubted.items():
             found[needed] = sum(
@@ -150,14 +160,19 @@ class Errands:
         full = self._task.extend(state)
         return all(goal.holds(full) for goal in goals)
 
-    def _doubted(self, belief: Belief, book: QuestionBook) -> list[Atom]:
-        """Facts of the goal that are not sure, and that can be asked."""
-        atoms = dict.fromkeys(literal.atom for literal in literals(self._task.goal))
+    def _doubted(self, belief: Belief, book: QuestionBook) -> list[Literal]:
+        """Parts of the goal that are not sure, and that can be asked about."""
         return [
-            atom
-            for atom in atoms
-            if DOUBT < belief.probability(atom) < 1 - DOUBT and book.asked(Literal(atom))
+            goal
+            for goal in dict.fromkeys(literals(self._task.goal))
+            if DOUBT < belief.probability(goal.atom) < 1 - DOUBT and book.asked(Literal(goal.atom))
         ]
+
+    def _said(self, goal: Literal, belief: Belief, book: QuestionBook) -> str:
+        """A part of the goal with its probability."""
+        holds = belief.probability(goal.atom)
+        words = FactWords(book).of(goal.atom)
+        return f"{words} {holds:.2f}" if goal.positive else f"not {words} {1 - holds:.2f}"
 
     def _needed(self, atom: Atom) -> frozenset[Atom]:
         found = (rule.needed(atom, self._task) for rule in self._shown)

@@ -47,14 +47,23 @@ def least_known(
     book: QuestionBook,
     budget: Budget,
     views: Callable[[FactQuestion], Sequence[str | None]],
+    *,
+    at_first: float = KNOWN,
 ) -> Inquiry | None:
-    """The question about some facts that is least settled; arguments as those of `unknown`."""
+    """The question about some facts that is least settled.
+
+    Args:
+        atoms: They; the other arguments as those of `unknown`.
+        at_first: What has not been asked about since the last action is, until it is surer than
+            this.
+    """
     if min(budget.questions, budget.looks) <= 0:
         return None
-    sure = {
-        question: abs(belief.probability(question.atom, question.alike) - 0.5)
-        for question in now.about(atoms, book)
-        if views(question)
-    }
-    least = min(sure, key=sure.__getitem__, default=None)
-    return None if least is None or sure[least] > 0.5 - KNOWN else Inquiry(least, 1, 0.0)
+    doubt = dict[FactQuestion, float]()
+    for question in now.about(atoms, book):
+        likely = belief.probability(question.atom, question.alike)
+        known = KNOWN if question.text in now.replies else at_first
+        if views(question) and known <= likely <= 1 - known:
+            doubt[question] = abs(likely - 0.5)
+    least = min(doubt, key=doubt.__getitem__, default=None)
+    return None if least is None else Inquiry(least, 1, 0.0)
