@@ -1,4 +1,4 @@
-"""`tpvqa run`, `resume`, `config`, `show` and `report`."""
+"""`tpvqa run`, `resume`, `config` and `show`."""
 
 import json
 import sys
@@ -52,7 +52,6 @@ def register(app: typer.Typer) -> None:
     app.command("config")(configuration)
     app.command()(prompt)
     app.command()(show)
-    app.command()(report)
 
 
 Optimal = Annotated[
@@ -231,19 +230,6 @@ def show(
         view(event)
     if not isinstance(events[-1], Ended):
         tell(f"unfinished; it can be gone on with: tpvqa resume {pasted(episode)}")
-
-
-def report(
-    episode: Annotated[Path, typer.Argument(help="Folder of an episode.")],
-    *,
-    out: Annotated[
-        Path | None, typer.Option(help="File to write; by default report.html in the episode.")
-    ] = None,
-) -> None:
-    """Write one self-contained HTML page about an episode."""
-    from tpvqa.episodes.report import write_report
-
-    tell(write_report(episode, out))
 
 
 def _new_folder(task: str, seed: int, episode: int) -> Path:

@@ -12,13 +12,13 @@ from typing import Literal
 from pydantic import ConfigDict, Field, ValidationError
 
 from tpvqa.episodes.log import whole_lines
+from tpvqa.episodes.own_files import LABELS
 from tpvqa.errors import CalibrationError, WriteError
 from tpvqa.files import open_plain, opened_plain, write_all
 from tpvqa.labelling.recorded import Asking, RecordedEpisode
 from tpvqa.told import ToldModel, check_json, first_fault
 from tpvqa.told.strict_json import LONGEST
 
-LABELS = "labels.jsonl"
 SCHEMA: Literal[2] = 2
 Said = Literal["yes", "no", "cannot see"]
 
