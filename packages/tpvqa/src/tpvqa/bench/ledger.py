@@ -15,12 +15,12 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.published import differences, read_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.episodes.log import LOG
+from tpvqa.episodes.own_files import BENCH
 from tpvqa.errors import BenchError, WriteError
 from tpvqa.files import make_folder, open_plain, write_all, write_whole
 from tpvqa.told import first_fault
 
-ROWS = "episodes.jsonl"
-SETTINGS = "bench.json"
+ROWS, SETTINGS = BENCH
 REMEDY = "Make room, and give the same command again: it goes on with what is finished"
 
 

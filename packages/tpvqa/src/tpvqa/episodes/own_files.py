@@ -7,6 +7,8 @@ from tpvqa.episodes.shape import FRAMES
 from tpvqa.files import resolved
 
 LABELS = "labels.jsonl"
+BENCH = ("episodes.jsonl", "bench.json")
+"""What a bench writes in its folder, where no episode lies beside it."""
 
 
 def belongs_to(path: Path, episode: Path | str) -> bool:
