@@ -40,6 +40,13 @@ def test_a_bench_does_not_lie_where_an_episode_does(tpvqa: Run) -> None:
     assert sorted(Path("e").rglob("*")) == before
 
 
+@pytest.mark.parametrize("file", ["e", "e/known.json", "./e/frames/known.json"])
+def test_what_is_learned_does_not_lie_in_an_episode(tpvqa: Run, file: str) -> None:
+    code, _, err = tpvqa(*TRIAL, "--monitor", "belief", "--out", "e", "--experience", file)
+    assert (code, "is to lie in the folder of this episode, e," in err) == (2, True), err
+    assert list(Path().iterdir()) == []
+
+
 @pytest.mark.parametrize("left", [None, *BENCH_FILES])
 def test_an_episode_does_not_lie_where_a_bench_does(tpvqa: Run, left: str | None) -> None:
     if left is None:

@@ -17,7 +17,7 @@ from tpvqa.errors import EpisodeError, PluginError, WriteError, pasted
 from tpvqa.events import EVENT, Ended, Event
 from tpvqa.events.events import CAN_BE_GONE_ON_WITH
 from tpvqa.events.records import depth_file
-from tpvqa.files import make_folder, open_plain, write_all, write_whole_at
+from tpvqa.files import clear_parts, make_folder, open_plain, write_all, write_whole_at
 from tpvqa.observation import Frame
 from tpvqa.pictures import MOST_BYTES
 from tpvqa.told.strict_json import LONGEST
@@ -216,6 +216,7 @@ class EpisodeWriter:
         try:
             if not self._cut:
                 os.ftruncate(self._file, self._size)
+                clear_parts(self._frames)
                 self._cut = True
             write_all(self._file, line)
             if self._durable:
