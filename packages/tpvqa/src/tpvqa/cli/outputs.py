@@ -22,7 +22,7 @@ def see_unread(path: Path, option: str, read: Iterable[Path | str | None]) -> No
     from tpvqa.episodes.own_files import belongs_to, same_file
     from tpvqa.errors import TpvqaError
 
-    for each in map(Path, filter(None, read)):
+    for each in (Path(each) for each in read if each):
         if same_file(path, each) or belongs_to(path, each):
             raise TpvqaError(
                 f"{path} is read by this command, and would be lost; name another file with "
