@@ -273,6 +273,14 @@ def test_what_is_read_is_not_written_over_by_force_either(
     assert {file.read_text() for file in Path("e").glob("*.jsonl")} == {"work"}
 
 
+def test_no_problem_of_a_folder_is_written_over(tpvqa: Run) -> None:
+    shutil.copytree(TOYS, "toys")
+    own = ("--domain", "toys/domain.pddl", "--problem", "toys", "--trials", 1)
+    code, _, err = tpvqa("calibrate", *own, "--out", "toys/collect.pddl", "--force")
+    assert (code, "toys/collect.pddl is read by this command" in err) == (2, True), err
+    assert Path("toys/collect.pddl").read_bytes() == (TOYS / "collect.pddl").read_bytes()
+
+
 def test_no_picture_of_the_set_that_teaches_is_written_over(tpvqa: Run, tmp_path: Path) -> None:
     shipped = load_pictures()
     shutil.copytree(shipped.folder, "set")

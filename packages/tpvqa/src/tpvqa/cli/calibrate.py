@@ -165,7 +165,8 @@ def calibrate(
     image = curves or out.with_suffix(".png")
     written = [("--out", out), ("--curves", image)]
     written += [("--experience", experience)] if experience else []
-    read = (*(episodes or ()), domain, *problems, questions, world_file, named_by(vlm))
+    own_files = (file for each in problems for file in (each, *each.glob("*.pddl")))
+    read = (*(episodes or ()), domain, *own_files, questions, world_file, named_by(vlm))
     _check(written, read, force=force)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
