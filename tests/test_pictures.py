@@ -242,3 +242,10 @@ def test_exif_data_that_are_nonsense_turn_nothing() -> None:
     broken = data.replace(b"Exif\0\0MM\0*", b"Exif\0\0XX\0*")
     assert broken != data
     assert decoded(broken).size == (60, 40)
+
+
+def test_links_in_a_circle_are_called_that(tmp_path: Path) -> None:
+    path = tmp_path / "round.png"
+    path.symlink_to(path)
+    with pytest.raises(PictureError, match="its links lead in a circle; name the file itself"):
+        read_file(path)

@@ -56,6 +56,7 @@ def test_a_byte_order_mark_is_no_fault_and_a_name_given_twice_is(tmp_path: Path)
         ("spontaneous", [True, 19]),
         ("trials", 10**30),
         ("trials", True),
+        ("trust", [1e308] * len(GRID)),
     ],
 )
 def test_more_than_a_robot_can_have_seen_is_refused(

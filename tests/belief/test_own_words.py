@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from tests.pddl.feature_domains import DERIVED
 from tpvqa.belief import Calibration
@@ -141,6 +142,11 @@ def test_what_was_learnt_of_a_sensor_goes_before_its_word() -> None:
     assert isclose(odds(belief), 3 / 4, rel_tol=1e-5)
     evidence.take_sensed(DIRTY, 0.0)
     assert isclose(worth.log_ratio(0.6) / worth.log_ratio(0.95), at_its_word(0.6) / worth.surely)
+
+
+def test_no_sensor_is_so_unsure_of_itself_that_a_reading_is_no_number() -> None:
+    with pytest.raises(ValidationError, match="surely"):
+        SensorWorth(predicate="open", rows=9, says_if_true=0.5, says_if_false=0.5, surely=5e-324)
 
 
 def readings(said: float, true: int, false: int, *, right: float) -> list[LabelledReading]:

@@ -28,6 +28,19 @@ def test_a_killed_bench_knows_what_is_finished(tmp_path: Path) -> None:
     assert [each.completed for each in last.of(CELL, 4)] == [True, False, False, True]
 
 
+def test_two_rows_of_an_episode_that_contradict_each_other_are_named(tmp_path: Path) -> None:
+    ledger = Ledger(tmp_path, {})
+    twice = [row(episode=1, completed=True), row(episode=1, completed=True, seconds=9.0)]
+    ledger.add([row(episode=0, error="broke"), row(episode=0, completed=True), *twice])
+    ledger.close()
+    Ledger(tmp_path, {}).close()
+    said = row(episode=1, completed=False).model_dump_json()
+    with (tmp_path / ROWS).open("a") as file:
+        file.write(f"{said}\n")
+    with pytest.raises(BenchError, match=r"episodes\.jsonl:5: says something else than line 3"):
+        Ledger(tmp_path, {})
+
+
 def test_a_bench_with_other_settings_is_not_mixed_in(tmp_path: Path) -> None:
     Ledger(tmp_path, {"seed": 0, "failure": 0.25}).close()
     with pytest.raises(BenchError, match=r"seed 0 there, 1 here"):

@@ -175,6 +175,13 @@ FAULTS = {
     "a question that leaves out an object": (
         "questions.yaml", "Is the {p} in the {t}?", "Is the {p} in a tray?", "same-question",
         Severity.NOTE, "lies"),
+    "objects whose names only differ in what nobody sees": (
+        "questions.yaml", "never_asked:",
+        'objects:\n  lid: "fine part"\n  cap: "\\uFB01ne  pa\\u200Brt"\nnever_asked:',
+        "same-name", Severity.WARNING, ""),
+    "questions that only differ in what nobody sees": (
+        "questions.yaml", "Is the {p} flat?", "is the {p} in the\\u00a0grip\\u200Dper?",
+        "same-question", Severity.WARNING, "pressed"),
     "objects of the same name": (
         "questions.yaml", "never_asked:", "objects:\n  lid: part\n  cap: part\nnever_asked:",
         "same-name", Severity.WARNING, ""),

@@ -12,6 +12,8 @@ from tpvqa.belief import Calibration, Group
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.experience import Experience
 from tpvqa.episodes import read_episode
+from tpvqa.episodes.log import LOG
+from tpvqa.episodes.own_files import LABELS
 from tpvqa.events.events import Acted
 from tpvqa.questions import Way
 from tpvqa.worlds.outcome import Failure
@@ -252,3 +254,37 @@ def test_a_set_without_pictures_says_so(tpvqa: Run, tmp_path: Path) -> None:
     code, _, err = tpvqa("calibrate", "--pictures", "set")
     assert code == 2
     assert "the set has no pictures" in err
+
+
+@pytest.mark.parametrize("out", ["e/episode.jsonl", "e/labels.jsonl", "e/frames/one.json"])
+@pytest.mark.parametrize("option", ["--out", "--experience", "--curves"])
+def test_what_is_read_is_not_written_over_by_force_either(
+    tpvqa: Run, option: str, out: str
+) -> None:
+    Path("e/frames").mkdir(parents=True)
+    for name in (LOG, LABELS):
+        Path("e", name).write_text("work")
+    code, _, err = tpvqa("calibrate", "e", option, out, "--force")
+    assert code == 2
+    assert (
+        err == f"error: {out} is read by this command, and would be lost; name another file "
+        f"with {option}\n"
+    )
+    assert {file.read_text() for file in Path("e").glob("*.jsonl")} == {"work"}
+
+
+def test_no_problem_of_a_folder_is_written_over(tpvqa: Run) -> None:
+    shutil.copytree(TOYS, "toys")
+    own = ("--domain", "toys/domain.pddl", "--problem", "toys", "--trials", 1)
+    code, _, err = tpvqa("calibrate", *own, "--out", "toys/collect.pddl", "--force")
+    assert (code, "toys/collect.pddl is read by this command" in err) == (2, True), err
+    assert Path("toys/collect.pddl").read_bytes() == (TOYS / "collect.pddl").read_bytes()
+
+
+def test_no_picture_of_the_set_that_teaches_is_written_over(tpvqa: Run, tmp_path: Path) -> None:
+    shipped = load_pictures()
+    shutil.copytree(shipped.folder, "set")
+    words = ("calibrate", "--pictures", "set", "--vlm", "oracle", "--out", f"set/{MANIFEST}")
+    code, _, err = tpvqa(*words, "--curves", "c.png", "--force")
+    assert (code, f"set/{MANIFEST} is read by this command" in err) == (2, True)
+    assert Path("set", MANIFEST).read_bytes() == (shipped.folder / MANIFEST).read_bytes()

@@ -151,6 +151,8 @@ def test_what_cannot_be_is_refused(tpvqa: Run) -> None:
     code, _, err = tpvqa("run", "eat_apple", "--failure", 2)
     assert code == 2
     assert "--failure must be at most 1, got 2\n" in err
+    code, _, err = tpvqa("run", "eat_apple", "--failure", 1.0000001)
+    assert (code, err) == (2, "error: --failure must be at most 1, got 1.0000001\n")
     with pytest.raises(ValidationError):
         TrialConfig(limits=Limits(repeats=-1))
     with pytest.raises(ValidationError):

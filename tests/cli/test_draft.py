@@ -109,3 +109,14 @@ def test_actions_are_said_by_what_they_do(example: str) -> None:
     said = {schema.name: actions.said(schema).say for schema in task.schemas}
     for name, wanted in SAID[example].items():
         assert said[name] == wanted
+
+
+@pytest.mark.parametrize("name", ["problem.pddl", "./domain.pddl", "linked.pddl"])
+def test_no_draft_takes_the_place_of_what_it_is_made_from(
+    ward: Path, tpvqa: Run, name: str
+) -> None:
+    Path("linked.pddl").symlink_to("problem.pddl")
+    before = {file: file.read_bytes() for file in ward.iterdir()}
+    code, _, err = tpvqa(*DRAFT, "--questions", name, "--force")
+    assert (code, f"{Path(name)} is read by this command" in err) == (2, True)
+    assert {file: file.read_bytes() for file in ward.iterdir()} == before

@@ -8,6 +8,7 @@ import pytest
 
 from tests.cli.conftest import Run
 from tests.episodes.test_log import file_size
+from tpvqa.episodes.own_files import BENCH as BENCH_FILES
 
 TRIAL = ("run", "build_tower", "--world", "symbolic", "--vlm", "oracle")
 BENCH = ("bench", "run", "build_tower", "--vlm", "oracle", "--episodes", 1, "--workers", 1)
@@ -37,6 +38,26 @@ def test_a_bench_does_not_lie_where_an_episode_does(tpvqa: Run) -> None:
     code, _, err = tpvqa(*BENCH, "--out", "e")
     assert (code, "e holds an episode; name another folder" in err) == (2, True), err
     assert sorted(Path("e").rglob("*")) == before
+
+
+@pytest.mark.parametrize("file", ["e", "e/known.json", "./e/frames/known.json"])
+def test_what_is_learned_does_not_lie_in_an_episode(tpvqa: Run, file: str) -> None:
+    code, _, err = tpvqa(*TRIAL, "--monitor", "belief", "--out", "e", "--experience", file)
+    assert (code, "is to lie in the folder of this episode, e," in err) == (2, True), err
+    assert list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize("left", [None, *BENCH_FILES])
+def test_an_episode_does_not_lie_where_a_bench_does(tpvqa: Run, left: str | None) -> None:
+    if left is None:
+        assert tpvqa(*BENCH, "--out", "b")[0] == 0
+    else:
+        Path("b").mkdir()
+        Path("b", left).touch()
+    before = sorted(Path("b").rglob("*"))
+    code, _, err = tpvqa(*TRIAL, "--out", "b")
+    assert (code, "b holds a bench; name another folder" in err) == (2, True), err
+    assert sorted(Path("b").rglob("*")) == before
 
 
 @pytest.mark.parametrize("out", [["--out="], ["--out", ""]])

@@ -86,6 +86,26 @@ def test_keys_label_and_what_was_labelled_comes_no_more(
     assert Path(folders[0], LOG).read_bytes() == log
 
 
+def test_two_sessions_do_not_overrule_each_other(
+    tpvqa: Run, folders: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Meanwhile(StringIO):
+        def readline(self, _size: int | None = -1, /) -> str:  # type: ignore[override]
+            if not self.tell():
+                with Session([folders[0]]) as other:
+                    other.say("cannot see")
+                    other.say("no")
+            return super().readline()
+
+    monkeypatch.setattr(sys, "stdin", Meanwhile("y\nq\n"))
+    code, out, err = tpvqa("label", folders[0])
+    assert code == 0
+    assert labels(folders[0]) == ["cannot see", "no"]
+    assert "note: 2 labels were given in e/0 by another session meanwhile, and count" in err
+    assert "this question was labelled 'cannot see' there, and stays so" in err
+    assert "1 labels tell" in out
+
+
 def test_json_and_what_is_learnt(tpvqa: Run, folders: list[str], typed: Typed) -> None:
     typed("y\nn\nn\ns\nc\n")
     code, out, err = tpvqa("label", *folders, "--json")
@@ -274,7 +294,7 @@ def got(address: str, *, key: str | None = None, **headers: str) -> bytes:
 def test_the_page_shows_pictures_and_takes_keys(seen: Path) -> None:
     with Session([seen]) as session, served(session) as (page, ended):
         assert b"<html" in got(page.address)
-        state = json.loads(got(f"{page.address}state"))
+        state = json.loads(got(f"{page.address}state", Origin=f"http://{page.host}"))
         now = session.now
         assert now is not None
         assert (state["question"], state["pictures"]) == (now.text, len(now.pictures))
@@ -309,6 +329,10 @@ def test_the_page_shows_pictures_and_takes_keys(seen: Path) -> None:
         ("{token}key", {}, "y" * 5000),
         ("{token}picture/" + "9" * 5000, {}, None),
         ("{token}key", {"Content-Length": "9" * 5000}, "y"),
+        ("{token}key", {"Origin": "http://somewhere.example"}, "y"),
+        ("{token}key", {"Origin": "http://127.0.0.1:1"}, "y"),
+        ("{token}key", {"Origin": "null"}, "y"),
+        ("{token}state", {"Origin": "null"}, None),
     ],
 )
 def test_who_does_not_know_the_address_sees_nothing(
@@ -321,6 +345,18 @@ def test_who_does_not_know_the_address_sees_nothing(
             got(address, key=key, **headers)
         assert refused.value.code in (400, 404)
         assert session.progress.labels == before
+
+
+def test_what_was_cut_off_is_no_label(seen: Path) -> None:
+    with Session([seen]) as session, served(session) as (page, _):
+        before, of = session.progress, page.state()["of"]
+        host, _, port = page.host.partition(":")
+        with socket.create_connection((host, int(port)), 10) as browser:
+            head = f"POST {page.path}key/{of} HTTP/1.1\r\nHost: {page.host}\r\n"
+            browser.sendall(f"{head}Content-Length: 10\r\n\r\ny".encode())
+            browser.shutdown(socket.SHUT_WR)
+            assert browser.recv(100).split()[1] == b"400"
+        assert session.progress == before
 
 
 @pytest.mark.parametrize("sent", [b"", b"GET ", b"GET / HTTP/1.1\r\nHo"])

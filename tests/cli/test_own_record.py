@@ -21,3 +21,13 @@ def test_a_vlm_that_was_compared_errs_so_in_whole_trials(tpvqa: Run, tmp_path: P
     assert code == 2
     assert "found/none.csv: cannot be read: there is no such table of answers" in error
     assert not (tmp_path / "other").exists()
+
+
+def test_a_comparison_does_not_take_the_place_of_the_record(tpvqa: Run, tmp_path: Path) -> None:
+    lamps = make_lamp_set(tmp_path / "lamps", 6)
+    words = ("vlm", "compare", "--pictures", lamps, *OWN, "--out", "found")
+    assert tpvqa(*words, "oracle:0.9")[0] == 0
+    record = Path("found/answers.csv").read_bytes()
+    code, _, error = tpvqa(*words, "recorded:found/answers.csv:fresh")
+    assert (code, "found/answers.csv is read by this command" in error) == (2, True)
+    assert Path("found/answers.csv").read_bytes() == record

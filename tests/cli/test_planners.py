@@ -34,3 +34,15 @@ def test_a_trial_in_which_something_fails_while_it_runs(
         return
     done, _, err = tpvqa("report", "trial")
     assert done == 0, err
+
+
+@pytest.mark.parametrize("planner", [[], ["--planner", "clingo"]], ids=["default", "clingo"])
+def test_a_planner_that_knows_no_numbers_begins_no_trial_of_them(
+    planner: list[str], tpvqa: Run
+) -> None:
+    files = Path(__file__).parents[2] / "examples/numbers/rover"
+    words = ["run", files / "domain.pddl", files / "problem.pddl", "--monitor", "tpvqa", *planner]
+    code, _, err = tpvqa(*words, "--vlm", "oracle:1.0", "--out", "trial")
+    assert (code, Path("trial").exists()) == (2, False)
+    assert "In this domain actions change numbers (battery" in err
+    assert "does not know. As --planner take up:enhsp" in err

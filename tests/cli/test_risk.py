@@ -140,3 +140,27 @@ def test_only_a_belief_without_a_risk_tells_one(tpvqa: Run) -> None:
         assert code == 2
         assert "--monitor belief" in err
     assert not list(Path().glob("risk*"))
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_only_a_risk_file_is_written_over(
+    tpvqa: Run, known: RiskCalibration, *, force: bool
+) -> None:
+    words = ("risk", *TASK, *WORDS, "--trials", 1, "--workers", 1)
+    Path("mine.json").write_text("work")
+    code, _, err = tpvqa(*words, "--out", "mine.json", *(["--force"] if force else []))
+    assert (code, "mine.json is there" in err) == ((0, False) if force else (2, True))
+    assert (Path("mine.json").read_text() == "work") is not force
+    code, _, err = tpvqa(*words, "--out", "risk.json")
+    assert (code, RiskCalibration.load(Path("risk.json")).trials) == (0, 1), err
+
+
+def test_a_risk_file_does_not_take_the_place_of_the_task(tpvqa: Run) -> None:
+    for file in TASK:
+        Path(file.name).write_bytes(file.read_bytes())
+    code, _, err = tpvqa(
+        *("risk", "domain.pddl", "problem.pddl", *WORDS, "--trials", 1),
+        *("--out", "problem.pddl", "--force"),
+    )
+    assert (code, "problem.pddl is read by this command" in err) == (2, True)
+    assert Path("problem.pddl").read_bytes() == TASK[1].read_bytes()

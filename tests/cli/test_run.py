@@ -257,6 +257,34 @@ def test_a_report_that_cannot_be_written_leaves_nothing(tpvqa: Run, out: str) ->
     assert sorted(Path().rglob("*")) == before
 
 
+@pytest.mark.parametrize(
+    "out",
+    ["here/episode.jsonl", "here/labels.jsonl", "here/frames/new.html", "log", "in/episode.jsonl"],
+)
+def test_a_report_is_not_written_over_its_episode(tpvqa: Run, out: str) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    Path("log").symlink_to("here/episode.jsonl")
+    Path("in").symlink_to("here")
+    log = Path("here/episode.jsonl").read_bytes()
+    for force in ([], ["--force"]):
+        code, _, err = tpvqa("report", "here", "--out", out, *force)
+        assert (code, err.startswith(f"error: {out} is what the episode consists of")) == (2, True)
+    assert Path("here/episode.jsonl").read_bytes() == log
+    assert Path("log").is_symlink()
+
+
+@pytest.mark.parametrize("words", [[], ["--out", "notes.html"]])
+def test_a_report_takes_the_place_of_reports_alone(tpvqa: Run, words: list[str]) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    page = Path(words[-1] if words else "here/report.html")
+    page.write_text("<!doctype html>\n<html>\n<title>notes</title>")
+    code, _, err = tpvqa("report", "here", *words)
+    assert (code, f"{page} is there, and is no report" in err, "--force" in err) == (2, True, True)
+    assert "notes" in page.read_text()
+    assert tpvqa("report", "here", *words, "--force")[0] == 0
+    assert tpvqa("report", "here", *words)[0] == 0
+
+
 def test_a_report_of_an_unfinished_episode(tpvqa: Run) -> None:
     tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
     log = Path("here/episode.jsonl")

@@ -17,6 +17,7 @@ from tpvqa.belief.experience import Experience
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.episodes.report import render_report, write_report
+from tpvqa.episodes.shape import FRAMES
 from tpvqa.errors import EpisodeError, WriteError
 from tpvqa.events import Resumed
 from tpvqa.observation import Frame
@@ -60,6 +61,20 @@ def test_a_torn_line_is_cut_off_when_the_episode_goes_on(tmp_path: Path) -> None
     writer.append(Resumed())
     writer.close()
     assert numbers(tmp_path) == [0, 1]
+
+
+def test_pictures_that_a_kill_left_half_written_go_when_the_episode_goes_on(tmp_path: Path) -> None:
+    writer = EpisodeWriter(tmp_path)
+    writer.append(started())
+    writer.close()
+    half, mine = tmp_path / FRAMES / f".{'0a' * 8}.part", tmp_path / FRAMES / ".mine.part"
+    half.touch()
+    mine.touch()
+    writer, _ = EpisodeWriter.going_on(tmp_path)
+    assert half.exists()  # nothing has been gone on with
+    writer.append(Resumed())
+    writer.close()
+    assert (half.exists(), mine.exists()) == (False, True)
 
 
 def test_a_log_that_was_torn_in_its_first_event_is_begun_anew(tmp_path: Path) -> None:

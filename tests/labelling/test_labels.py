@@ -154,6 +154,31 @@ def test_two_do_not_write_at_once(folders: list[Path]) -> None:
     yours.close()
 
 
+def test_what_another_session_labelled_meanwhile_counts(folders: list[Path]) -> None:
+    episode = read_recorded(folders[0])
+    first, second = episode.askings[:2]
+    mine, yours = Labels(episode), Labels(episode)
+    assert mine.append(first, "yes")
+    assert mine.append(second, "yes")
+    mine.close()
+    assert not yours.append(first, "no")
+    assert yours.known == yours.meanwhile == {first.key: "yes", second.key: "yes"}
+    assert read_labels(episode)[first.key] == "yes"
+    assert yours.append(first, "no")  # now that it is known
+    assert read_labels(episode)[first.key] == "no"
+    yours.close()
+
+
+def test_what_was_damaged_meanwhile_is_told(folders: list[Path]) -> None:
+    episode = read_recorded(folders[0])
+    labels = Labels(episode)
+    (folders[0] / LABELS).write_text("{}\n")
+    for _ in range(2):
+        with pytest.raises(CalibrationError, match="no label of this version"):
+            labels.append(episode.askings[0], "yes")
+    assert (folders[0] / LABELS).read_text() == "{}\n"
+
+
 def test_what_cannot_be_written_is_told_and_what_was_is_kept(
     folders: list[Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -86,6 +86,7 @@ BROKEN_DOMAINS = [
     ("(lit ?l)))", "(lit ?l)", 5, "missing.*in the action 'switch_on'"),
     ("lit ", "l" * 1_000_000 + " ", 4, "has 1,000,000 letters; expected 255"),
     ("(:predicates", "(:predicates (lit ?x)", 4, "two predicates of the name 'lit'"),
+    ("(:predicates", "(:constants ?c - lamp)\n  (:predicates", 4, r"an object is called '\?c'"),
     ("(?l - lamp)\n", "(?l ?l - lamp)\n", 6, "two parameters of the action 'switch_on'"),
     ("(lit ?l)))", f"(and (lit ?l) (increase (total-cost) {'9' * 200}))))", 5, "larger unit"),
     *(
@@ -125,6 +126,7 @@ BROKEN_PROBLEMS = [
     ("(:domain lamps)", "(:domain lamp)", 2, "lamp.*does not match"),
     ("a b - lamp", "a b - lump", 3, "type 'lump'.*not declared.*'lamp'"),
     ("a b - lamp", "a a b - lamp", 3, "'a' is declared twice"),
+    ("a b - lamp", "a b\n ?x - lamp", 4, r"an object is called '\?x', as only variables are"),
     ("(:goal (and (lit a)\n              (lit b)))", "", 1, r"no \(:goal"),
     ("(lit b))))", "(lit b)))\n  (:metric maximize (total-cost)))", 7, "minimize"),
 ]

@@ -100,6 +100,7 @@ def _picture_at(url: str) -> dict[str, Any]:
     return _message({"type": "image_url", "image_url": {"url": url}}, TEXT)
 
 
+FRIDGE_URL = FRIDGE["messages"][0]["content"][0]["image_url"]["url"]
 REFUSED: dict[str, tuple[Any, str]] = {
     "no JSON": (b"{", "JSON"),
     "no body": (b"", "JSON"),
@@ -126,6 +127,16 @@ REFUSED: dict[str, tuple[Any, str]] = {
     "too many choices": ({**FRIDGE, "n": 17}, "16"),
     "no tokens": ({**FRIDGE, "max_tokens": 0}, "max_tokens"),
     "too hot": ({**FRIDGE, "temperature": 3}, "temperature"),
+    "a yes for a number": ({**FRIDGE, "n": True}, "n: true and false are no numbers"),
+    "a no for a seed": ({**FRIDGE, "seed": False}, "seed"),
+    "a name twice": (
+        json.dumps(FRIDGE).replace('"model"', '"model": "other", "model"').encode(),
+        "'model' is given twice",
+    ),
+    "a drawing": (
+        _picture_at(FRIDGE_URL.replace("image/jpeg", "image/svg+xml")),
+        "is said to be image/svg+xml",
+    ),
     "JSON of no form": ({**FRIDGE, "response_format": {"type": "json_object"}}, "response_format"),
 }
 
@@ -188,6 +199,29 @@ def test_a_request_that_is_too_large_hears_so() -> None:
         assert connection.getresponse().status == 413
         connection.close()
         assert complete(serving, FRIDGE).word == "yes"
+
+
+def test_a_request_that_says_how_large_it_is_hears_so_at_once() -> None:
+    with running(Known(TABLE), limits=Limits(body=20_000, sending=2)) as serving:
+        place = urlsplit(serving.address)
+        with socket.create_connection((place.hostname or "", place.port or 0), 1) as slow:
+            slow.sendall(
+                b"POST /v1/chat/completions HTTP/1.1\r\nHost: localhost\r\n"
+                b"Content-Type: application/json\r\nContent-Length: 20001\r\n\r\n{"
+            )
+            assert slow.recv(1000).split()[1] == b"413"  # nothing more has been sent
+            slow.sendall(b" " * 20_000)
+        assert complete(serving, FRIDGE).word == "yes"
+
+
+@pytest.mark.parametrize("token", [None, "a-token-for-the-tests"])
+def test_a_body_that_is_packed_is_refused(token: str | None) -> None:
+    known = {} if token is None else {"Authorization": f"Bearer {token}"}
+    with running(Known(TABLE), token=token) as serving:
+        packed = complete(serving, b"packed", **known, **{"Content-Encoding": "gzip"})
+        assert (packed.status, packed.error["code"]) == (415, "unsupported_coding")
+        plain = complete(serving, FRIDGE, **known, **{"Content-Encoding": "identity"})
+        assert plain.word == "yes"
 
 
 def test_a_request_that_does_not_come_in_is_ended() -> None:

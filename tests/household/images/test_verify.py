@@ -3,6 +3,7 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
+from tpvqa.errors import PictureSetError
 from tpvqa.worlds.pictures import MANIFEST
 from tpvqa_household.cli.dataset import dataset
 from tpvqa_household.images.manifest import load_pictures
@@ -104,6 +105,21 @@ def test_the_verify_command_passes_on_the_shipped_set() -> None:
     assert result.exit_code == 0, result.output
     machine = CliRunner().invoke(dataset, ["verify", "--json"])
     assert json.loads(machine.stdout)["gaps"] == []
+
+
+def test_show_takes_the_place_of_such_pages_alone(painted: Path, tmp_path: Path) -> None:
+    page, picture = tmp_path / "sheet.html", load_pictures(painted).paths[1]
+    page.write_text("<!doctype html>mine")
+    words = ["show", "--pictures", str(painted)]
+    for out, force in ((page, []), (picture, []), (picture, ["--force"])):
+        before = out.read_bytes()
+        result = CliRunner().invoke(dataset, [*words, str(out), *force])
+        assert isinstance(result.exception, PictureSetError)
+        assert out.read_bytes() == before
+    for force in (["--force"], []):
+        result = CliRunner().invoke(dataset, [*words, str(page), *force])
+        assert result.exit_code == 0, result.output
+    assert "Pictures of the kitchen" in page.read_text()
 
 
 def test_show_writes_one_page_with_every_picture(painted: Path, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ A folder that the user names is followed where it is a link; what lies in it is 
 
 import errno
 import os
+import re
 import secrets
 import stat
 from collections.abc import Iterator
@@ -14,6 +15,7 @@ from pathlib import Path
 from tpvqa.errors import WriteError
 
 _PLAIN = "it is a link, a pipe or a device, where a plain file is expected"
+_PART = re.compile(r"\.[0-9a-f]{16}\.part")
 _FOLDER = "it is a folder, where a plain file is expected"
 
 
@@ -170,6 +172,17 @@ def write_whole_at(folder: int, name: str, data: bytes, *, durable: bool = False
         with suppress(OSError):
             os.unlink(beside, dir_fd=folder)
         raise
+
+
+def clear_parts(folder: int) -> None:
+    """Take away what a `write_whole_at` that was killed has left in a folder that is open.
+
+    Nobody else may be writing there.
+    """
+    for name in os.listdir(folder):
+        if _PART.fullmatch(name):
+            with suppress(OSError):
+                os.unlink(name, dir_fd=folder)
 
 
 def write_all(descriptor: int, data: bytes) -> None:

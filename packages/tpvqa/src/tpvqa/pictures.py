@@ -56,7 +56,8 @@ def read_file(path: str | Path, *, inside: Path | None = None, most: int = MOST_
     try:
         file = _open(Path(path)) if inside is None else _open_inside(str(path), inside)
     except (OSError, ValueError) as error:  # a ValueError for a NUL in the path
-        raise PictureError(f"{shown}: cannot be read ({_why(error)})") from error
+        why = _LOOP if inside is None and _is_loop(error) else _why(error)
+        raise PictureError(f"{shown}: cannot be read ({why})") from error
     try:
         if not stat.S_ISREG(os.fstat(file).st_mode):
             raise PictureError(f"{shown}: is no regular file. Name a file on disk")
@@ -187,6 +188,7 @@ def _opened(data: bytes) -> "Image.Image":
     return picture
 
 
+_LOOP = "its links lead in a circle; name the file itself"
 _TOO_LARGE = f"has more than {MOST_PIXELS // 10**6} million pixels. Make it smaller"
 
 
@@ -213,9 +215,13 @@ def _open_inside(path: str, folder: Path) -> int:
         os.close(at)
 
 
+def _is_loop(error: Exception) -> bool:
+    return isinstance(error, OSError) and error.errno == errno.ELOOP
+
+
 def _why(error: Exception) -> str:
     strerror = getattr(error, "strerror", None)
-    if isinstance(error, OSError) and error.errno == errno.ELOOP:
+    if _is_loop(error):
         return "it is a link, which is not followed; put the file itself there"
     return str(strerror or error)
 

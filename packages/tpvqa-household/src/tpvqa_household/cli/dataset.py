@@ -1,6 +1,8 @@
 """`tpvqa dataset`: make, compose, check, show and score a set of pictures."""
 
 import json
+from collections.abc import Sequence
+from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -153,18 +155,45 @@ def verify(pictures: Folder = None, as_json: AsJson = False) -> None:
 def show(
     out: Annotated[Path, typer.Argument(help="The HTML page to write.")] = Path("pictures.html"),
     pictures: Folder = None,
+    *,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a file that is there and is no such page.")
+    ] = False,
 ) -> None:
     """Write one page with all pictures by action and outcome."""
-    from tpvqa.errors import PictureSetError
+    from tpvqa.files import write_whole
     from tpvqa_household.images.manifest import load_pictures
     from tpvqa_household.images.sheet import contact_sheet
 
-    page = contact_sheet(load_pictures(pictures))
-    try:
-        out.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise PictureSetError(f"{out}: cannot be written ({error.strerror})") from error
+    opened = load_pictures(pictures)
+    _see_free(out, opened.paths, force=force)
+    write_whole(out, contact_sheet(opened).encode(), remedy="Name another file")
     typer.echo(f"wrote {out}")
+
+
+def _see_free(page: Path, pictures: Sequence[Path], *, force: bool) -> None:
+    """See that the page takes the place of no picture, and of another file only if told to.
+
+    Raises:
+        PictureSetError: It would.
+    """
+    from tpvqa.errors import PictureSetError
+    from tpvqa.files import resolved
+    from tpvqa_household.images.sheet import HEAD
+
+    if resolved(page) in map(resolved, pictures):
+        raise PictureSetError(f"{page} is a part of the set, and would be lost; name another file")
+    if force or not page.exists():
+        return
+    if page.is_dir():
+        raise PictureSetError(f"{page} is a folder; name the file to write")
+    with suppress(OSError), page.open("rb") as file:
+        if file.read(len(HEAD)) == HEAD.encode():
+            return
+    raise PictureSetError(
+        f"{page} is there, and is no page with pictures; name another file, or write over it with "
+        "--force"
+    )
 
 
 @dataset.command()

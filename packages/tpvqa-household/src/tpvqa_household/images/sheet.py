@@ -8,6 +8,8 @@ from html import escape
 
 from tpvqa_household.images.manifest import ORIGINS, OUTCOMES, Picture, PictureSet, Shows
 
+HEAD = "<!doctype html><html lang='en'><meta charset='utf-8'><title>Pictures of the kitchen</title>"
+"""How every such page begins."""
 STYLE = """
 body { font: 14px/1.4 system-ui, sans-serif; margin: 1.5rem; color: #222; }
 h2 { margin: 2rem 0 .3rem; font-size: 1.05rem; } h3 { margin: .8rem 0 .3rem; font-weight: 600; }
@@ -58,8 +60,7 @@ def contact_sheet(pictures: PictureSet) -> str:
         sections.append(f"<h3>{escape(visible)}: {len(found)} pictures</h3>")
         sections.append(_row(pictures, found))
     return (
-        "<!doctype html><html lang='en'><meta charset='utf-8'>"
-        f"<title>Pictures of the kitchen</title><style>{STYLE}</style>"
+        f"{HEAD}<style>{STYLE}</style>"
         f"<h1>{len(manifest.pictures)} pictures: {_counted(manifest.pictures)}</h1>"
         f"<table>{''.join(lines)}</table>"
         f"{''.join(sections)}{_images(pictures)}</html>"

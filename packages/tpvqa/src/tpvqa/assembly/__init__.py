@@ -193,7 +193,7 @@ class Trial:
         self.monitor: Monitor
         self.monitor, by_monitor = make_monitor(config.monitor.named, context)
         see_lasting(self.task, world, self.monitor)
-        see_numbers(self.task, self.monitor)
+        see_numbers(self.task, planner, self.monitor)
         self.weighs_answers = "calibration" in by_monitor
         if not self.weighs_answers:
             self.calibration = None

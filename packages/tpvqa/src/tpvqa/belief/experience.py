@@ -57,7 +57,7 @@ class Experience(ToldModel):
     redone: Cases | None = None
     trust: (
         Annotated[
-            tuple[Annotated[float, Field(ge=0)], ...],
+            tuple[Count, ...],
             Field(min_length=len(GRID), max_length=len(GRID)),
         ]
         | None

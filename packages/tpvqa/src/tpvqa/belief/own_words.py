@@ -24,7 +24,7 @@ _NOTICES, _FALSE_ALARMS = 0.09, 0.01
 
 Share = Annotated[float, Field(gt=0, lt=1)]
 LEAST = 1e-6
-"""No report or reading is rarer than this."""
+"""No report or reading is rarer than this, and those of no sensor are less sure of themselves."""
 
 
 class _Worth(ToldModel):
@@ -46,7 +46,7 @@ class SensorWorth(_Worth):
     rows: Counted
     says_if_true: Share
     says_if_false: Share
-    surely: float = Field(gt=0)
+    surely: float = Field(ge=LEAST)
 
     def log_ratio(self, probability: float) -> float:
         """What a reading is worth: a surer one more, in proportion."""

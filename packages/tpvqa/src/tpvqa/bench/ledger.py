@@ -15,12 +15,12 @@ from tpvqa.bench.cell import Cell
 from tpvqa.bench.published import differences, read_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.episodes.log import LOG
+from tpvqa.episodes.own_files import BENCH
 from tpvqa.errors import BenchError, WriteError
 from tpvqa.files import make_folder, open_plain, write_all, write_whole
 from tpvqa.told import first_fault
 
-ROWS = "episodes.jsonl"
-SETTINGS = "bench.json"
+ROWS, SETTINGS = BENCH
 REMEDY = "Make room, and give the same command again: it goes on with what is finished"
 
 
@@ -79,9 +79,10 @@ class Ledger:
         whole, _, torn = data.rpartition(b"\n")
         if torn:  # a kill in the middle of a line
             self._file.truncate(len(data) - len(torn))
+        finished: dict[tuple[Cell, int], tuple[int, EpisodeRow]] = {}
         for number, line in enumerate(whole.split(b"\n") if whole else [], 1):
             try:
-                yield EpisodeRow.model_validate_json(line)
+                row = EpisodeRow.model_validate_json(line)
             except ValidationError as error:
                 first = first_fault(error)
                 said = ": ".join(filter(None, (".".join(map(str, first["loc"])), first["msg"])))
@@ -89,6 +90,15 @@ class Ledger:
                     f"{self.folder / ROWS}:{number}: not a row of this version "
                     f"({said}). Remove the folder, or name another"
                 ) from None
+            if not row.error:
+                before, other = finished.setdefault((row.cell, row.episode), (number, row))
+                if not _agree_on(row, other):
+                    raise BenchError(
+                        f"{self.folder / ROWS}:{number}: says something else than line {before} "
+                        f"of the same episode ({row.task}, {row.monitor}, {row.vlm}, number "
+                        f"{row.episode}). Remove the line that is wrong, or name another folder"
+                    )
+            yield row
 
     def missing(self, cell: Cell, episodes: int) -> list[int]:
         """The numbers of a cell's episodes that are not finished; failed ones are tried again."""
@@ -125,6 +135,11 @@ class Ledger:
     def close(self) -> None:
         """Close the file. Can be called twice."""
         self._file.close()
+
+
+def _agree_on(one: EpisodeRow, other: EpisodeRow) -> bool:
+    """Whether two rows of an episode say the same of it; run twice, it takes other times."""
+    return one.model_copy(update={"seconds": other.seconds}) == other
 
 
 def merged(rows: Iterable[EpisodeRow]) -> dict[tuple[Cell, int], EpisodeRow]:

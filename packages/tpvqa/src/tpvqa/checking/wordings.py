@@ -1,6 +1,7 @@
 """Whether the questions fit the domain: facts without words, words in vain, words that coincide."""
 
 import re
+import unicodedata
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -147,6 +148,14 @@ def in_vain(task: Task, given: Wordings, file: Path | None) -> Iterator[Finding]
         yield Finding("unknown-object", Severity.NOTE, says, "", where or None, number)
 
 
+def _as_read(text: str) -> str:
+    """A text as people tell it from others: without what shows nothing, in one form of letters."""
+    if not text.isascii():
+        seen = "".join(each for each in text if unicodedata.category(each) != "Cf")
+        text = unicodedata.normalize("NFKC", seen)
+    return " ".join(text.casefold().split())
+
+
 def alike(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding]:
     """Objects, facts and actions that are called the same."""
     yield from _same_names(task, book)
@@ -159,7 +168,7 @@ def alike(task: Task, book: QuestionBook, file: Path | None) -> Iterator[Finding
 def _same_names(task: Task, book: QuestionBook) -> Iterator[Finding]:
     names: dict[str, str] = {}
     for obj in task.objects:
-        other = names.setdefault(book.name(obj).lower(), obj)
+        other = names.setdefault(_as_read(book.name(obj)), obj)
         if other != obj:
             yield Finding(
                 "same-name",
@@ -179,7 +188,7 @@ def _same_questions(task: Task, book: QuestionBook, file: Path | None) -> Iterat
     for atom in islice(atoms, _LOOKED_AT):
         if not book.asked(Literal(atom)):
             continue
-        first = texts.setdefault(book.fact(Literal(atom)).text, atom)
+        first = texts.setdefault(_as_read(book.fact(Literal(atom)).text), atom)
         pair = frozenset((first.predicate, atom.predicate))
         if first == atom or pair in told:
             continue
@@ -203,7 +212,7 @@ def _same_in_other_words(task: Task, book: QuestionBook, file: Path | None) -> I
     """Other wordings in which two facts are asked the same that their first wordings tell apart."""
     several = [name for name in task.predicates if book.wordings(name) > 1]
     texts = {
-        book.fact(Literal(atom)).text: atom
+        _as_read(book.fact(Literal(atom)).text): atom
         for name in task.fluents | task.derived
         for atom in islice(atoms_of(task, name), _LOOKED_AT)
     }
@@ -214,8 +223,8 @@ def _same_in_other_words(task: Task, book: QuestionBook, file: Path | None) -> I
             if not book.asked(Literal(atom)):
                 continue
             for each in book.in_other_words(question):
-                other = texts.setdefault(each.text, atom)
-                same = book.fact(Literal(other)).text == question.text
+                other = texts.setdefault(_as_read(each.text), atom)
+                same = _as_read(book.fact(Literal(other)).text) == _as_read(question.text)
                 if other == atom or same or (name, each.wording) in told:
                     continue
                 told.add((name, each.wording))
@@ -258,7 +267,7 @@ def _same_actions(task: Task, book: QuestionBook, file: Path | None) -> Iterator
     texts: dict[str, Action] = {}
     told: set[frozenset[str]] = set()
     for action in islice(task.ground_actions(), _LOOKED_AT):
-        first = texts.setdefault(book.say(action), action)
+        first = texts.setdefault(_as_read(book.say(action)), action)
         pair = frozenset((first.name, action.name))
         one = len(pair) == 1
         if first is action or pair in told or (one and not _differ(task, first, action)):

@@ -18,6 +18,7 @@ from tpvqa.cli import (
     label,
     plan,
     questions,
+    report,
     risk,
     run,
     serve_vlm,
@@ -86,6 +87,7 @@ plan.register(app)
 questions.register(app)
 check.register(app)
 run.register(app)
+report.register(app)
 label.register(app)
 calibrate.register(app)
 risk.register(app)

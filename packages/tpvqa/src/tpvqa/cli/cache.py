@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TextIO
 
 import typer
 
+from tpvqa.cli.outputs import see_unread
 from tpvqa.cli.saying import cell, plain_row, tell
 
 if TYPE_CHECKING:
@@ -160,6 +161,8 @@ def export(
 
     if form is None:
         form = _FORMS["" if out is None else _ending(out)]
+    if out is not None:
+        see_unread(out, "--out", [file])
     if out is not None and out.exists() and not force:
         raise TpvqaError(f"{out} is there already. Name another file, or write over it: --force")
     if out is None:

@@ -12,6 +12,7 @@ import typer
 from tpvqa.cli.calibration_table import draw, plain, print_calibration
 from tpvqa.cli.notices import about_own_files
 from tpvqa.cli.options import ANSWERING, trial_options
+from tpvqa.cli.outputs import named_by, see_free, see_unread
 from tpvqa.cli.picture_sets import opened_set
 from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer, combined
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from tpvqa.cli.progress import CountBar
     from tpvqa.config import TrialConfig
     from tpvqa.questions import QuestionBook
+    from tpvqa.worlds.pictures import PictureSet
+    from tpvqa.worlds.pictures.manifest import Picture
 
 _EXIT = "Exit codes: 0 written, 2 bad input, 6 could not be written, 130 interrupted."
 _SOURCES = (
@@ -161,7 +164,10 @@ def calibrate(
         raise TpvqaError(f"{out} is a folder; name a file with --out")
     image = curves or out.with_suffix(".png")
     written = [("--out", out), ("--curves", image)]
-    _check([*written, *([("--experience", experience)] if experience else [])], force=force)
+    written += [("--experience", experience)] if experience else []
+    own_files = (file for each in problems for file in (each, *each.glob("*.pddl")))
+    read = (*(episodes or ()), domain, *own_files, questions, world_file, named_by(vlm))
+    _check(written, read, force=force)
     surveyed = trials is not None and monitor.partition(":")[0] == "survey"
     chosen_looks = pictures is None and not surveyed
     found: Labelled | None = None
@@ -173,7 +179,11 @@ def calibrate(
         learned = experience_from(found.own.acts) if experience is not None else None
     elif pictures is not None:
         config = combined(layers)
-        name, rows = _from_pictures(vlm or default_vlm(), config, pictures, own, hidden=hidden)
+        opened = opened_set(pictures, books := own_book(*own))
+        for option, path in written:
+            see_unread(path, option, opened.paths)
+        asked = vlm or default_vlm()
+        name, rows = _from_pictures(asked, config, opened, books, hidden=hidden)
     else:
         assert trials is not None
         name = in_full(vlm or default_vlm(pictures=not problems))
@@ -214,11 +224,14 @@ def calibrate(
         tell(f"wrote {out} and {image}")
 
 
-def _check(files: Sequence[tuple[str, Path]], *, force: bool) -> None:
+def _check(
+    files: Sequence[tuple[str, Path]], read: Sequence[Path | str | None], *, force: bool
+) -> None:
     """What would end the work at its end is told before it.
 
     Args:
         files: What is to be written, by the option that names it.
+        read: What is read, and is never written over.
         force: Whether what is there may be written over.
     """
     from tpvqa.belief.platt import regression
@@ -238,11 +251,8 @@ def _check(files: Sequence[tuple[str, Path]], *, force: bool) -> None:
                 f"{other} and {option} are the same file, {path}, and one would be lost; name "
                 f"another with {option}"
             )
-        if path.exists() and not force:
-            raise CalibrationError(
-                f"{path} is there, and may be what others go by; name another file with {option}, "
-                "or write over it with --force"
-            )
+        see_unread(path, option, read)
+        see_free(path, option, force=force)
     for option, path in files:
         see_writable(path, remedy=f"Name another file with {option}")
 
@@ -257,8 +267,8 @@ def _from_episodes(folders: Sequence[Path], vlm: str | None) -> "Labelled":
 def _from_pictures(
     vlm: str,
     config: "TrialConfig",
-    where: str,
-    own: tuple[Path | None, Path | None, Path | None],
+    opened: "PictureSet[Picture]",
+    books: "list[QuestionBook] | None",
     *,
     hidden: bool,
 ) -> tuple[str, "list[LabelledAnswer]"]:
@@ -266,8 +276,6 @@ def _from_pictures(
     from tpvqa.bench.labelled_pictures import ask_pictures
     from tpvqa.plugins import Closing
 
-    books = own_book(*own)
-    opened = opened_set(where, books)
     asked = vlm_with_answers(vlm, config)
     try:
         with _counting("pictures", len(opened.manifest.pictures)) as done:

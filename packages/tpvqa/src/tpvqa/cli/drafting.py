@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tpvqa.cli.outputs import see_unread
 from tpvqa.cli.saying import tell
 from tpvqa.errors import TpvqaError
 
@@ -24,7 +25,8 @@ def write_draft(
         as_json: Whether to print JSON.
 
     Raises:
-        TpvqaError: The file is there, or the task is a shipped one and no file is named.
+        TpvqaError: The file is there, or is one of the task's; or the task is a shipped one and
+            no file is named.
         WriteError: It cannot be written.
     """
     from tpvqa.drafting import LOOK, draft
@@ -40,6 +42,7 @@ def write_draft(
                 "file with --questions."
             )
         target = Path(wanted.problem).parent / QUESTIONS
+    see_unread(target, "--questions", (wanted.domain, wanted.problem))
     if target.exists() and not force:
         raise TpvqaError(
             f"{target} is there, and may hold your work; name another file with --questions, or "

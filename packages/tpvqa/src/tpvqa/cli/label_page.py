@@ -26,7 +26,7 @@ _MOST_DIGITS = 9
 """Python turns no more than some thousand into a number, and refuses with an error of its own."""
 _HEADERS = {
     "Cache-Control": "no-store",
-    "Referrer-Policy": "no-referrer",
+    "Referrer-Policy": "same-origin",
     "X-Content-Type-Options": "nosniff",
     "Content-Security-Policy": (
         "default-src 'none'; img-src 'self'; connect-src 'self'; "
@@ -39,7 +39,7 @@ class LabelPage:
     """Serves a session until it is quit. Use it as a context manager.
 
     Only who knows the address can see or label anything: it holds a random token, and requests
-    that other pages make in the browser under another host's name are refused.
+    that other pages make in the browser, or under another host's name, are refused.
 
     Args:
         session: What is labelled. Nobody else may use it meanwhile.
@@ -65,7 +65,12 @@ class LabelPage:
     @property
     def address(self) -> str:
         """Where the page is."""
-        return f"http://{self.host}/{self._token}/"
+        return f"{self.origin}/{self._token}/"
+
+    @property
+    def origin(self) -> str:
+        """What a browser says a request comes from that this page makes."""
+        return f"http://{self.host}"
 
     @property
     def host(self) -> str:
@@ -116,6 +121,7 @@ class LabelPage:
             "number": secrets.token_hex(4),  # so that no browser shows an earlier picture
             "of": self._of,
             "label": None if asking is None else session.label_of(asking),
+            "notice": session.notice,
         }
 
     @property
@@ -208,8 +214,11 @@ class _Handler(BaseHTTPRequestHandler):
         if length is None or length > _LONGEST:
             self._refuse(HTTPStatus.BAD_REQUEST, "what is said is too long")
             return
-        key = self.rfile.read(length).decode(errors="replace")
-        going = page.press(key, of)
+        key = self.rfile.read(length)
+        if len(key) < length:
+            self._refuse(HTTPStatus.BAD_REQUEST, "what is said has been cut off")
+            return
+        going = page.press(key.decode(errors="replace"), of)
         self._send_state(ended=not going)
         if not going:
             page.end()
@@ -219,7 +228,8 @@ class _Handler(BaseHTTPRequestHandler):
         page = self.server.page
         path = self.path.encode(errors="replace")
         mine = secrets.compare_digest(path[: len(page.path)], page.path.encode())
-        if not mine or self.headers.get("Host") != page.host:
+        origin = self.headers.get("Origin", page.origin)
+        if not mine or self.headers.get("Host") != page.host or origin != page.origin:
             return None
         return self.path[len(page.path) :]
 

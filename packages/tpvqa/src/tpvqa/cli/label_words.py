@@ -20,6 +20,8 @@ def press(session: "Session", key: str) -> bool:
     key = key.strip().lower()
     if key in KEYS:
         session.say(KEYS[key])
+        if session.notice:
+            tell(f"note: {session.notice}", error=True)
     elif key == "s":
         session.skip()
     elif key == "b":

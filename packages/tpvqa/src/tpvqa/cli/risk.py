@@ -9,6 +9,7 @@ import typer
 
 from tpvqa.cli.bench_running import bench_bar
 from tpvqa.cli.options import about_files, trial_config, trial_layers, trial_options
+from tpvqa.cli.outputs import files_of, see_free, see_unread
 from tpvqa.cli.plan import Problem, Task
 from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer
@@ -57,6 +58,9 @@ def risk(
             "stopped, the same command goes on."
         ),
     ] = Path("risk.json"),
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a file that is there and is no risk file.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the figures as JSON.")] = False,
 ) -> None:
     """Run simulated trials with the belief monitor, for `tpvqa run --risk ALPHA --risk-file FILE`.
@@ -75,6 +79,8 @@ def risk(
     layers = trial_layers(layers, task, problem_file)
     config = trial_config(layers)
     _check(config.monitor.named, out)
+    see_unread(out, "--out", files_of(config))
+    see_free(out, "--out", force=force or _is_risk(out))
     for notice in about_files(layers):
         tell(f"note: {notice}", error=True)
     with Trial(config) as trial:
@@ -118,6 +124,18 @@ def _check(monitor: str, out: Path) -> None:
     if out.is_dir():
         raise CalibrationError(f"{out} is a folder; name a file with --out")
     see_writable(out, remedy="Name another file with --out")
+
+
+def _is_risk(file: Path) -> bool:
+    """Whether a file is what this command writes."""
+    from tpvqa.belief.risk import RiskCalibration
+    from tpvqa.errors import CalibrationError
+
+    try:
+        RiskCalibration.load(file)
+    except CalibrationError:
+        return False
+    return True
 
 
 def _own(trial: "Trial") -> "OwnTask | None":

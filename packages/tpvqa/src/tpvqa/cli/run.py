@@ -1,4 +1,4 @@
-"""`tpvqa run`, `resume`, `config`, `show` and `report`."""
+"""`tpvqa run`, `resume`, `config` and `show`."""
 
 import json
 import sys
@@ -52,7 +52,6 @@ def register(app: typer.Typer) -> None:
     app.command("config")(configuration)
     app.command()(prompt)
     app.command()(show)
-    app.command()(report)
 
 
 Optimal = Annotated[
@@ -106,7 +105,7 @@ def run(
             tell(f"note: {notice}", error=True)
         trial.check()
         folder = out or _new_folder(trial.task.name, config.seed, config.episode)
-        _can_be_kept(config)
+        _can_be_kept(config, folder)
         writer = EpisodeWriter(folder)
         if writer.begun_anew:
             tell(f"note: {folder} held the torn beginning of an episode; begun anew", error=True)
@@ -233,19 +232,6 @@ def show(
         tell(f"unfinished; it can be gone on with: tpvqa resume {pasted(episode)}")
 
 
-def report(
-    episode: Annotated[Path, typer.Argument(help="Folder of an episode.")],
-    *,
-    out: Annotated[
-        Path | None, typer.Option(help="File to write; by default report.html in the episode.")
-    ] = None,
-) -> None:
-    """Write one self-contained HTML page about an episode."""
-    from tpvqa.episodes.report import write_report
-
-    tell(write_report(episode, out))
-
-
 def _new_folder(task: str, seed: int, episode: int) -> Path:
     stem = f"{task}-seed{seed}" + (f"-{episode}" if episode else "")
     folder, number = Path("episodes") / stem, 2
@@ -335,16 +321,25 @@ def _named(layers: Sequence[Layer]) -> dict[str, Any]:
     return found
 
 
-def _can_be_kept(config: "TrialConfig") -> None:
-    """See that what is learned can be written, before a robot moves.
+def _can_be_kept(config: "TrialConfig", folder: Path) -> None:
+    """See that what is learned can be written, beside the episode, before a robot moves.
 
     Raises:
+        TpvqaError: The file would lie in the episode's place, or in its folder.
         WriteError: It cannot.
     """
-    from tpvqa.files import see_writable
+    from tpvqa.errors import TpvqaError
+    from tpvqa.files import resolved, see_writable
 
-    if config.monitor.experience is not None:
-        see_writable(Path(config.monitor.experience), remedy="Name another file with --experience")
+    if config.monitor.experience is None:
+        return
+    path, place = Path(config.monitor.experience), resolved(folder)
+    if place in (resolved(path), *resolved(path).parents):
+        raise TpvqaError(
+            f"{path} is to lie in the folder of this episode, {folder}, and is for others, too; "
+            "name another file with --experience"
+        )
+    see_writable(path, remedy="Name another file with --experience")
 
 
 def _silent(_event: object) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tpvqa.cli.options import ANSWERING, trial_options
+from tpvqa.cli.outputs import named_by, see_unread
 from tpvqa.cli.saying import plain_row, tell
 from tpvqa.config.layers import Layer, combined, settings
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 _EXIT = "Exit codes: 0 compared, 2 bad input, 6 could not be written, 130 interrupted."
 _OFFERED = (*ANSWERING, ("seed",))
 OUT = Path("vlm-compare")
+_WRITTEN = ("answers.csv", "figures.csv", "compare.png", "compare.svg")
 
 vlm_app = typer.Typer(help="VLMs by themselves, without a trial.", no_args_is_help=True)
 
@@ -111,6 +113,9 @@ def compare(
         of, looks, task = _of_episodes(episodes or [], *own, hidden=hidden)
     cluster = OF_EPISODES if pictures is None else OF_PICTURES
     _tell_doubled(vlms)
+    read = (*(episodes or ()), *own[:2], *own[2], *map(named_by, vlms))
+    for name in _WRITTEN:
+        see_unread(out / name, "--out", read)
     made = _check_out(out)
     with CountBar("looks") as bar:
         try:

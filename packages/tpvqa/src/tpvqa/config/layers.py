@@ -166,7 +166,7 @@ def _what_is_wrong(error: "ErrorDetails") -> str:
         return f"does not fit: {told['error']}"
     if kind in _BOUNDS:
         key, words = _BOUNDS[kind]
-        wanted = f"{words} {told[key]:g}"
+        wanted = f"{words} {_in_full(told[key])}"
     elif kind == "literal_error":
         wanted = str(told["expected"])
     elif kind == "string_too_short":
@@ -176,8 +176,14 @@ def _what_is_wrong(error: "ErrorDetails") -> str:
     if not wanted:
         return f"does not fit: {error['msg']}"
     value = error["input"]
-    said = f"{value:g}" if isinstance(value, float) else cut(value)
+    said = _in_full(value) if isinstance(value, float) else cut(value)
     return f"must be {wanted}, got {said}"
+
+
+def _in_full(number: float) -> str:
+    """A number without digits that say nothing, and with all that tell it from others."""
+    short = f"{number:g}"
+    return short if float(short) == number or number != number else repr(number)
 
 
 def origin(key: Key, layers: Sequence[Layer]) -> str:

@@ -11,12 +11,13 @@ from typing import Self
 from pydantic_core import PydanticSerializationError
 
 from tpvqa.episodes.log import LOG, events_in, no_episode, whole_lines
+from tpvqa.episodes.own_files import BENCH
 from tpvqa.episodes.shape import FRAMES, is_frame
 from tpvqa.errors import EpisodeError, PluginError, WriteError, pasted
 from tpvqa.events import EVENT, Ended, Event
 from tpvqa.events.events import CAN_BE_GONE_ON_WITH
 from tpvqa.events.records import depth_file
-from tpvqa.files import make_folder, open_plain, write_all, write_whole_at
+from tpvqa.files import clear_parts, make_folder, open_plain, write_all, write_whole_at
 from tpvqa.observation import Frame
 from tpvqa.pictures import MOST_BYTES
 from tpvqa.told.strict_json import LONGEST
@@ -46,7 +47,7 @@ class EpisodeWriter:
         begun_anew: Whether the folder held the torn beginning of an episode.
 
     Raises:
-        EpisodeError: The folder holds another episode, or another process writes it.
+        EpisodeError: The folder holds another episode or a bench, or another process writes it.
         WriteError: The folder cannot be written.
     """
 
@@ -105,6 +106,7 @@ class EpisodeWriter:
         self._begun, self._made = not new, [self.folder / FRAMES]
         flags = os.O_RDWR | os.O_APPEND | (os.O_CREAT if new else 0)
         if new:
+            self._see_no_bench()
             self._make_folder()
         try:
             self._file = open_plain(self.folder / LOG, flags)
@@ -129,6 +131,11 @@ class EpisodeWriter:
                 f"{self.folder} is still being written by another process, or by a writer that was "
                 "not closed; wait for it or end it"
             ) from None
+
+    def _see_no_bench(self) -> None:
+        if (self.folder / LOG).exists() or not any((self.folder / name).exists() for name in BENCH):
+            return
+        raise EpisodeError(f"{self.folder} holds a bench; name another folder with --out")
 
     def _make_folder(self) -> None:
         missing = [each for each in (self.folder, *self.folder.parents) if not each.exists()]
@@ -209,6 +216,7 @@ class EpisodeWriter:
         try:
             if not self._cut:
                 os.ftruncate(self._file, self._size)
+                clear_parts(self._frames)
                 self._cut = True
             write_all(self._file, line)
             if self._durable:

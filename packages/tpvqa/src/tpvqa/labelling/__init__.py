@@ -1,6 +1,7 @@
 """Labelling recorded episodes: what to ask a person next, and what their labels teach."""
 
-from tpvqa.labelling.labels import LABELS, Label, Labels, read_labels
+from tpvqa.episodes.own_files import LABELS
+from tpvqa.labelling.labels import Label, Labels, read_labels
 from tpvqa.labelling.recorded import Asking, Given, RecordedEpisode, check_apart, read_recorded
 from tpvqa.labelling.session import Session
 

@@ -12,13 +12,13 @@ from typing import Literal
 from pydantic import ConfigDict, Field, ValidationError
 
 from tpvqa.episodes.log import whole_lines
+from tpvqa.episodes.own_files import LABELS
 from tpvqa.errors import CalibrationError, WriteError
 from tpvqa.files import open_plain, opened_plain, write_all
 from tpvqa.labelling.recorded import Asking, RecordedEpisode
 from tpvqa.told import ToldModel, check_json, first_fault
 from tpvqa.told.strict_json import LONGEST
 
-LABELS = "labels.jsonl"
 SCHEMA: Literal[2] = 2
 Said = Literal["yes", "no", "cannot see"]
 
@@ -130,6 +130,8 @@ class Labels:
 
     Attributes:
         known: The labels so far, by stretch and question.
+        meanwhile: Those of them that another session gave between the reading of the file and the
+            first label here.
 
     Raises:
         CalibrationError: The file is damaged, or another process labels this episode.
@@ -138,18 +140,24 @@ class Labels:
 
     def __init__(self, episode: RecordedEpisode):
         self.known: dict[tuple[int, str], Said] = read_labels(episode)
+        self.meanwhile: dict[tuple[int, str], Said] = {}
         self._episode, self._path = episode, episode.folder / LABELS
         self._file = -1
 
-    def append(self, asking: Asking, said: Said) -> None:
-        """Keep a label.
+    def append(self, asking: Asking, said: Said) -> bool:
+        """Keep a label, unless somebody else has just labelled the question, unseen here.
+
+        Returns:
+            Whether it is kept.
 
         Raises:
             WriteError: It cannot be written; those before it are kept.
-            CalibrationError: Another process labels this episode.
+            CalibrationError: Another process labels this episode, or has damaged the file.
         """
         if self._file < 0:
             self._open()
+            if asking.key in self.meanwhile:
+                return False
         label = Label(
             log=self._episode.log,
             stretch=asking.stretch,
@@ -168,12 +176,14 @@ class Labels:
             with suppress(OSError):
                 os.ftruncate(self._file, size)
             raise self._unwritten(error) from error
+        return True
 
     def _open(self) -> None:
         """Open the file when there is something to write: to look at questions leaves no trace."""
         try:
             self._file = open_plain(self._path, os.O_RDWR | os.O_APPEND | os.O_CREAT)
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._read_again()
             whole = _size(whole_lines(self._file))
             if _last(self._file, whole):
                 write_all(self._file, b"\n")
@@ -184,9 +194,17 @@ class Labels:
             raise CalibrationError(
                 f"{self._path} is being written by another process; wait for it or end it"
             ) from None
+        except CalibrationError:
+            self.close()
+            raise
         except OSError as error:
             self.close()
             raise self._unwritten(error) from error
+
+    def _read_again(self) -> None:
+        """What others wrote before the lock was taken is not overruled by who has not seen it."""
+        before, self.known = self.known, read_labels(self._episode)
+        self.meanwhile = dict(self.known.items() - before.items())
 
     def _unwritten(self, error: OSError) -> WriteError:
         return WriteError.of(self._path, error, "The labels before are kept: make room, and go on")

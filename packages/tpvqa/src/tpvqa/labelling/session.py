@@ -47,6 +47,7 @@ class Session:
     Attributes:
         vlm: Whose answers they are.
         now: The question to label now; None where there is none left.
+        notice: What to tell of the last label: what others have labelled meanwhile; mostly empty.
 
     Raises:
         CalibrationError: Different VLMs answered in the episodes, one is a copy of another,
@@ -70,6 +71,7 @@ class Session:
         self._skipped: list[Asking] = []
         self._behind: list[Asking] = []
         self._standing: Standing | None = None
+        self.notice = ""
         self.now = self.order.next(self.label_of)
 
     def label_of(self, asking: Asking) -> Said | None:
@@ -94,17 +96,37 @@ class Session:
     def say(self, said: Said) -> None:
         """Label the question; the next one comes.
 
+        Where another session has labelled the question since this one read the labels, that label
+        stays, and `notice` says so.
+
         Raises:
             WriteError: The label cannot be written.
+            CalibrationError: Another process labels this episode.
         """
+        self.notice = ""
         if self.now is None:
             return
-        self._labels[self.now.episode].append(self.now, said)
+        labels = self._labels[self.now.episode]
+        seen = len(labels.meanwhile)
+        kept = labels.append(self.now, said)
+        self._tell_others(labels, new=len(labels.meanwhile) - seen, kept=kept)
         self._standing = None
         self._go_on(self.now)
 
+    def _tell_others(self, labels: Labels, *, new: int, kept: bool) -> None:
+        if new <= 0 or self.now is None:
+            return
+        given = "1 label was" if new == 1 else f"{new} labels were"
+        self.notice = f"{given} given in {self.now.episode} by another session meanwhile, and count"
+        if not kept:
+            self.notice += (
+                f"; this question was labelled {self.label_of(self.now)!r} there, and stays so: go "
+                "back to label it anew"
+            )
+
     def skip(self) -> None:
         """Leave the question for another time; the next one comes."""
+        self.notice = ""
         if self.now is None:
             return
         self._skipped.append(self.now)
@@ -112,6 +134,7 @@ class Session:
 
     def back(self) -> bool:
         """Go back to the question before, to label it anew; whether there is one."""
+        self.notice = ""
         if not self._behind:
             return False
         self.now = self._behind.pop()

@@ -11,14 +11,14 @@ from tpvqa.pddl.time_limit import limit_of
 from tpvqa.planning.engines.results import result_of
 from tpvqa.planning.numbers import no_numbers
 from tpvqa.planning.propositional import propositional
-from tpvqa.planning.protocol import Crashed, PlanningResult, Unsolvable
+from tpvqa.planning.protocol import Crashed, Numberless, PlanningResult, Unsolvable
 from tpvqa.planning.temporal import no_time
 from tpvqa.plugins import PlainArguments
 
 _MODULE = "tpvqa.planning.engines.clingo_solving"
 
 
-class ClingoPlanner(PlainArguments):
+class ClingoPlanner(PlainArguments, Numberless):
     """Plans with clingo. Safe to call from several threads.
 
     Its plans have the fewest steps that there are, and among those the least cost; a longer plan

@@ -12,7 +12,14 @@ from tpvqa.pddl.time_limit import limit_of
 from tpvqa.pddl.validation import Validation
 from tpvqa.planning.numbers import no_numbers
 from tpvqa.planning.obstacles import obstacle
-from tpvqa.planning.protocol import Crashed, Plan, PlanningResult, TimedOut, Unsolvable
+from tpvqa.planning.protocol import (
+    Crashed,
+    Numberless,
+    Plan,
+    PlanningResult,
+    TimedOut,
+    Unsolvable,
+)
 from tpvqa.planning.temporal import no_time
 from tpvqa.plugins import PlainArguments
 
@@ -51,7 +58,7 @@ _BLAMED = 12
 _GRACE = 1.0  # seconds that the worker gets to say itself that the time is over
 
 
-class FastDownward(PlainArguments):
+class FastDownward(PlainArguments, Numberless):
     """Plans with Fast Downward (Helmert 2006). Safe to call from several threads.
 
     The first plan of a task grounds it; later ones only rewrite the initial state, wherever that

@@ -86,6 +86,11 @@ class Planner(Protocol):
         """End the processes behind it. Can be called twice."""
 
 
+class Numberless:
+    """What a planner inherits that plans no task in which actions change numbers: a trial of one
+    is refused before it begins."""
+
+
 @runtime_checkable
 class TemporalPlanner(Planner, Protocol):
     """A planner that also knows how long actions last, and that they may overlap."""

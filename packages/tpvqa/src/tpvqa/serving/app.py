@@ -13,11 +13,12 @@ from fastapi import FastAPI, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
+from starlette.types import Receive, Scope, Send
 
 from tpvqa.chance import chance
 from tpvqa.serving.asked import question_in
 from tpvqa.serving.desk import Desk
-from tpvqa.serving.door import Door
+from tpvqa.serving.door import Door, check_coding
 from tpvqa.serving.refusal import Refusal
 from tpvqa.serving.sent import Pictures
 from tpvqa.serving.several import questions_in, spoken_together
@@ -115,13 +116,13 @@ class Endpoint:
         self._door.check(request.headers)
         try:
             self._door.check_kind(request.headers)
+            check_coding(request.headers)
         except Refusal:
             await self._let_pass(request)
             raise
         declared = _length(request)
         if declared is not None and declared > self._limits.body:
-            await self._let_pass(request)
-            raise self._too_large()
+            return _BeforeTheRest(self._too_large(), lambda: self._let_pass(request))
         room = self._limits.body if declared is None else declared
         if self._held + room > self._limits.bodies:
             await self._let_pass(request)
@@ -191,7 +192,7 @@ class Endpoint:
                     left -= len(part)
                     if left < 0:
                         return
-        except TimeoutError:
+        except (TimeoutError, ClientDisconnect):
             return
 
     def _too_large(self) -> Refusal:
@@ -201,6 +202,27 @@ class Endpoint:
             f"The request has more than {most:g} MiB. Send smaller pictures.",
             code="request_too_large",
         )
+
+
+class _BeforeTheRest(Response):
+    """A refusal that is sent at once, before the rest of the request has come in.
+
+    Args:
+        refusal: What it says.
+        let_pass: Reads the rest, within bounds.
+    """
+
+    def __init__(self, refusal: Refusal, let_pass: Callable[[], Awaitable[None]]):
+        super().__init__(json.dumps(refusal.body), refusal.status, media_type="application/json")
+        self._let_pass = let_pass
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send the whole reply, and end it when the rest has passed."""
+        head = {"status": self.status_code, "headers": self.raw_headers}
+        await send({"type": "http.response.start", **head})
+        await send({"type": "http.response.body", "body": self.body, "more_body": True})
+        await self._let_pass()
+        await send({"type": "http.response.body", "body": b"", "more_body": False})
 
 
 _Place = Callable[[Request], Awaitable[Response]]

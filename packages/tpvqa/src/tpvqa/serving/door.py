@@ -134,6 +134,21 @@ class Door:
             )
 
 
+def check_coding(headers: Mapping[str, str]) -> None:
+    """See that a body is sent as it is: nothing here unpacks it.
+
+    Raises:
+        Refusal: It is compressed.
+    """
+    coding = headers.get("content-encoding", "").strip().lower()
+    if coding not in ("", "identity"):
+        raise Refusal(
+            415,
+            f"The body is sent as {coding[:40]!r}; send it as it is, without Content-Encoding.",
+            code="unsupported_coding",
+        )
+
+
 def _host(address: str) -> str:
     """The host of an address; empty where it has none."""
     try:

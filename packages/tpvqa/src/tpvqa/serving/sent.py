@@ -12,7 +12,9 @@ from tpvqa.observation import Frame
 from tpvqa.pictures import picture_type
 from tpvqa.serving.refusal import Refusal
 
-_DATA = re.compile(r"data:(?:image/[\w.+-]+)?(?:;[\w-]+=[\w-]+)*;base64,", re.IGNORECASE)
+_DATA = re.compile(r"data:(image/[\w.+-]+)?(?:;[\w-]+=[\w-]+)*;base64,", re.IGNORECASE)
+_KINDS = frozenset(f"image/{kind}" for kind in ("jpeg", "jpg", "pjpeg", "png", "x-png", "webp"))
+"""What a picture may be said to be; clients often say JPEG of any of them."""
 _REMEMBERED = 4_096
 
 Key = tuple[bytes, ...]
@@ -89,6 +91,13 @@ def _decoded(number: int, url: str) -> bytes:
         raise Refusal(
             400,
             f"Picture {number} is no picture in Base64. Send it as data:image/jpeg;base64,…",
+            param="messages",
+        )
+    said = (head[1] or "image/jpeg").lower()
+    if said not in _KINDS:
+        raise Refusal(
+            400,
+            f"Picture {number} is said to be {said[:40]}. Send JPEG, PNG or WebP, and say so.",
             param="messages",
         )
     try:

@@ -1,5 +1,6 @@
 """The bodies of requests and replies, as OpenAI's chat completions have them."""
 
+import json
 import re
 import time
 import uuid
@@ -8,12 +9,13 @@ from dataclasses import dataclass
 from random import Random
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
+from pydantic_core import PydanticCustomError
 
 from tpvqa.serving.refusal import Refusal
 from tpvqa.serving.several import Form, ResponseFormat, SpokenTogether, form_of
 from tpvqa.serving.spoken import NO, YES, Spoken
-from tpvqa.told import ToldModel, first_fault
+from tpvqa.told import ToldModel, check_names, first_fault
 
 MOST_CHOICES = 16
 _MOST_MESSAGES = 1000
@@ -65,6 +67,16 @@ class _Request(ToldModel):
     stream_options: _StreamOptions | None = None
     response_format: ResponseFormat | None = None
 
+    @field_validator(
+        *("top_logprobs", "max_tokens", "max_completion_tokens", "n", "temperature", "seed"),
+        mode="before",
+    )
+    @classmethod
+    def _number(cls, value: object) -> object:
+        if isinstance(value, bool):
+            raise PydanticCustomError("no_number", "true and false are no numbers")
+        return value
+
 
 @dataclass(frozen=True, slots=True)
 class Asking:
@@ -101,6 +113,7 @@ def read_request(body: bytes) -> Asking:
     Raises:
         Refusal: It is no such request, or asks for what is not to be had.
     """
+    _see_names(body)
     try:
         request = _Request.model_validate_json(body)
     except ValidationError as error:
@@ -136,6 +149,20 @@ def read_request(body: bytes) -> Asking:
         usage=bool(options and options.include_usage),
         form=form,
     )
+
+
+def _see_names(body: bytes) -> None:
+    """Of two values of one name another reader would take the other.
+
+    Raises:
+        Refusal: A name is given twice.
+    """
+    try:
+        check_names(body)
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
+        pass  # the model that it is read into says so
+    except ValueError as error:
+        raise Refusal(400, f"The body is no clear request: {error} in one object.") from None
 
 
 def _refusal(error: ValidationError, place: str) -> Refusal:

@@ -9,11 +9,12 @@ from tpvqa.episodes.answers_worth import AnswersWorth, calibration_used
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.log import episode_folder, read_episode
 from tpvqa.episodes.notable_facts import probability
+from tpvqa.episodes.own_files import belongs_to
 from tpvqa.episodes.report.belief_chart import chart
 from tpvqa.episodes.report.story import Story, tell
 from tpvqa.errors import EpisodeError, PictureError
 from tpvqa.events.events import Event, Started
-from tpvqa.files import write_whole
+from tpvqa.files import opened_plain, write_whole
 from tpvqa.pictures import picture_type, read_picture
 from tpvqa.questions import FactWords
 
@@ -25,6 +26,10 @@ __all__ = ["Story", "render_report", "tell", "write_report"]
 
 MOST = 256 * 2**20
 """Bytes of all pictures of a page at most; those beyond are named in it, but not shown."""
+_FIRST, _TITLE = b"<!doctype html>", " · tpvqa episode</title>".encode()
+"""What the first line of a page is, and its third ends with."""
+_LONGEST = 2**16
+"""Bytes of such a line."""
 
 
 class Shown(NamedTuple):
@@ -34,18 +39,21 @@ class Shown(NamedTuple):
     why: str = ""
 
 
-def write_report(folder: Path | str, out: Path | str | None = None) -> Path:
+def write_report(folder: Path | str, out: Path | str | None = None, *, force: bool = False) -> Path:
     """Write the page; it needs nothing beside it.
 
     Args:
         folder: The episode's folder, or its `episode.jsonl`.
-        out: The file to write; `report.html` in the folder by default.
+        out: The file to write; `report.html` in the folder by default. An earlier report that
+            lies there is written over.
+        force: Whether any other file that lies there may be, too; none of the episode's own is.
 
     Returns:
         The file that was written.
 
     Raises:
-        EpisodeError: There is no episode, or no folder to write the page in.
+        EpisodeError: There is no episode, or no folder to write the page in; or what lies there
+            is to be kept.
         WriteError: The page cannot be written.
     """
     folder = episode_folder(folder)
@@ -54,10 +62,34 @@ def write_report(folder: Path | str, out: Path | str | None = None) -> Path:
         raise EpisodeError(f"{path} is a folder; name the file to write, e.g. {path}/report.html")
     if out is not None and not path.parent.is_dir():
         raise EpisodeError(f"{path}: there is no folder {path.parent}; make it, or name another")
+    _see_free(path, folder, force=force)
     page = render_report(read_episode(folder), folder)
     data = page.encode(errors="replace")
     write_whole(path, data, remedy="Name another file with --out")
     return path
+
+
+def _see_free(path: Path, folder: Path, *, force: bool) -> None:
+    if belongs_to(path, folder):
+        raise EpisodeError(
+            f"{path} is what the episode consists of, and would be lost; name another file with "
+            "--out"
+        )
+    if not (force or not path.exists() or path.is_symlink() or _is_report(path)):
+        raise EpisodeError(
+            f"{path} is there, and is no report of an episode; name another file with --out, or "
+            "write over it with --force"
+        )
+
+
+def _is_report(path: Path) -> bool:
+    """Whether a file is a page that was written here, by its head."""
+    try:
+        with opened_plain(path) as descriptor, open(descriptor, "rb", closefd=False) as file:
+            first, _, titled = (file.readline(_LONGEST).rstrip() for _ in range(3))
+    except OSError:
+        return False
+    return first == _FIRST and titled.endswith(_TITLE)
 
 
 def render_report(events: list[Event], folder: Path) -> str:

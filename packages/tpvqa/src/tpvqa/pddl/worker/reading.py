@@ -64,6 +64,7 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
     found = beyond(blocks["domain"])
     if found is not None:
         raise ReadingError(found[0], "domain", found[1])
+    _check_things(blocks)
     try:
         unsure = taken_out(blocks["problem"])
     except UnsureError as error:
@@ -117,6 +118,20 @@ def _check_kind(part: str, block: Block) -> None:
                 part,
                 line_of(kinds[kinds.index(":goal")]),
             )
+
+
+def _check_things(blocks: Mapping[str, Block]) -> None:
+    """No object is called as variables are: it would be one wherever it stands in a condition."""
+    for part, kind in (("domain", ":constants"), ("problem", ":objects")):
+        for section in sections(blocks[part], kind):
+            for word in section[1:]:
+                if isinstance(word, str) and word.startswith("?"):
+                    raise ReadingError(
+                        f"an object is called {shown(word)}, as only variables are; take a name "
+                        "without '?'",
+                        part,
+                        line_of(word),
+                    )
 
 
 def _function_names(domain: Block) -> set[str]:

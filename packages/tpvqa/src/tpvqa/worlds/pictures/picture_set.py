@@ -33,6 +33,13 @@ class PictureSet(Generic[P]):
         manifest = self.manifest
         return manifest.facts or sorted({fact for each in manifest.pictures for fact in each.seen})
 
+    @property
+    def paths(self) -> Sequence[Path]:
+        """Every file of the set: its manifest, then the pictures."""
+        return [
+            self.folder / name for name in (MANIFEST, *(p.file for p in self.manifest.pictures))
+        ]
+
     def read(self, picture: P) -> bytes:
         """The encoded picture.
 
