@@ -82,7 +82,6 @@ class EpisodeView:
         self._state, self._worth = TrialState(), AnswersWorth()
         self._headed: tuple[PlanMade | None, int, int] | None = None
         self._told = False
-        self._felt = ""
         self._gathered: dict[str, list[_Told]] = {}
         wanted = console.is_terminal if live is None else live
         self._live = Live(console=console, auto_refresh=False, transient=True) if wanted else None
@@ -270,10 +269,8 @@ class EpisodeView:
             self._line(f"  [dim italic]in truth: {marked('; '.join(parts))}[/]")
 
     def _show_sensed(self, event: Observed | Acted) -> None:
-        told = self._sensed.of(event.facts)
-        same = isinstance(event, Observed) and told == self._felt
-        self._felt = told
-        if told and not same:
+        told = self._sensed.of(event.facts, acted=isinstance(event, Acted))
+        if told:
             self._line(f"  [dim]the robot senses: {marked(told)}[/]")
 
     def _show_end(self, event: Ended) -> None:
