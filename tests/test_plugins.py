@@ -117,8 +117,11 @@ def test_the_truth_is_withheld_from_all_that_do_not_declare_what_they_are(
 
 def test_arguments_that_a_plug_in_does_not_take_are_an_error(install: Install) -> None:
     install("colours", COLOURS, "curious = colours:Curious", "demanding = colours:Demanding")
-    with pytest.raises(PluginError, match="takes no arguments"):
+    with pytest.raises(PluginError, match="takes no arguments") as raised:
         make(Kind.VLM, "curious:very")
+    assert "give Curious a class method from_spec(arguments, …)" in str(raised.value).replace(
+        "colours.", ""
+    )
     with pytest.raises(PluginError, match="camera"):
         make(Kind.VLM, "demanding", seed=1)
     assert make(Kind.VLM, "demanding", camera="front").camera == "front"

@@ -1,6 +1,7 @@
 """`tpvqa calibrate`, as a user types it."""
 
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -90,6 +91,18 @@ def test_from_recorded_episodes(tpvqa: Run) -> None:
     code, _, err = tpvqa("calibrate", "e1", "--vlm", "embedded", "--force")
     assert code == 2
     assert "oracle:0.8 answered in it, not embedded" in err
+
+
+def test_labels_that_all_say_the_same_are_told_and_kept(tpvqa: Run) -> None:
+    words = ["--world", "symbolic", "--vlm", "oracle:0.8", "--monitor", "effectvqa"]
+    tpvqa("run", "eat_apple", *words, "--failure", 0, "--out", "e1")
+    code, out, err = tpvqa("calibrate", "e1")
+    assert code == 0, err
+    assert re.search(r"no label says (yes|no) of .* Next, label looks", out.replace("\n", " "))
+    assert any(
+        each.startswith("no label says")
+        for each in Calibration.load(Path("calibration.json")).notices
+    )
 
 
 def test_recorded_episodes_say_how_often_actions_fail(tpvqa: Run) -> None:

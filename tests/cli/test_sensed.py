@@ -285,3 +285,20 @@ def test_a_further_look_that_senses_the_same_is_no_news(tpvqa: Run, tmp_path: Pa
     assert "the robot senses" in told
     said = [line for line in told.splitlines() if "Is " not in line]
     assert not [a for a, b in pairwise(said) if a == b and "the robot senses" in a]
+
+
+def test_a_look_tells_what_the_action_did_not(tpvqa: Run, tmp_path: Path) -> None:
+    rules = tmp_path / "both.yaml"
+    rules.write_text(
+        f'{NOTHING}\nsensed:\n  - {{fact: "(contaminated ?d)", at: [action, look], right: 0.9}}\n'
+        '  - {fact: "(open ?d)", at: action, right: 0.9}\n'
+    )
+    told = tpvqa("run", *TRIAL, "--world-file", rules, "--vlm", "oracle:0.7", "--seed", 4)[1]
+    said = [line for line in told.splitlines() if "Is " not in line and "look " not in line]
+    found = [
+        (set(a.partition(": ")[2].split(", ")), set(b.partition(": ")[2].split(", ")))
+        for a, b in pairwise(said)
+        if "the robot senses" in a and "the robot senses" in b
+    ]
+    assert "the robot senses" in told
+    assert not any(after & before for before, after in found)

@@ -91,3 +91,14 @@ def test_a_condition_of_a_bench_says_what_is_known() -> None:
     assert Cell("build_tower", "belief", "oracle", "symbolic").config(TrialConfig(), 0).start == (
         TrialConfig().start
     )
+
+
+def test_one_fact_that_is_open_is_said_as_one(tpvqa: Run, tmp_path: Path) -> None:
+    domain = "(define (domain d) (:predicates (lit) (off)) (:action on :effect (lit)))"
+    start = "(:init (unknown (off)))"
+    problem = f"(define (problem p) (:domain d) {start} (:goal (lit)))"
+    for name, text in (("domain", domain), ("problem", problem)):
+        (tmp_path / f"{name}.pddl").write_text(text)
+    code, _, err = tpvqa("plan", tmp_path / "domain.pddl", tmp_path / "problem.pddl")
+    assert code == 0, err
+    assert "the problem leaves 1 fact open" in err

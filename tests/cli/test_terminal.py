@@ -186,7 +186,32 @@ def test_what_was_sensed_is_not_cut_amid_a_phrase() -> None:
         "windlass in hand 0.93 → 0.02 as sensed and after two noes, which lay down the windlass at "
         "the top gate (step 2) needs; on to push open the top gate (step 3), which can be done"
     )
-    assert brief(reason, 84) == "windlass in hand 0.93 → 0.02 as sensed; …"
+    said = "windlass in hand 0.93 → 0.02 as sensed; on to push open the top gate (step 3)"
+    assert brief(reason, 84) == said
+
+
+@pytest.mark.parametrize(
+    ("reason", "said"),
+    [
+        (
+            "safelight lit 0.50 → 0.05 after two noes, which load the film into the reel (step 4) "
+            "needs; on to mix the developer (step 6), which can be done already: jug clean (0.98)",
+            "safelight lit 0.50 → 0.05 after two noes; on to mix the developer (step 6)",
+        ),
+        (
+            "jobo capped 0.00; robot holding the developer in its left gripper 0.00 after a no; "
+            "back to cap the jobo (step 5): developer lying in the wet room (1.00)",
+            "jobo capped 0.00; …; back to cap the jobo (step 5)",
+        ),
+        (
+            "the picture of the projector on the wall of the dry room sharp and bright 0.02; "
+            "find the TV again; asked what is known to see what answers are worth (roll dry 1.00)",
+            "…; find the TV again; …",
+        ),
+    ],
+)
+def test_what_is_done_next_is_never_left_out(reason: str, said: str) -> None:
+    assert brief(reason, 76) == said
 
 
 def test_the_whole_reason_is_there_on_request_and_wraps(tpvqa: Run) -> None:

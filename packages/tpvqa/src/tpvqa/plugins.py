@@ -267,7 +267,8 @@ def _construct(
     if from_spec is None and arguments:
         raise PluginError(
             f"The {kind.value} {name!r} takes no arguments, but {arguments!r} was given. "
-            f"Write {name!r} alone."
+            f"Write {name!r} alone, or give {_class_name(target)} a class method "
+            "from_spec(arguments, …): it receives what follows the colon."
         )
     function, given = (target, ()) if from_spec is None else (from_spec, (arguments,))
     try:

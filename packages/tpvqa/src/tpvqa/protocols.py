@@ -115,5 +115,7 @@ def called_at(where: str, call: Callable[[], T], *, then: str = "Mend it") -> T:
 
 def short(value: object) -> str:
     """A value for a message, with its type."""
+    if value is None:
+        return "None"
     text = repr(value)
     return f"{type(value).__name__} {text if len(text) <= 60 else text[:57] + '…'}"

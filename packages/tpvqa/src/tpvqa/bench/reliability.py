@@ -20,8 +20,16 @@ from tpvqa.vlm.metrics import calibration_error
 BINS = 10
 _FEW = 10
 """Answers that tell nothing yet."""
+_CHANCE = 0.1
+"""How much more often yes is to be said where it is right, for answers to tell something."""
 _WORSE = 0.02
 """Of the calibration error: what a calibration may lose by chance."""
+_NAMED = 3
+_WITHOUT = "do without this calibration"
+_WITHOUT_BUT = (
+    "weigh what is lost without this calibration: its answers are better as the VLM says them, its "
+    "counted faults and what sensors and reports are worth still help, and are used with it alone"
+)
 BEFORE, AFTER = "#d55e00", "#0072b2"
 
 
@@ -62,11 +70,34 @@ def lines(
     return [_line(*kind, every, judged) for kind in kinds] + [_line(None, None, every, judged)]
 
 
-def doubts(whole: Line) -> list[str]:
+def one_sided(table: Sequence[Line]) -> list[str]:
+    """Of which predicates labels say yes alone, or no alone, in sentences, and what to label.
+
+    Args:
+        table: As `lines` gives it.
+    """
+    said = []
+    for lacking, rate in (("no", "yes_if_false"), ("yes", "yes_if_true")):
+        counted = [each for each in table if each.answers]
+        told = {each.predicate for each in counted if getattr(each, rate) is not None}
+        untold = dict.fromkeys(each.predicate for each in counted if each.predicate not in told)
+        names = ["all questions"] if None in untold else [each for each in untold if each]
+        if names:
+            more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+            said.append(
+                f"no label says {lacking} of {', '.join(names[:_NAMED])}{more}: what the VLM "
+                f"answers where {lacking} is right is not known. Next, label looks at which "
+                f"{lacking} is right, as before and after the action that changes it."
+            )
+    return said
+
+
+def doubts(whole: Line, *, besides: bool = False) -> list[str]:
     """Why a calibration may do harm, in sentences; none where nothing speaks for that.
 
     Args:
         whole: The line for all answers.
+        besides: Whether it also tells of faults, sensors or skills.
     """
     if whole.answers < _FEW:
         return []
@@ -77,12 +108,25 @@ def doubts(whole: Line) -> list[str]:
             f"({yes_if_true:.2f}): the answers are taken to tell nothing. See that labels and "
             "questions are right, and that yes and no were not exchanged."
         ]
+    if yes_if_true is not None and yes_if_false is not None:
+        if yes_if_true - yes_if_false < _CHANCE:
+            return [
+                f"the answers are no better than chance: yes was said in {yes_if_true:.2f} where "
+                f"it was right, and in {yes_if_false:.2f} where no was. Label more looks of what "
+                "the pictures show well, both where yes and where no is right; where it stays so, "
+                "ask in other words, or another VLM."
+            ]
+    elif whole.accuracy is not None and whole.accuracy < 0.5 + _CHANCE:
+        return [
+            f"the answers are no better than chance: {whole.accuracy:.2f} of them are right. "
+            "See that labels and questions are right."
+        ]
     before, after = whole.error_before, whole.error_after
     if before is not None and after is not None and after > before + _WORSE:
         return [
             f"calibrated, the answers are less reliable than as the VLM says them ({after:.3f} for "
             f"{before:.3f}): {whole.answers} answers are too few, or what is said to be right is "
-            "not. Give more, or do without this calibration."
+            f"not. Give more, or {_WITHOUT_BUT if besides else _WITHOUT}."
         ]
     return []
 

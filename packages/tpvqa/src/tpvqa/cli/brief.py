@@ -4,13 +4,16 @@ import re
 
 _LEFT_OUT = (
     r", which [^;]* needs(?=;|$)",
+    r"(?:, which can be done(?: already)?(?:: [^;]*)?|(?<=\)): [^;]*)(?=;|$)",
     r"(?: and)? after (?:an?|two|three|\d+) [^;]*?(?=;|$)",
     r" \(not worth asking\)(?=;|$)",
 )
-"""What rests on a fact, what was answered about it, and why nothing was: told elsewhere in the same
-lines, or of little weight."""
+"""What rests on a fact, why an action can be done, what was answered about the fact, and why
+nothing was: told elsewhere in the same lines, or of little weight."""
 _ENDS = re.compile(r"\bthe goal holds with\b")
 """What a trial is ended for: all else explains it."""
+_DOES = re.compile(r"^(?:on|back) to | again$")
+"""What is done next."""
 MORE = "…"
 
 
@@ -20,7 +23,7 @@ def brief(reason: str, room: int) -> str:
     >>> brief("cup in hand 0.10 → 0.02 after a no, which drink (step 4) needs; back to step 2", 50)
     'cup in hand 0.10 → 0.02 after a no; back to step 2'
     >>> brief("cup in hand 0.10 → 0.02 after a no, which drink (step 4) needs; back to step 2", 30)
-    'cup in hand 0.10 → 0.02; …'
+    '…; back to step 2'
     >>> brief("cup in hand 0.02; tea hot 0.10; no plan is left, and the goal holds with 0.01", 67)
     'cup in hand 0.02; …; no plan is left, and the goal holds with 0.01'
 
@@ -38,6 +41,9 @@ def brief(reason: str, room: int) -> str:
     end = next((at for at, part in enumerate(parts) if _ENDS.search(part)), None)
     if end is not None:
         return _ending(parts[:end], parts[end:], room)
+    does = next((at for at, part in enumerate(parts) if _DOES.search(part)), None)
+    if does is not None:
+        return _doing(parts[:does], parts[does:], room)
     said, *rest = parts
     for part in rest:
         if len(f"{said}; {part}; {MORE}") > room:
@@ -52,6 +58,13 @@ def _ending(before: list[str], ending: list[str], room: int) -> str:
     end, *behind = ending
     said = _fitting(before[:1], before[1:], [end, *_more(behind)], room)
     return "; ".join(_fitting([*said, end], behind, [], room))
+
+
+def _doing(before: list[str], doing: list[str], room: int) -> str:
+    """What is done next, behind what of its reasons fits."""
+    does, *behind = doing
+    said = _fitting([], before, [does, *_more(behind)], room)
+    return _cut("; ".join(_fitting([*said, does], behind, [], room)), room)
 
 
 def _fitting(said: list[str], parts: list[str], after: list[str], room: int) -> list[str]:

@@ -143,7 +143,7 @@ def calibrate(
     from tpvqa.bench.labelled_trials import label_trials
     from tpvqa.bench.own_task import own_tasks
     from tpvqa.bench.recorded_faults import experience_from
-    from tpvqa.bench.reliability import doubts, lines
+    from tpvqa.bench.reliability import doubts, lines, one_sided
     from tpvqa.defaults import default_vlm
     from tpvqa.errors import TpvqaError
     from tpvqa.vlm.making import in_full
@@ -211,7 +211,9 @@ def calibrate(
         calibration = fit(rows, name, chosen_looks=chosen_looks).hearing(heard)
     judged = held_out(rows, name, chosen_looks=chosen_looks)
     table = lines(rows, judged, chosen_looks=chosen_looks)
-    told = (*calibration.notices, *doubts(table[-1]))
+    besides = bool(calibration.faults or calibration.sensors or calibration.skills)
+    doubted = (*one_sided(table), *doubts(table[-1], besides=besides))
+    told = (*calibration.notices, *doubted)
     calibration = calibration.model_copy(update={"notices": told})
     calibration.save(out)
     if learned is not None and experience is not None:

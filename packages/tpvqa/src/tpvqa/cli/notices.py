@@ -82,9 +82,10 @@ def about_start(task: "Task", priors: "Priors | None" = None, monitor: object = 
 
     open_facts = len(task.left_open)
     if monitor is None and open_facts:
+        facts = "1 fact" if open_facts == 1 else f"{open_facts} facts"
         return [
-            f"the problem leaves {open_facts} facts open; the plan is one from a state that may be "
-            "the case (--from-state names another)"
+            f"the problem leaves {facts} open; the plan is one from a state that may be the case "
+            "(--from-state names another)"
         ]
     told = priors is not None and (priors.opens or priors.elsewhere)
     if isinstance(monitor, LooksFirst) or monitor is None or not (open_facts or told):

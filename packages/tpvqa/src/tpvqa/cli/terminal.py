@@ -82,7 +82,6 @@ class EpisodeView:
         self._state, self._worth = TrialState(), AnswersWorth()
         self._headed: tuple[PlanMade | None, int, int] | None = None
         self._told = False
-        self._felt = ""
         self._gathered: dict[str, list[_Told]] = {}
         wanted = console.is_terminal if live is None else live
         self._live = Live(console=console, auto_refresh=False, transient=True) if wanted else None
@@ -270,10 +269,8 @@ class EpisodeView:
             self._line(f"  [dim italic]in truth: {marked('; '.join(parts))}[/]")
 
     def _show_sensed(self, event: Observed | Acted) -> None:
-        told = self._sensed.of(event.facts)
-        same = isinstance(event, Observed) and told == self._felt
-        self._felt = told
-        if told and not same:
+        told = self._sensed.of(event.facts, acted=isinstance(event, Acted))
+        if told:
             self._line(f"  [dim]the robot senses: {marked(told)}[/]")
 
     def _show_end(self, event: Ended) -> None:
@@ -350,7 +347,7 @@ def _answers_line(told: Sequence[_Told]) -> str:
     more = "…" if len(replies) > _MARKS else ""
     ahead = sum(1 if each.agrees else -1 for each in told if each.agrees is not None)
     mark = _mark(told[0] if not ahead else told[0]._replace(agrees=ahead > 0))
-    return f"  {mark} {marked(question.text)} {counts}  [dim]{marks}{more}[/]"
+    return f"  {mark} {marked(question.text)} {counts}  [dim]{marks}{more}[/]{_unseen(told[0])}"
 
 
 def _answer_line(told: _Told) -> str:
@@ -361,11 +358,16 @@ def _answer_line(told: _Told) -> str:
     else:
         filled = round(answer.p_yes * _BAR)
         chance = f" [{style}]{'▰' * filled}[/][dim]{'▱' * (_BAR - filled)}[/] {answer.p_yes:.2f}"
-    abstains = answer.reply is Reply.UNKNOWN or answer.source == "camera"
-    why = f" [dim]{marked(answer.text)}[/]" if abstains else ""
+    why = f" [dim]{marked(answer.text)}[/]" if answer.reply is Reply.UNKNOWN else _unseen(told)
     if answer.source == "person":
         why = f"{why} [dim](you)[/]"
     return f"  {_mark(told)} {marked(question.text)} [{style}]{answer.reply}[/]{chance}{why}"
+
+
+def _unseen(told: _Told) -> str:
+    """Why nobody was asked, where the look shows nothing."""
+    answer = told.exchange.answer
+    return f" [dim]{marked(answer.text)}[/]" if answer.source == "camera" else ""
 
 
 def _mark(told: _Told) -> str:

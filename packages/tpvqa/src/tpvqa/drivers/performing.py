@@ -1,13 +1,22 @@
 """Doing what a trial asks for, with real planners, worlds and VLMs."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from threading import Event as Flag
 from typing import Any
 
 from tpvqa.drivers.freshness import Freshness
 from tpvqa.drivers.halting import unless_halted
-from tpvqa.drivers.plugged import MALFORMED, THEN, called, malformed, planning_result
+from tpvqa.drivers.looked import NO_PICTURE, declared
+from tpvqa.drivers.plugged import (
+    MALFORMED,
+    THEN,
+    called,
+    malformed,
+    planning_result,
+    views_of,
+)
 from tpvqa.drivers.sensed import checked
 from tpvqa.errors import PlannerError
 from tpvqa.events.events import Acted, Answered, FrameRecord, Observed, PlanMade, Waited
@@ -28,12 +37,12 @@ from tpvqa.planning.without import plan_without
 from tpvqa.questions import Question, QuestionBook
 from tpvqa.trial import Act, Pending, Wait
 from tpvqa.vlm import VLM, Answer, Reply
-from tpvqa.vlm.capabilities import metered, sees_before
+from tpvqa.vlm.capabilities import is_noise_model, metered, sees_before
 from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.vlm.usage import Usage
 from tpvqa.worlds import Execution, Report, Restorable, World
-from tpvqa.worlds.capabilities import Bounded, Halting, Telling
+from tpvqa.worlds.capabilities import Bounded, Halting, Telling, has_pictures
 from tpvqa.worlds.goal import goal_holds
 from tpvqa.worlds.outcome import Outcome
 
@@ -141,7 +150,8 @@ class Performer:
         seen = called(world, "observe", Observation, view)
         facts = checked(seen.facts, self.parts.task, world, "observe")
         try:
-            seen = replace(seen, look=number, frames=_named(seen.frames, number), facts=facts)
+            frames = declared(seen.frames, self._views, number)
+            seen = replace(seen, look=number, frames=frames, facts=facts)
             observed = Observed(
                 look=number,
                 view=view,
@@ -157,6 +167,16 @@ class Performer:
         if not during:
             self._freshness.looked(seen)
         return Performed(seen, observed)
+
+    @cached_property
+    def _views(self) -> tuple[str, ...]:
+        return views_of(self.parts.world)
+
+    @property
+    def _needs_a_picture(self) -> bool:
+        """Whether there is a camera that the VLM would look through."""
+        seen = has_pictures(self.parts.world) and bool(self._views)
+        return seen and not is_noise_model(self.parts.vlm)
 
     def _refused(self, action: Action) -> str:
         return called(self.parts.world, "refuses", str, action)
@@ -199,6 +219,8 @@ class Performer:
         why = ""
         if seen is not None:
             seen, why = seen_by(self.parts.vlm, seen, self._freshness.faults)
+            if not seen.frames and self._needs_a_picture:
+                why = NO_PICTURE
             seen = replace(seen, before=self._earlier(seen.before))
         if self._metered is not None:
             self._counted = self._metered.usage
@@ -291,8 +313,3 @@ def _less(one: float | None, other: float | None) -> float | None:
     """The lower of two limits, either of which may be none."""
     given = [each for each in (one, other) if each is not None]
     return min(given, default=None)
-
-
-def _named(frames: Mapping[str, Frame], look: int) -> dict[str, Frame]:
-    """The frames of a look, each with the name of the file that it is saved as."""
-    return {view: frame.named(f"{look:04d}-{frame.view}") for view, frame in frames.items()}

@@ -36,7 +36,7 @@ def called(part: object, method: str, wanted: type[T], /, *given: object, **name
     where = _where(part, method)
     result = called_at(where, lambda: getattr(part, method)(*given, **named), then=THEN)
     if not isinstance(result, wanted):
-        raise PluginError(f"{where} has to return {wanted.__name__}, not {short(result)}")
+        raise PluginError(f"{where} has to return {wanted.__name__}, not {short(result)}. {THEN}")
     return result
 
 
@@ -104,7 +104,7 @@ def malformed(part: object, method: str, error: Exception) -> PluginError:
         said = f"{'.'.join(map(str, first['loc']))}: {first['msg']}"
     else:
         said = f"{type(error).__name__}: {error}"
-    return PluginError(f"{_where(part, method)} returned what cannot be kept: {said}")
+    return PluginError(f"{_where(part, method)} returned what cannot be kept: {said}. {THEN}")
 
 
 MALFORMED = (ValidationError, AttributeError, KeyError, TypeError, ValueError)

@@ -18,13 +18,23 @@ class SensedNews:
     def __init__(self, say: Callable[[str], str]):
         self._say = say
         self._last: dict[str, float] = {}
+        self._since: dict[str, float] = {}
 
-    def of(self, facts: Sequence[SensedRecord]) -> str:
+    def of(self, facts: Sequence[SensedRecord], *, acted: bool = True) -> str:
         """The readings in one line, of many those that differ from the last ones of their facts;
-        empty where there is nothing to tell."""
-        new = list(facts)
+        empty where there is nothing to tell.
+
+        Args:
+            facts: The readings.
+            acted: Whether they are of an action's end; of a look, what was read since then is no
+                news.
+        """
+        if acted:
+            self._since.clear()
+        new = [each for each in facts if self._since.get(each.atom) != each.probability]
+        self._since.update((each.atom, each.probability) for each in facts)
         if len(new) > MOST:
-            new = [each for each in facts if self._last.get(each.atom) != each.probability]
+            new = [each for each in new if self._last.get(each.atom) != each.probability]
         self._last.update((each.atom, each.probability) for each in facts)
         more = [f"{len(new) - MOST} more"] if len(new) > MOST else []
         return ", ".join([*map(self._said, new[:MOST]), *more])

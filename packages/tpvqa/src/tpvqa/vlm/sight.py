@@ -6,7 +6,7 @@ see*, with the reason as its text.
 
 A picture is looked at as 32 × 32 patches, the mean colour of each. It shows nothing where
 
-- it is damaged; what is no JPEG, PNG or WebP at all is left to the VLM;
+- it is empty, or damaged; what is no JPEG, PNG or WebP at all is left to the VLM;
 - the patches are all alike: it is black, white, or of one colour, whatever noise a sensor adds;
 - bright patches do not lie beside bright ones: the correlation of neighbours is about 0, as in
   noise. In photographs and rendered pictures it is .5 or more, by night, too.
@@ -101,6 +101,8 @@ def _fault(data: bytes) -> str:
     import numpy as np
     from PIL import Image
 
+    if not data:
+        return "the picture is empty: it has 0 bytes"
     try:
         picture_type(data)
     except PictureError:
