@@ -60,7 +60,7 @@ SAID = {
     "words": "text as a text, not 5",
     "source": "source as a text",
     "texts": "(str)",
-    "none": "has to return list, not NoneType None",
+    "none": "has to return list, not None",
     "reply": "has to give a Reply, and gave 'yes'",
     "text": "each question in its place",
     "breaks": "broke: ValueError: out of order",
