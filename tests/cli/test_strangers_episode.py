@@ -92,6 +92,7 @@ def test_the_key_is_not_sent_where_the_log_says(
         ({"config__world__pictures": "/tmp"}, ["--pictures", "/tmp"]),
         ({"config__world__simulator": "a/b"}, ["--simulator", "a/b"]),
         ({"vlm": "embedded:/tmp/weights"}, ["--vlm", "embedded:/tmp/weights"]),
+        ({"vlm": "recorded:/etc/x.csv:m"}, ["--vlm", "recorded:/etc/x.csv:m"]),
         ({"config__options": {"x": "$(id)"}}, ["--option", "x=$(id)"]),
         ({"config__options": {"x": ["a", 1]}}, ["--option", 'x=["a", 1]']),
         ({"config__options": {"n": 3221225985}}, ["--option", "n=3221225985"]),

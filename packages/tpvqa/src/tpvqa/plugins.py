@@ -68,6 +68,11 @@ class PlainArguments:
     """Declares that what follows a plug-in's name in a specification is words and numbers: no path,
     no address, no code. So it may come from the log of an episode that somebody else made."""
 
+    @classmethod
+    def plain(cls, arguments: str) -> bool:
+        """Whether that is so of these; a plug-in that takes files, too, says of which it is not."""
+        return True
+
 
 def is_plain(kind: "Kind", spec: str) -> bool:
     """Whether a specification may come from a stranger: its arguments are numbers (`tpvqa:5`,
@@ -78,7 +83,8 @@ def is_plain(kind: "Kind", spec: str) -> bool:
     """
     name, arguments = split(spec)
     target = load(kind, name)
-    if not arguments or issubclass(class_of(target), PlainArguments):
+    plugin = class_of(target)
+    if not arguments or (issubclass(plugin, PlainArguments) and plugin.plain(arguments)):
         return True
     return all(map(_NUMBER.fullmatch, re.split("[:,]", arguments)))
 

@@ -112,6 +112,11 @@ class Recorded(NoiseModel, FactsOnly, PlainArguments, SaidInFull):
         )
 
     @classmethod
+    def plain(cls, arguments: str) -> bool:
+        """Not where it names a file."""
+        return not RecordedSpec.names_table(arguments)
+
+    @classmethod
     def in_full(cls, arguments: str) -> str:
         """Says that errors last, where nothing is said."""
         return str(RecordedSpec.parse(arguments).with_errors(Errors.LASTING))
