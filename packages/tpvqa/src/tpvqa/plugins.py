@@ -39,7 +39,6 @@ from tpvqa.protocols import lacking
 
 _TRUTH = frozenset({"truth", "simulation"})
 
-
 PROTOCOL = 2
 """Of what tpvqa expects of plug-ins and gives them. 1 was that of tpvqa 0.1."""
 
