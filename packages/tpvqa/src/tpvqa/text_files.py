@@ -51,7 +51,15 @@ def read_text(
     Raises:
         PlacedError: It cannot be read, is larger, or is no such text; with the line.
     """
-    data = read_bytes(path, error, what=what, largest=largest)
+    return decoded(read_bytes(path, error, what=what, largest=largest), error, path)
+
+
+def decoded(data: bytes, error: type[PlacedError], path: Path) -> str:
+    """The text of what a file held, in UTF-8.
+
+    Raises:
+        PlacedError: It is no such text; with the line.
+    """
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as strange:

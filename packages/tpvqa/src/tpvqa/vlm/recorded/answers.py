@@ -84,7 +84,7 @@ def recordings(model: str, environment: str, half: int | None = None) -> Recordi
     return counted(model, environment, rows, half)
 
 
-def counted(model: str, environment: str, rows: "Iterable[Row]", half: int | None) -> Recordings:
+def counted(model: str, environment: str, rows: Iterable["Row"], half: int | None) -> Recordings:
     """Recorded answers of one model in one environment, by what was asked and what was true."""
     counts: dict[Key, dict[tuple[bool, float | None], int]] = {}
     sizes: dict[Key, list[int]] = {}

@@ -10,7 +10,7 @@ from io import BytesIO, StringIO
 from pathlib import Path
 
 from tpvqa.errors import RecordError, UnknownNameError, cut, shown
-from tpvqa.text_files import read_bytes
+from tpvqa.text_files import decoded, read_bytes
 from tpvqa.vlm.recorded.answers import Recordings, Row, counted, half_of
 
 LARGEST = 256 << 20
@@ -186,14 +186,7 @@ def _text(path: Path) -> str:
             raise RecordError(f"cannot be unpacked ({error})", file=path) from error
         if len(data) > LARGEST:
             raise RecordError(f"is larger than {LARGEST >> 20} MB when unpacked", file=path)
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as strange:
-        raise RecordError(
-            f"the byte 0x{data[strange.start]:02x} is not UTF-8 text; save it as UTF-8",
-            file=path,
-            line=data.count(b"\n", 0, strange.start) + 1,
-        ) from strange
+    return decoded(data, RecordError, path)
 
 
 def _listed(names: Sequence[str]) -> str:
