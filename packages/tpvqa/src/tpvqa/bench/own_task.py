@@ -13,9 +13,9 @@ from tpvqa.errors import BenchError, PlacedError
 from tpvqa.files import resolved
 from tpvqa.pddl.programs.loading import task_name
 from tpvqa.tasks import PROGRAM, QUESTIONS, WORLD, TaskFiles, beside, is_program, shipped_tasks
+from tpvqa.tasks.folder import DOMAIN, problems_in
 from tpvqa.text_files import read_text
 
-DOMAIN = "domain.pddl"
 _COMMENT = re.compile(r";[^\n]*")
 _IS_DOMAIN = re.compile(r"\(\s*define\s*\(\s*domain\b", re.IGNORECASE)
 _NAME = re.compile(r"\(\s*define\s*\(\s*problem\s+([^\s()]+)", re.IGNORECASE)
@@ -141,10 +141,7 @@ def _expanded(problems: Sequence[Path], domain: Path | None) -> Iterator[Path]:
         if not path.is_dir():
             yield path
             continue
-        domains = {path / DOMAIN} if domain is None else {path / DOMAIN, domain}
-        known = {resolved(each) for each in domains}
-        files = [*path.glob("*.pddl"), *(path.glob(f"*{PROGRAM}") if domain is None else ())]
-        inside = [each for each in sorted(files) if resolved(each) not in known]
+        inside = problems_in(path, () if domain is None else (domain,), programs=domain is None)
         if not inside:
             raise BenchError(
                 f"{path} holds no problem: *.pddl besides the domain; nor *{PROGRAM} alone"

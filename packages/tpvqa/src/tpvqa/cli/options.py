@@ -79,7 +79,8 @@ def trial_layers(
 
     Args:
         layers: Of a command with `trial_options`.
-        task: A shipped task, or one's own domain where a problem follows.
+        task: A shipped task, a folder that holds one's own domain and problem, or one's own domain
+            where a problem follows.
         problem: One's own problem.
 
     Returns:
@@ -88,7 +89,8 @@ def trial_layers(
     Raises:
         TpvqaError: A task is given in two ways.
     """
-    from tpvqa.tasks import is_program
+    from tpvqa.tasks import is_program, shipped_tasks
+    from tpvqa.tasks.folder import only_task
 
     files = {("task", "domain"), ("task", "problem")}
     given = files & {key for layer in layers for key in layer.values}
@@ -105,7 +107,13 @@ def trial_layers(
             return _with_own(layers, own)
         if task.lower().endswith(".pddl"):
             raise TpvqaError(f"{task} is a domain or a problem alone; name both, the domain first.")
-        own = {("task", "name"): task}
+        if task not in {files.name for files in shipped_tasks()} and Path(task).is_dir():
+            paths = zip(
+                (("task", "domain"), ("task", "problem")), only_task(Path(task)), strict=True
+            )
+            own = {key: _resolved(path) for key, path in paths}
+        else:
+            own = {("task", "name"): task}
     return _with_own(layers, own)
 
 

@@ -33,7 +33,8 @@ def register(app: typer.Typer) -> None:
 Task = Annotated[
     str | None,
     typer.Argument(
-        help="A shipped task (see `tpvqa tasks`), your own domain file, or a logic program (.lp)."
+        help="A shipped task (see `tpvqa tasks`), a folder with your own, your own domain file, or "
+        "a logic program (.lp)."
     ),
 ]
 Problem = Annotated[
