@@ -17,7 +17,7 @@ class Group(NamedTuple):
     """Facts of which at most one holds.
 
     Attributes:
-        atoms: They, in alphabetical order.
+        atoms: The facts, in alphabetical order.
         needed: Whether one of them must hold.
     """
 

@@ -25,7 +25,7 @@ class Variable(NamedTuple):
     """Facts of which at most one holds, as one choice.
 
     Attributes:
-        atoms: They. Every fact lies in one variable.
+        atoms: The facts. Each lies in one variable.
         needed: Whether one of them must hold.
     """
 

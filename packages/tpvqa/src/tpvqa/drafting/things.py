@@ -40,11 +40,6 @@ class Label:
     article: bool = True
     plural: bool = False
 
-    @property
-    def phrase(self) -> str:
-        """As it stands in a sentence."""
-        return f"the {self.name}" if self.article else self.name
-
 
 class Things:
     """The objects of one task.

@@ -32,12 +32,12 @@ Views = Callable[[FactQuestion], Sequence[str | None]]
 
 @dataclass(frozen=True, slots=True)
 class Errand:
-    """Something that is brought about for the sake of a look.
+    """An information-gathering subgoal: something that is brought about for the sake of a look.
 
     Attributes:
         ways: The ways there.
         why: What is to be looked at, in words.
-        facts: It.
+        facts: What is looked at.
         needed: From where it is shown.
     """
 

@@ -53,7 +53,7 @@ def least_known(
     """The question about some facts that is least settled.
 
     Args:
-        atoms: They; the other arguments as those of `unknown`.
+        atoms: The facts; the other arguments as those of `unknown`.
         at_first: What has not been asked about since the last action is, until it is surer than
             this.
     """
