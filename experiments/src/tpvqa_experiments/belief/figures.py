@@ -28,8 +28,8 @@ from tpvqa_experiments.belief.parts import (
 from tpvqa_experiments.belief.resampling import difference, ratio
 from tpvqa_experiments.belief.results import BeliefResults
 
-MOST = 20_000
-"""Questions at the right end of the axis."""
+BEYOND = 1.5
+"""How far the axis goes beyond the most questions that are shown."""
 INK = "#0b4f8a"
 """The belief monitor."""
 LEARNS, KNOWS = (f"told {vlm.partition(':')[2]}" for vlm in (BELIEVED, WRONG_VLM))
@@ -117,9 +117,11 @@ def _small_multiples(
         sharey=True,
         squeeze=False,
     )
-    for line, row in zip(grid, rows, strict=True):
-        for axes, column in zip(line, columns, strict=True):
-            _draw_panel(axes, *panel(row, column))
+    panels = [[panel(row, column) for column in columns] for row in rows]
+    most = BEYOND * max(_questions(each) for line in panels for each in line)
+    for line, row, drawn in zip(grid, rows, panels, strict=True):
+        for axes, each in zip(line, drawn, strict=True):
+            _draw_panel(axes, *each, most)
         line[0].set_ylabel(f"{row}\ncompletion rate")
     for axes, title in zip(grid[0], titles, strict=True):
         axes.set_title(title)
@@ -143,12 +145,17 @@ def _small_multiples(
 
 
 def _draw_panel(
-    axes: Any, curve: Sequence[Sequence[EpisodeRow]], rivals: Mapping[str, Sequence[EpisodeRow]]
+    axes: Any,
+    curve: Sequence[Sequence[EpisodeRow]],
+    rivals: Mapping[str, Sequence[EpisodeRow]],
+    most: float,
 ) -> None:
     axes.set_xscale("symlog", linthresh=10, linscale=0.5)
-    axes.set_xlim(-1, MOST)
+    axes.set_xlim(-1, most)
     axes.set_ylim(-0.03, 1.05)
-    axes.set_xticks([0, 10, 100, 1000, 10_000], ["0", "10", "100", "1k", "10k"])
+    ticks = {0: "0", 10: "10", 100: "100", 1000: "1k", 10_000: "10k"}
+    shown = [each for each in ticks if each <= most]
+    axes.set_xticks(shown, [ticks[each] for each in shown])
     axes.set_xticks([], minor=True)
     axes.set_yticks([0, 0.5, 1], ["0", ".5", "1"])
     axes.set_yticks([0.25, 0.75], minor=True)
@@ -175,7 +182,7 @@ def _draw_panel(
         xs, ys, lows, highs = zip(*points, strict=True)
         if len(points) == 1:
             axes.plot([*xs, *xs], [*lows, *highs], color=INK, linewidth=1.2)
-        axes.plot([xs[-1], MOST], [ys[-1]] * 2, color=INK, linewidth=1, linestyle=":")
+        axes.plot([xs[-1], most], [ys[-1]] * 2, color=INK, linewidth=1, linestyle=":")
         # What is linear in questions is not a straight line on this axis.
         between = np.unique([*xs, *np.linspace(xs[0], xs[-1], 500)])
         band = [np.interp(between, xs, edge) for edge in (lows, highs)]
@@ -191,6 +198,12 @@ def _mark(rival: str) -> tuple[str, str, str]:
     plain = rival.removesuffix(":strict")
     marker, colour = MARKS.get(plain) or MARKS.get(split(plain)[0]) or OTHER
     return marker, colour, "white" if strict else colour
+
+
+def _questions(panel: Panel) -> float:
+    """The most that anything in it takes, in the mean; at least 10."""
+    curve, rivals = panel
+    return max([10.0, *(_point(rows)[0] for rows in (*curve, *rivals.values()))])
 
 
 def _point(rows: Sequence[EpisodeRow]) -> tuple[float, float, float, float]:
