@@ -19,6 +19,6 @@ CELLAR = task_from_text(
 
 
 def test_where_the_robot_is_is_told_and_what_an_action_empties_is_not() -> None:
-    told = [each.25:        says: What is wrong, a sentence. for each in not_taken(CELLAR, WorldRules(), "world.yaml")]
+    told = [each.says for each in not_taken(CELLAR, WorldRules(), "world.yaml")]
     assert len(told) == 1
     assert told[0].startswith("?from of go ")
