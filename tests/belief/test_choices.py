@@ -71,6 +71,28 @@ def test_what_was_done_and_promised_nothing_is_not_done_again() -> None:
     assert isfinite(disinfecting())
 
 
+def test_what_was_set_out_for_twice_is_done() -> None:
+    """To open is worth it for a small doubt, to disinfect is not once it is open: without an end
+    the drawer was opened and closed."""
+    model = FaultModel(TASK)
+    belief, plan = Belief(model), (OPEN, DISINFECT, CLOSE)
+    clean = TASK.apply(TASK.apply(TASK.apply(TASK.init, OPEN), DISINFECT), CLOSE)
+    belief.begin([(clean, 0.975), (TASK.init, 0.025)])
+    chooser = Chooser(model, Costs())
+    chooser.ahead.add(AnnotatedPlan(TASK, plan, regress(TASK, plan)))
+
+    def disinfecting() -> float:
+        chooser.acted(belief, OPEN)
+        belief.act(OPEN, Rates(0.0, 0.0, 0.0))
+        table = chooser.table(belief, Rates(0.0, 0.0, 0.0), plan)
+        return float(table.expected[[each.action for each in table.choices].index(DISINFECT)])
+
+    assert disinfecting() == inf
+    chooser.acted(belief, CLOSE)
+    belief.act(CLOSE, Rates(0.0, 0.0, 0.0))
+    assert isfinite(disinfecting())
+
+
 BOXES = task_from_text(
     """(define (domain boxes) (:requirements :strips :typing) (:types thing box)
   (:predicates (in ?x - thing ?b - box) (in_hand ?x - thing) (hand_empty))

@@ -93,6 +93,21 @@ def test_with_nothing_known_it_looks_before_there_is_a_plan(planner: Planner) ->
     assert f"after {sum(len(e.questions) for e in asked)} questions at " in first.reason
 
 
+@pytest.mark.parametrize("vlm", ["recorded:gemma-3-12b", "oracle:0.85:0:0.74"])
+def test_what_asking_settles_no_more_is_not_asked_on_and_on(planner: Planner, vlm: str) -> None:
+    """Errors that last, and a closed fridge, leave too many states to be weighed for good."""
+    _, events = run(
+        planner,
+        "serve_breakfast",
+        vlm=vlm,
+        start=StartConfig(what="unknown"),
+        seed=1,
+    )
+    acting = next(place for place, each in enumerate(events) if isinstance(each, Acting))
+    asked = sum(len(each.questions) for each in events[:acting] if isinstance(each, Asked))
+    assert 100 < asked < 500
+
+
 def test_a_goal_that_may_hold_already_is_looked_into(planner: Planner, tmp_path: Path) -> None:
     (tmp_path / "domain.pddl").write_text(ward.DOMAIN)
     goal = ward.PROBLEM.replace("(treated anna)", "(in pump store)")

@@ -21,6 +21,9 @@ AGAIN_IDLE = 0.1
 """The same of an action that was just done, and of which nothing was expected any more."""
 STILL = 0.02
 """Nothing is expected of what moves less of the belief."""
+COME_FOR = 0.5
+"""Who sets out a second time for what it left undone on arrival does it as long as so much of what
+it was worth is left."""
 FLOOR = 0.1
 """An action is no choice whose preconditions hold with less than this, where it is not done."""
 BARELY = 0.02
@@ -42,6 +45,8 @@ class Doing:
         self._last: Action | None = None
         self._before: Mapping[int, float] = {}
         self._in_vain = False
+        self._come_for: dict[Action, float] = {}
+        self._left = set[Action]()
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers, before the next action."""
@@ -50,6 +55,8 @@ class Doing:
     def acted(self, action: Action, ranked: Ranked) -> None:
         """Note that an action is executed, where joint states have some probabilities."""
         self._last, self._before, self._in_vain = action, dict(ranked), False
+        self._left = (self._left | self._come_for.keys()) - {action}
+        self._come_for = self._purposes(action, ranked)
 
     def predicted(self, after: Mapping[int, float]) -> None:
         """Note where that is expected to have led, before anything was seen of it."""
@@ -69,9 +76,27 @@ class Doing:
             idle = HIDDEN_IDLE if hidden else IDLE
             if self._last and self._model.same_skill(choice.action, self._last, choice.state):
                 idle = AGAIN_IDLE if self._in_vain else idle
+            least = 1 - idle
+            if choice.action in self._left:
+                least = min(least, COME_FOR * self._come_for.get(choice.action, 1.0))
             undone, possible = self._far.does(choice.action, ranked, kinds).T[:2]
-            found[0] = works * undone * possible - (1 - idle)
+            found[0] = works * undone * possible - least
             found[1] = undone * (possible - floor)
+        return found
+
+    def _purposes(self, action: Action, ranked: Ranked) -> dict[Action, float]:
+        """What an action is done for where only improbable joint states want it: what they want
+        next, with their probability."""
+        found = dict[Action, float]()
+        if self._ahead.next(ranked[0][0]) == action:
+            return found
+        for number, weight in ranked:
+            if self._ahead.next(number) != action:
+                continue
+            intended = self._model.outcomes(action)[number].intended
+            then = None if intended is None else self._ahead.next(intended)
+            if then is not None:
+                found[then] = found.get(then, 0.0) + weight
         return found
 
 

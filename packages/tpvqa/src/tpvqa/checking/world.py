@@ -60,7 +60,10 @@ def not_taken(task: Task, rules: WorldRules, into: str) -> Iterator[Finding]:
 
 
 def _where_it_is(task: Task, schema: ActionSchema) -> Iterator[tuple[str, str]]:
-    """Parameters of a fact that exactly one object has, and that the action ends: at(?from)."""
+    """Parameters of a fact that exactly one object has, and that the action ends: at(?from).
+
+    What the action changes otherwise, too, is no place: who racks wine empties one vessel.
+    """
     precondition = schema.precondition
     parts = precondition.parts if isinstance(precondition, Junction) else (precondition,)
     ended = {e.literal.arguments for e in schema.effects if not e.literal.positive}
@@ -74,9 +77,15 @@ def _where_it_is(task: Task, schema: ActionSchema) -> Iterator[tuple[str, str]]:
             and set(part.arguments) <= names
             and part.arguments in ended
             and part.predicate in begun
+            and not _changed_otherwise(schema, part.arguments[0], part.predicate)
             and _exactly_one(task, part.predicate)
         ):
             yield part.arguments[0], f"({part.predicate} {part.arguments[0]})"
+
+
+def _changed_otherwise(schema: ActionSchema, argument: str, predicate: str) -> bool:
+    literals = (each.literal for each in schema.effects)
+    return any(argument in e.arguments and e.predicate != predicate for e in literals)
 
 
 def _exactly_one(task: Task, predicate: str) -> bool:

@@ -68,7 +68,10 @@ def run(
     optimal: Optimal = False,
     out: Annotated[Path | None, typer.Option(help="Folder for the episode.")] = None,
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print the result as JSON; the trial goes to stderr.")
+        bool,
+        typer.Option(
+            "--json", help="Print the result as JSON; on a terminal the trial is shown on stderr."
+        ),
     ] = False,
     verbose: Verbose = False,
 ) -> None:

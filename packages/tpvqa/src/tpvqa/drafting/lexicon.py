@@ -45,7 +45,8 @@ INSIDE = word_set(
     "greenhouse hall hallway house kitchen lab lane locker mug office oven pan pantry park pot "
     "refrigerator region rack room safe shaker shop shower sink slot space spool store town "
     "trash truck van vase vessel vice ward wardrobe warehouse waste well yard zone machine "
-    "microwave holder elevator lift car lorry plane airplane aircraft cold"
+    "microwave holder elevator lift car lorry plane airplane aircraft cold cellar barn shed attic "
+    "vault chamber studio cabin loft basement hangar"
 )
 """What things are in."""
 UPON = word_set(

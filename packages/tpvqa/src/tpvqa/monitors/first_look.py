@@ -1,6 +1,7 @@
 """The look before the first plan: asks until few initial states are left that may be the case."""
 
 from collections.abc import Callable, Generator, Mapping, Sequence
+from math import fsum, inf
 from typing import Any
 
 from tpvqa.belief.belief import MOST, Belief
@@ -22,6 +23,10 @@ from tpvqa.vlm import Answer, Reply
 
 SAME = 3
 """Looks in a row at which nothing new is seen, before no more are taken."""
+SETTLED = 6
+"""Rounds of questions in a row that settle nothing more, before no more are asked."""
+LESS = 0.9
+"""Something is settled where so much of what was in doubt is left, or less."""
 FEW = 20
 """Initial states, of equal weight, that are weighed instead of looked for."""
 PLANNED = 6
@@ -43,7 +48,8 @@ def first_look(
     """Ask about all that may hold or not, and again about what is still in doubt.
 
     It ends when few states carry nearly all probability: then a belief weighs what is worth
-    asking; or it ends when nothing more can be seen, or the budget is used up.
+    asking; or it ends when nothing more can be seen, when asking settles no more (what is out of
+    sight may leave many states, and errors that last some doubt), or the budget is used up.
 
     Args:
         prior: How probable the initial states are; weighed with the answers.
@@ -61,7 +67,8 @@ def first_look(
             questions.setdefault(question.text, question)
     # With fewer answers there are too many states for a search to be worth its time.
     enough = evidence.answers_to_be_sure() / 2 if prior.combinations > 10 * MOST else 0
-    rounds = barren = 0
+    rounds = barren = stale = 0
+    least = inf
     while barren < SAME and (rounds < enough or not prior.covered() or prior.spread() > FEW):
         wanted = [each for each in questions.values() if _in_doubt(each, prior) and views(each)]
         allowed = budget()
@@ -88,10 +95,20 @@ def first_look(
             if answer.reply in (Reply.YES, Reply.NO):
                 told = Replies(question.atoms, before)
                 inspection.replies.setdefault(question.text, told).replies.append(answer.reply)
+        doubt = fsum(_doubt(each, prior) for each in questions.values() if views(each))
+        stale = stale + 1 if doubt > LESS * least else 0
+        least = min(least, doubt)
+        if stale >= SETTLED and rounds >= enough:
+            return
+
+
+def _doubt(question: FactQuestion, prior: Prior) -> float:
+    probable = prior.probability(question.atom, question.alike)
+    return min(probable, 1 - probable)
 
 
 def _in_doubt(question: FactQuestion, prior: Prior) -> bool:
-    return DOUBT < prior.probability(question.atom, question.alike) < 1 - DOUBT
+    return _doubt(question, prior) > DOUBT
 
 
 def first_verdict(belief: Belief, prior: Prior, words: FactWords, seen: Inspection) -> Check:

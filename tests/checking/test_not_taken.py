@@ -1,0 +1,24 @@
+"""Arguments of actions that a skill hardly takes, as they are where the robot is."""
+
+from tpvqa.checking.world import not_taken
+from tpvqa.pddl import task_from_text
+from tpvqa.worlds.world_file import WorldRules
+
+CELLAR = task_from_text(
+    """(define (domain cellar) (:requirements :strips :typing) (:types place vessel)
+      (:predicates (robot-at ?p - place) (full ?v - vessel) (rinsed ?v - vessel))
+      (:action go :parameters (?from ?to - place) :precondition (robot-at ?from)
+        :effect (and (robot-at ?to) (not (robot-at ?from))))
+      (:action rack :parameters (?a ?b - vessel) :precondition (and (full ?a) (rinsed ?b))
+        :effect (and (full ?b) (not (full ?a)) (not (rinsed ?a)))))""",
+    """(define (problem cellar-1) (:domain cellar)
+      (:objects yard press - place tank barrel - vessel)
+      (:init (robot-at yard) (full tank) (rinsed barrel))
+      (:goal (and (robot-at press) (full barrel))))""",
+)
+
+
+def test_where_the_robot_is_is_told_and_what_an_action_empties_is_not() -> None:
+    told = [each.says for each in not_taken(CELLAR, WorldRules(), "world.yaml")]
+    assert len(told) == 1
+    assert told[0].startswith("?from of go ")
