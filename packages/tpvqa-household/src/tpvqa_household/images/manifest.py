@@ -22,6 +22,11 @@ ActionResult = Choice["success", "failure"]
 OriginKind = Choice["photo", "rendered", "variation", "generated"]
 ORIGINS: tuple[OriginKind, ...] = ("photo", "rendered", "variation", "generated")
 OUTCOMES: tuple[ActionResult, ...] = ("success", "failure")
+BROKEN = (
+    "Mend it, or move it away and give the command again that made the set: `tpvqa dataset "
+    "compose` takes up the pictures that lie there, `tpvqa dataset build` renders them anew"
+)
+"""What to do where the manifest of a set is not as it should be."""
 
 
 class _Model(ToldModel):
@@ -155,6 +160,6 @@ def load_pictures(folder: Path | None = None) -> PictureSet:
         Manifest,
         missing="Make them with `tpvqa dataset compose` or `tpvqa dataset build`, or name the "
         "folder that holds them",
-        broken="Make it again with `tpvqa dataset build`",
+        broken=BROKEN,
     )
     return PictureSet(folder, manifest)
