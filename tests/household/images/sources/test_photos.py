@@ -1,5 +1,6 @@
 """Photos of the user's own: labels by folder and by table, and what is wrong with them."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -117,6 +118,16 @@ def test_a_photo_that_no_folder_labels_is_an_error(
 ) -> None:
     with pytest.raises(PhotosError, match="lies in no folder that says what it shows"):
         read_photos(add_photo("loose.png", 1).parent, dish_labels)
+
+
+def test_a_photo_that_no_manifest_can_name_is_an_error(
+    dish_labels: list[Label], add_photo: Add
+) -> None:
+    path = add_photo("find_sink/success/a.jpg", 1)
+    path.rename(path.parent / os.fsdecode(b"\xff.jpg"))
+    with pytest.raises(PhotosError, match=r"find_sink/success/.*Rename it") as raised:
+        read_photos(path.parents[2], dish_labels)
+    assert str(raised.value).isprintable()
 
 
 def test_the_same_photo_twice_is_an_error(dish_labels: list[Label], add_photo: Add) -> None:

@@ -140,6 +140,11 @@ def _by_folder(folder: Path) -> Iterator[_Claim]:
         hidden = any(part.startswith(".") for part in below.parts)
         if hidden or path.suffix.lower() not in SUFFIXES or not path.is_file():
             continue
+        try:
+            str(below).encode()  # as the manifest names it
+        except UnicodeEncodeError:
+            said = f"{ascii(str(below))[1:-1]}: the name is not UTF-8. Rename it"
+            raise PhotosError(said, file=folder) from None
         parts = below.parts[:-1]
         if not 2 <= len(parts) <= 3:
             raise PhotosError(
