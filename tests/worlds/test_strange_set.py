@@ -88,6 +88,25 @@ def test_a_set_without_pictures_is_told(lamps: Path) -> None:
         load_set(lamps)
 
 
+@pytest.mark.parametrize("name", ["pictures", "state", "domain"])
+def test_a_name_given_twice_is_told(name: str, lamps: Path) -> None:
+    text = (lamps / MANIFEST).read_text()
+    (lamps / MANIFEST).write_text(text.replace(f'"{name}": ', f'"{name}": [], "{name}": ', 1))
+    with pytest.raises(PictureSetError, match=rf"manifest\.json: '{name}' is given twice .*Mend"):
+        load_set(lamps)
+
+
+@pytest.mark.parametrize("file", ["dark.png", "copy.png"])
+def test_labels_that_contradict_each_other_are_told(file: str, lamps: Path) -> None:
+    (lamps / "copy.png").write_bytes((lamps / "dark.png").read_bytes())
+    again = json.loads((lamps / MANIFEST).read_text())["pictures"][0] | {"file": file}
+    edit(lamps, lambda manifest: manifest["pictures"].append(again | {"seen": ["(lit left)"]}))
+    load_set(lamps).check()
+    edit(lamps, lambda manifest: manifest["pictures"].append(again | {"state": ["(lit right)"]}))
+    with pytest.raises(PictureSetError, match=rf"{file}: .* \(lit right\) .*Keep one label"):
+        load_set(lamps).check()
+
+
 JUNK: list[Any] = [
     None, 0, -1, 1e300, True, "", "x", "(", ")", "()", "(lit)", "(lit left left)", "(lit nowhere)",
     "((lit left)", "\x1b[2J", [], ["(lit left)"], {}, {"a": 1}, [[]], "../x.png", "A" * 5000,

@@ -6,6 +6,7 @@ a reader does not know are passed over, so that every set can be read as a plain
 
 import hashlib
 from functools import cached_property, lru_cache
+from json import JSONDecodeError
 from pathlib import Path
 from typing import Annotated, Generic, TypeVar
 from typing import Literal as Choice
@@ -15,7 +16,7 @@ from pydantic import AfterValidator, ConfigDict, Field, ValidationError
 from tpvqa.errors import PictureError, PictureSetError
 from tpvqa.pddl import Atom, State
 from tpvqa.pictures import read_file
-from tpvqa.told import ToldModel, first_fault
+from tpvqa.told import ToldModel, check_names, first_fault
 
 MANIFEST = "manifest.json"
 _LONGEST_NAME = 300
@@ -135,6 +136,12 @@ def read_manifest(folder: Path, kind: type[M], *, missing: str, broken: str) -> 
         text = read_file(MANIFEST, inside=folder, most=_MOST_BYTES)
     except PictureError as error:
         raise PictureSetError(f"{error}. {missing}") from error
+    try:
+        check_names(text)
+    except (JSONDecodeError, UnicodeDecodeError, RecursionError):
+        pass  # the model that it is read into says so
+    except ValueError as error:  # of two labels one would count, and nobody knows which is meant
+        raise PictureSetError(f"{path}: {error} in one object. {broken}") from None
     try:
         return kind.model_validate_json(text)
     except ValidationError as error:
