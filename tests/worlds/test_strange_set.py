@@ -88,6 +88,24 @@ def test_a_set_without_pictures_is_told(lamps: Path) -> None:
         load_set(lamps)
 
 
+@pytest.mark.parametrize(
+    "fact", ["(lit (left))", "(lit left", "lit left)", "((lit left))", "lit(left", "(lit, left)",
+             "lit(left right)", "()", "(lit left) (lit right)", "lit" + " x" * 100 + ")"],
+)  # fmt: skip
+def test_a_fact_that_is_no_atom_is_told_with_its_place(fact: str, lamps: Path) -> None:
+    edit(lamps, first(state=[fact]))
+    with pytest.raises(PictureSetError, match=r"pictures\.0\.state\.0: .* is not an atom"):
+        load_set(lamps)
+
+
+def test_facts_are_taken_as_they_are_printed_and_as_pddl_writes_them(lamps: Path) -> None:
+    facts = ["( lit  left )", "lit(left)", "lit left", "raining", "raining()", "on(a, b)",
+             "(>= (battery robot) 20)"]  # fmt: skip
+    edit(lamps, first(state=facts))
+    told = load_set(lamps).manifest.pictures[0].state
+    assert told == (*["(lit left)"] * 3, *["(raining)"] * 2, "(on a b)", facts[-1])
+
+
 @pytest.mark.parametrize("name", ["pictures", "state", "domain"])
 def test_a_name_given_twice_is_told(name: str, lamps: Path) -> None:
     text = (lamps / MANIFEST).read_text()

@@ -5,6 +5,7 @@ a reader does not know are passed over, so that every set can be read as a plain
 """
 
 import hashlib
+import re
 from functools import cached_property, lru_cache
 from json import JSONDecodeError
 from pathlib import Path
@@ -15,6 +16,7 @@ from pydantic import AfterValidator, ConfigDict, Field, ValidationError
 
 from tpvqa.errors import PictureError, PictureSetError
 from tpvqa.pddl import Atom, State
+from tpvqa.pddl.arithmetic import COMPARISONS
 from tpvqa.pictures import read_file
 from tpvqa.told import ToldModel, check_names, first_fault
 
@@ -30,13 +32,27 @@ def _name(text: str) -> str:
     return text
 
 
+_WORD = r"[^\s(),]+"
+_ATOM = re.compile(
+    rf"\s*(\(\s*{_WORD}(\s+{_WORD})*\s*\)|{_WORD}(\s+{_WORD})*"
+    rf"|{_WORD}\(\s*({_WORD}(\s*,\s*{_WORD})*)?\s*\))\s*"
+)
+
+
 @lru_cache(maxsize=4096)
-def _fact(text: str) -> str:
-    """A fact as PDDL writes it."""
-    return Atom.parse(_name(text)).pddl()
+def fact(text: str) -> str:
+    """A fact as PDDL writes it.
+
+    Raises:
+        ValueError: It is none; `Atom.parse` overlooks a parenthesis too many or too few.
+    """
+    atom = Atom.parse(_name(text))
+    if atom.predicate not in COMPARISONS and not _ATOM.fullmatch(text):
+        raise ValueError(f"{text!r} is not an atom; write it as (predicate object …)")
+    return atom.pddl()
 
 
-Fact = Annotated[str, AfterValidator(_fact)]
+Fact = Annotated[str, AfterValidator(fact)]
 
 
 def _below(file: str) -> str:
