@@ -77,6 +77,11 @@ def test_a_table_says_what_photos_show(dish_labels: list[Label], add_photo: Add)
         ("one.png,,find_sink,success,(on plate moon)", "(on plate moon) is no fact"),
         ("one.png,,find_sink,success,(near plate) (on plate floor)", "not seen after success"),
         ("one.png,,find_sink,success,(near plate) (near sink)", "no state of the kitchen"),
+        ("one.png,,find_sink,success,(((", "'(((' is not an atom"),
+        ("one.png,,find_sink,success,())", "'()' is not an atom"),
+        ("one.png,,find_sink,success,(near plate", "'(near plate' is not an atom"),
+        ("one.png,,find_sink,success,(near sink),(on plate floor)", "more cells than the 5"),
+        ("a" * 140_000 + ",,find_sink,success,", "is no CSV (field larger than"),
     ],
 )
 def test_a_wrong_line_of_a_table_is_named(
@@ -97,7 +102,17 @@ def test_a_table_without_a_column_is_refused(dish_labels: list[Label], folder: P
     with pytest.raises(PhotosError, match=r"labels.csv:1: no column 'action'"):
         read_photos(folder, dish_labels, table=table)
     table.write_bytes(b"file,action,outcome\n\xff")
-    with pytest.raises(PhotosError, match="cannot be read"):
+    with pytest.raises(PhotosError, match=r"labels.csv:2: .* is not UTF-8"):
+        read_photos(folder, dish_labels, table=table)
+    table.write_text("file,action,Outcome,outcome\n")
+    with pytest.raises(PhotosError, match=r"labels.csv:1: the column 'outcome' is there twice"):
+        read_photos(folder, dish_labels, table=table)
+    table.write_text("a" * 140_000)
+    with pytest.raises(PhotosError, match=r"labels.csv:1: is no CSV"):
+        read_photos(folder, dish_labels, table=table)
+    table.unlink()
+    os.mkfifo(table)
+    with pytest.raises(PhotosError, match="a pipe or a device"):
         read_photos(folder, dish_labels, table=table)
 
 
