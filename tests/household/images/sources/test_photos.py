@@ -102,7 +102,7 @@ def test_a_table_without_a_column_is_refused(dish_labels: list[Label], folder: P
     with pytest.raises(PhotosError, match=r"labels.csv:1: no column 'action'"):
         read_photos(folder, dish_labels, table=table)
     table.write_bytes(b"file,action,outcome\n\xff")
-    with pytest.raises(PhotosError, match=r"labels.csv:2: .* is not UTF-8"):
+    with pytest.raises(PhotosError, match="cannot be read"):
         read_photos(folder, dish_labels, table=table)
     table.write_text("file,action,Outcome,outcome\n")
     with pytest.raises(PhotosError, match=r"labels.csv:1: the column 'outcome' is there twice"):

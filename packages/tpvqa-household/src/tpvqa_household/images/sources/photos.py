@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tpvqa.errors import PhotosError, PictureError, WorldError, suggestion_or_list
+from tpvqa.files import read_plain
 from tpvqa.pddl import Atom, State
 from tpvqa.pictures import read_file
-from tpvqa.text_files import read_text
 from tpvqa.worlds.pictures import digest
 from tpvqa.worlds.pictures.manifest import fact
 from tpvqa_household.images.manifest import OUTCOMES
@@ -23,6 +23,7 @@ SUFFIXES = frozenset(
     (".jpg", ".jpeg", ".png", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".heic", ".heif")
 )
 COLUMNS = ("file", "task", "action", "outcome", "facts")
+_LARGEST = 16 * 2**20  # bytes of a table; a device has no end
 SHOWN = 10
 """Faults that are listed; more are counted."""
 
@@ -161,7 +162,11 @@ def _by_folder(folder: Path) -> Iterator[_Claim]:
 
 
 def _by_table(table: Path, folder: Path) -> Iterator[_Claim]:
-    text = read_text(table, PhotosError, what="table of labels")
+    try:
+        text = read_plain(table, most=_LARGEST).decode("utf-8-sig")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise PhotosError(f"cannot be read ({reason})", file=table) from error
     reader = csv.DictReader(text.splitlines())
     try:
         columns = [(name or "").strip().lower() for name in reader.fieldnames or ()]
