@@ -41,6 +41,14 @@ def test_two_rows_of_an_episode_that_contradict_each_other_are_named(tmp_path: P
         Ledger(tmp_path, {})
 
 
+def test_a_row_of_another_seed_is_named(tmp_path: Path) -> None:
+    ledger = Ledger(tmp_path, {"seed": 7})
+    ledger.add([row(episode=0, seed=7), row(episode=1, seed=8)])
+    ledger.close()
+    with pytest.raises(BenchError, match=r"episodes\.jsonl:2: is of the seed 8"):
+        Ledger(tmp_path, {"seed": 7})
+
+
 def test_a_bench_with_other_settings_is_not_mixed_in(tmp_path: Path) -> None:
     Ledger(tmp_path, {"seed": 0, "failure": 0.25}).close()
     with pytest.raises(BenchError, match=r"seed 0 there, 1 here"):

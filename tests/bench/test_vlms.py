@@ -238,9 +238,10 @@ def test_what_was_interrupted_goes_on_and_nothing_is_asked_twice(
 
     bright = import_module("bright").Bright
     bright.left = 3
-    code, _, err = tpvqa(*words)
+    code, _, err = tpvqa(*words, "--out", "new")
     assert code == 130
     assert "the same command goes on" in err
+    assert not Path("new").exists()
     asked, bright.left, bright.asked = bright.asked, None, 0
     assert 0 < stats(Path("a.db")).answers < asked
     code, out, _ = tpvqa(*words)
@@ -249,6 +250,17 @@ def test_what_was_interrupted_goes_on_and_nothing_is_asked_twice(
     bright.asked = 0
     assert tpvqa(*words[:-3], "--replay", "a.db", "--json")[1] == out
     assert bright.asked == 0
+
+
+def test_a_comparison_takes_the_place_of_no_link(
+    tpvqa: Run,  # noqa: F811
+    lamps: tuple[object, ...],
+) -> None:
+    Path("new").mkdir()
+    Path("new/answers.csv").symlink_to("elsewhere.csv")
+    code, _, err = tpvqa("vlm", "compare", "oracle", *lamps, "--out", "new")
+    assert (code, "answers.csv is a link" in err) == (2, True), err
+    assert Path("new/answers.csv").is_symlink()
 
 
 def test_wordings_are_compared_in_pairs(

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from tests.cli.conftest import Run
+from tests.episodes.test_log import file_size
 from tpvqa.belief import Calibration, Group
 from tpvqa.belief.chances import Chances
 from tpvqa.belief.experience import Experience
@@ -174,6 +175,16 @@ def test_a_file_that_cannot_be_written_is_told_before_the_work(tpvqa: Run, tmp_p
     assert "folder" in err
     assert "--out" in err
     assert "trials" not in err
+
+
+def test_where_not_all_can_be_written_the_same_command_goes_again(tpvqa: Run) -> None:
+    words = ("calibrate", "--trials", 4, "--tasks", "clean_dishes", "--vlm", "oracle:0.9")
+    with file_size(20_000):
+        code, _, err = tpvqa(*words, "--out", "c.json")
+    assert (code, "c.png" in err) == (6, True), err
+    assert [path.name for path in Path().glob("c.*")] == []
+    assert tpvqa(*words, "--out", "c.json")[0] == 0
+    assert Path("c.json").stat().st_size < 20_000 < Path("c.png").stat().st_size
 
 
 def test_a_file_below_a_file_is_told_before_the_work(tpvqa: Run) -> None:

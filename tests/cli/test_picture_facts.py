@@ -7,7 +7,7 @@ import pytest
 from tests.cli.conftest import Run
 from tests.lamps import DOMAIN, PROBLEM, QUESTIONS
 from tests.training.conftest import make_lamp_set
-from tpvqa.worlds.pictures import MANIFEST
+from tpvqa.worlds.pictures import MANIFEST, digest
 
 OWN = ("--domain", DOMAIN, "--problem", PROBLEM, "--questions", QUESTIONS)
 TRAIN = ("train", "embedded", "--out", "taught", *OWN)
@@ -74,3 +74,20 @@ def test_a_set_of_another_domain_is_refused(
     code, _, error = tpvqa(*command, "--pictures", lamps)
     assert code == 2
     assert "of the domain 'lanterns', and the task is of 'lamps'" in " ".join(error.split())
+
+
+@pytest.mark.parametrize("command", [TRAIN, CALIBRATE, COMPARE])
+def test_a_picture_in_which_nothing_is_to_be_seen_is_named(
+    command: tuple[object, ...], tpvqa: Run, tmp_path: Path
+) -> None:
+    lamps = make_lamp_set(tmp_path / "lamps", 6)
+    whole = (lamps / "0.png").read_bytes()
+    (lamps / "0.png").write_bytes(whole[: len(whole) // 2])
+    manifest = (lamps / MANIFEST).read_text()
+    torn = digest((lamps / "0.png").read_bytes())
+    (lamps / MANIFEST).write_text(manifest.replace(digest(whole), torn))
+    _, _, error = tpvqa(*command, "--pictures", lamps)
+    told = " ".join(error.split())
+    assert "note: " in told
+    assert "0.png: the picture is a damaged picture" in told
+    assert "1.png" not in told

@@ -237,3 +237,10 @@ def test_no_name_of_a_planner_and_half_an_atom(typed: Typed, folder: Path) -> No
     done = typed("plan", "clean_dishes", "--from-state", "state")
     assert done.returncode == 2
     assert "a ')' is missing" in done.stderr
+
+
+def test_a_plan_under_a_limit_of_memory() -> None:
+    command = f"ulimit -v 1500000; {sys.executable} -m tpvqa plan eat_apple"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "cut_in_half(apple, knife, left, right)" in done.stdout

@@ -285,6 +285,19 @@ def test_a_report_takes_the_place_of_reports_alone(tpvqa: Run, words: list[str])
     assert tpvqa("report", "here", *words)[0] == 0
 
 
+def test_a_report_takes_the_place_of_a_link_only_if_told_to(tpvqa: Run) -> None:
+    tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
+    Path("notes.txt").write_text("mine")
+    for name, there in (("link", "notes.txt"), ("nowhere", "gone"), ("stdout", "/dev/stdout")):
+        Path(name).symlink_to(there)
+        code, _, err = tpvqa("report", "here", "--out", name)
+        assert (code, f"{name} is there, and is no report" in err) == (2, True), err
+        assert Path(name).is_symlink()
+    assert tpvqa("report", "here", "--out", "link", "--force")[0] == 0
+    assert not Path("link").is_symlink()
+    assert Path("notes.txt").read_text() == "mine"
+
+
 def test_a_report_of_an_unfinished_episode(tpvqa: Run) -> None:
     tpvqa("run", "eat_apple", *SYMBOLIC, "--seed", 2, "--out", "here")
     log = Path("here/episode.jsonl")

@@ -111,6 +111,12 @@ BROKEN_DOMAINS = [
         9,
         "two actions of the name 'switch_on'",
     ),
+    (
+        "(lit ?l - lamp)",
+        "(lit ?l - lamp)\n    (lit)",
+        5,
+        "two predicates of the name 'lit'",
+    ),
 ]
 BROKEN_PROBLEMS = [
     ("(:init (lit a))", "(:goal (lit b)) (:init (lit a))", 4, "before .:init"),

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 from collections.abc import Callable
@@ -132,6 +133,43 @@ def test_what_is_damaged_under_way_is_said(
     assert code == 2
     assert "is damaged" in error
     assert "Traceback" not in error
+
+
+@pytest.mark.parametrize(
+    "told", ["", "[]", "{", '{"accuracy": {"x": NaN}}', '{"accuracy": {"value": 1}}', "nan"]
+)
+def test_figures_that_are_damaged_under_way_are_said(
+    model: Path, lamp_set: Path, tpvqa: Run, tmp_path: Path, told: str
+) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_Fitting, "step", interrupting(1))
+        assert tpvqa(*command(model, lamp_set, "torn", *SHORT))[0] == 130
+    before = tmp_path / "torn.part" / "before.json"
+    whole = before.read_text()
+    before.write_text(re.sub(r"[0-9.]+", "NaN", whole, count=1) if told == "nan" else told)
+    code, _, error = tpvqa(*command(model, lamp_set, "torn", *SHORT))
+    assert code == 2
+    assert "before.json is damaged. Remove it" in " ".join(error.split())
+    assert "Traceback" not in error
+    before.unlink()
+    assert tpvqa(*command(model, lamp_set, "torn", *SHORT))[0] == 0
+
+
+def test_a_folder_of_ones_own_is_left_alone(
+    model: Path, lamp_set: Path, tpvqa: Run, tmp_path: Path
+) -> None:
+    own = tmp_path / "own"
+    own.mkdir()
+    (tmp_path / "linked.part").symlink_to(own)
+    (tmp_path / "out.part").mkdir()
+    (tmp_path / "out.part" / "thesis.txt").write_text("mine")
+    for out in ("out", "linked"):
+        code, _, error = tpvqa(*command(model, lamp_set, out, *SHORT))
+        assert (code, "Move it away" in " ".join(error.split())) == (2, True), error
+    assert (tmp_path / "out.part" / "thesis.txt").read_text() == "mine"
+    assert list(own.iterdir()) == []
+    (tmp_path / "out.part" / "thesis.txt").unlink()
+    assert tpvqa(*command(model, lamp_set, "out", *SHORT))[0] == 0
 
 
 def test_what_cannot_be_trained_is_said_before_anything(

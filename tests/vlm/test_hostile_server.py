@@ -257,6 +257,9 @@ def tokens(*told: tuple[str, float], top: tuple[tuple[str, float], ...] = ()) ->
         (body(**tokens(("Yes", -3.0), top=(("No", -0.06),))), Reply.UNKNOWN),
         (body(**tokens(("Yes", -0.06), top=(("No", -3.0),))), Reply.YES),
         (body(**tokens(("Yes", -0.693), top=(("No", -0.693),))), Reply.UNKNOWN),
+        (body(**tokens(("Yes", -9.0), top=(("No", -0.001), ("No", -12.0)))), Reply.UNKNOWN),
+        (body(**tokens(("Yes", -9.0), top=(("No", -0.001), ("No", -0.001)))), Reply.UNKNOWN),
+        (body(**tokens(("Yes", -0.1), top=(("Yes", -3.0), ("Yes", -0.1)))), Reply.YES),
         (body(**tokens(("No", -0.1), ("Yes", -0.1))), Reply.UNKNOWN),
         (body(**tokens(("Maybe", -0.1))), Reply.UNKNOWN),
         (body(**tokens(("Not", -0.1), (" sure", -0.1))), Reply.UNKNOWN),
@@ -336,6 +339,14 @@ def test_together_the_same_holds_for_each_answer(
     assert reading.reply is Reply.YES
     assert reading.source == ("word" if p_yes is None else "logprobs")
     assert reading.p_yes == (None if p_yes is None else pytest.approx(p_yes, abs=1e-3))
+
+
+def test_together_choices_that_differ_are_no_answer() -> None:
+    texts = ('{"q1": "yes", "q2": "no"}', '{"q1": "no", "q2": "no"}')
+    sent = {"choices": [choice for text in texts for choice in body(text)["choices"]]}
+    ((first, second),) = read_together(json.dumps(sent), 2)
+    assert (first.reply, second.reply) == (Reply.UNKNOWN, Reply.NO)
+    assert "several answers" in first.text
 
 
 @pytest.mark.parametrize(

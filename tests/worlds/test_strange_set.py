@@ -88,6 +88,43 @@ def test_a_set_without_pictures_is_told(lamps: Path) -> None:
         load_set(lamps)
 
 
+@pytest.mark.parametrize(
+    "fact", ["(lit (left))", "(lit left", "lit left)", "((lit left))", "lit(left", "(lit, left)",
+             "lit(left right)", "()", "(lit left) (lit right)", "lit" + " x" * 100 + ")"],
+)  # fmt: skip
+def test_a_fact_that_is_no_atom_is_told_with_its_place(fact: str, lamps: Path) -> None:
+    edit(lamps, first(state=[fact]))
+    with pytest.raises(PictureSetError, match=r"pictures\.0\.state\.0: .* is not an atom"):
+        load_set(lamps)
+
+
+def test_facts_are_taken_as_they_are_printed_and_as_pddl_writes_them(lamps: Path) -> None:
+    facts = ["( lit  left )", "lit(left)", "lit left", "raining", "raining()", "on(a, b)",
+             "(>= (battery robot) 20)"]  # fmt: skip
+    edit(lamps, first(state=facts))
+    told = load_set(lamps).manifest.pictures[0].state
+    assert told == (*["(lit left)"] * 3, *["(raining)"] * 2, "(on a b)", facts[-1])
+
+
+@pytest.mark.parametrize("name", ["pictures", "state", "domain"])
+def test_a_name_given_twice_is_told(name: str, lamps: Path) -> None:
+    text = (lamps / MANIFEST).read_text()
+    (lamps / MANIFEST).write_text(text.replace(f'"{name}": ', f'"{name}": [], "{name}": ', 1))
+    with pytest.raises(PictureSetError, match=rf"manifest\.json: '{name}' is given twice .*Mend"):
+        load_set(lamps)
+
+
+@pytest.mark.parametrize("file", ["dark.png", "copy.png"])
+def test_labels_that_contradict_each_other_are_told(file: str, lamps: Path) -> None:
+    (lamps / "copy.png").write_bytes((lamps / "dark.png").read_bytes())
+    again = json.loads((lamps / MANIFEST).read_text())["pictures"][0] | {"file": file}
+    edit(lamps, lambda manifest: manifest["pictures"].append(again | {"seen": ["(lit left)"]}))
+    load_set(lamps).check()
+    edit(lamps, lambda manifest: manifest["pictures"].append(again | {"state": ["(lit right)"]}))
+    with pytest.raises(PictureSetError, match=rf"{file}: .* \(lit right\) .*Keep one label"):
+        load_set(lamps).check()
+
+
 JUNK: list[Any] = [
     None, 0, -1, 1e300, True, "", "x", "(", ")", "()", "(lit)", "(lit left left)", "(lit nowhere)",
     "((lit left)", "\x1b[2J", [], ["(lit left)"], {}, {"a": 1}, [[]], "../x.png", "A" * 5000,

@@ -1,6 +1,7 @@
 import json
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
 from tpvqa.errors import PictureSetError
@@ -74,6 +75,33 @@ def test_a_picture_that_shows_what_its_state_leaves_open_is_found(
     number = next(k for k, p in enumerate(pictures) if p.visible == "near(sink)")
     edit(painted, number, seen=[*pictures[number].seen, "(on plate floor)"])
     assert any("on(plate, floor)" in gap for gap in gaps(painted, clean_dishes))
+
+
+IMPOSSIBLE = ["(near plate)", "(near sink)"]
+
+
+def test_every_impossible_state_is_found(painted: Path, clean_dishes: Reachable) -> None:
+    for number in (0, 1):
+        edit(painted, number, state=IMPOSSIBLE)
+    found = [gap for gap in gaps(painted, clean_dishes) if "no state of the kitchen" in gap]
+    assert [gap.partition(":")[0] for gap in found] == ["0.jpg", "1.jpg"]
+
+
+@pytest.mark.parametrize("change", ["state", "file", "both ways"])
+def test_what_is_scored_is_checked_before(change: str, painted: Path) -> None:
+    if change == "state":
+        edit(painted, 3, state=IMPOSSIBLE)
+    elif change == "file":
+        (painted / "3.jpg").write_bytes((painted / "4.jpg").read_bytes())
+    else:
+        told = load_pictures(painted).manifest.pictures
+        edit(painted, 3, file=told[4].file, sha256=told[4].sha256)
+        other = [fact for fact in told[4].state if fact not in told[4].seen]
+        edit(painted, 3, state=other, seen=sorted(told[4].seen))
+    words = ["score", "--pictures", str(painted), "--vlm", "no such VLM"]
+    result = CliRunner().invoke(dataset, words)
+    assert isinstance(result.exception, PictureSetError), result.output
+    assert ("4.jpg" if change == "both ways" else "3.jpg") in str(result.exception)
 
 
 def test_a_wrong_tag_is_found(painted: Path, clean_dishes: Reachable) -> None:

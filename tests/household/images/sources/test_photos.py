@@ -1,5 +1,6 @@
 """Photos of the user's own: labels by folder and by table, and what is wrong with them."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -76,6 +77,11 @@ def test_a_table_says_what_photos_show(dish_labels: list[Label], add_photo: Add)
         ("one.png,,find_sink,success,(on plate moon)", "(on plate moon) is no fact"),
         ("one.png,,find_sink,success,(near plate) (on plate floor)", "not seen after success"),
         ("one.png,,find_sink,success,(near plate) (near sink)", "no state of the kitchen"),
+        ("one.png,,find_sink,success,(((", "'(((' is not an atom"),
+        ("one.png,,find_sink,success,())", "'()' is not an atom"),
+        ("one.png,,find_sink,success,(near plate", "'(near plate' is not an atom"),
+        ("one.png,,find_sink,success,(near sink),(on plate floor)", "more cells than the 5"),
+        ("a" * 140_000 + ",,find_sink,success,", "is no CSV (field larger than"),
     ],
 )
 def test_a_wrong_line_of_a_table_is_named(
@@ -98,6 +104,16 @@ def test_a_table_without_a_column_is_refused(dish_labels: list[Label], folder: P
     table.write_bytes(b"file,action,outcome\n\xff")
     with pytest.raises(PhotosError, match="cannot be read"):
         read_photos(folder, dish_labels, table=table)
+    table.write_text("file,action,Outcome,outcome\n")
+    with pytest.raises(PhotosError, match=r"labels.csv:1: the column 'outcome' is there twice"):
+        read_photos(folder, dish_labels, table=table)
+    table.write_text("a" * 140_000)
+    with pytest.raises(PhotosError, match=r"labels.csv:1: is no CSV"):
+        read_photos(folder, dish_labels, table=table)
+    table.unlink()
+    os.mkfifo(table)
+    with pytest.raises(PhotosError, match="a pipe or a device"):
+        read_photos(folder, dish_labels, table=table)
 
 
 def test_every_fault_is_listed(dish_labels: list[Label], add_photo: Add) -> None:
@@ -117,6 +133,16 @@ def test_a_photo_that_no_folder_labels_is_an_error(
 ) -> None:
     with pytest.raises(PhotosError, match="lies in no folder that says what it shows"):
         read_photos(add_photo("loose.png", 1).parent, dish_labels)
+
+
+def test_a_photo_that_no_manifest_can_name_is_an_error(
+    dish_labels: list[Label], add_photo: Add
+) -> None:
+    path = add_photo("find_sink/success/a.jpg", 1)
+    path.rename(path.parent / os.fsdecode(b"\xff.jpg"))
+    with pytest.raises(PhotosError, match=r"find_sink/success/.*Rename it") as raised:
+        read_photos(path.parents[2], dish_labels)
+    assert str(raised.value).isprintable()
 
 
 def test_the_same_photo_twice_is_an_error(dish_labels: list[Label], add_photo: Add) -> None:

@@ -221,9 +221,11 @@ def score(
     from tpvqa_household.training.picture_cases import picture_cases
     from tpvqa_household.training.recipe import Recipe
 
+    opened = load_pictures(pictures)
+    opened.check()
     asking = Asking.about(Recipe.read().task)
     asked, _ = make_vlm(vlm, {} if base_url is None else {"base_url": base_url})
-    cases = picture_cases(load_pictures(pictures))
+    cases = picture_cases(opened)
     rows = list(scoring.score(asked, cases, asking, every_wording=every_wording))
     if as_json:
         typer.echo(json.dumps({"vlm": asked.name, **scoring.as_json(rows, asking)}, indent=2))

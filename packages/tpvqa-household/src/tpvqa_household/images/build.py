@@ -22,9 +22,10 @@ from PIL import Image
 from tpvqa.chance import chance
 from tpvqa.errors import PictureError, PictureSetError
 from tpvqa.pictures import read_file
-from tpvqa.worlds.pictures import MANIFEST, digest
+from tpvqa.worlds.pictures import digest
 from tpvqa_household.images.contrast import overlooked
-from tpvqa_household.images.manifest import Manifest, Origin, Picture, Renderer
+from tpvqa_household.images.manifest import Manifest, Picture, Renderer
+from tpvqa_household.images.own_pictures import existing, left_behind, see_own, was_built
 from tpvqa_household.images.recipe import FACTS, TRIES, Job, objection
 from tpvqa_household.images.writing import alone, replace, write_manifest
 from tpvqa_household.kitchen.layout import Split
@@ -32,6 +33,7 @@ from tpvqa_household.kitchen.layout import Split
 if TYPE_CHECKING:
     from tpvqa_household.kitchen.scene import KitchenScene
 
+_COMMAND = "tpvqa dataset build"
 SIDE = 224
 QUALITY = 85
 LOOKS = 4
@@ -102,13 +104,10 @@ def _build(
     progress: Callable[[int, int], None],
 ) -> Manifest:
     wanted = {job.key: job for job in jobs}
-    existing = _existing(folder)
-    if any(picture.origin != Origin() for picture in existing.values()):
-        raise PictureSetError(
-            f"{folder}: holds pictures that `tpvqa dataset compose` got, which a build would "
-            "delete. Name another folder"
-        )
-    kept = {key: picture for key, picture in existing.items() if key in wanted}
+    there = existing(folder, was_built, _COMMAND)
+    see_own(folder, {picture.file for picture in there}, _COMMAND)
+    known = {(picture.visible, picture.number): picture for picture in there}
+    kept = {key: picture for key, picture in known.items() if key in wanted}
     missing = [
         job
         for job in jobs
@@ -127,18 +126,11 @@ def _build(
         progress(done, len(jobs))
     manifest = _write(folder, kept)
     listed = {picture.file for picture in manifest.pictures}
+    own = {picture.file for picture in there}
     for path in folder.glob("*.jpg"):
-        if path.name not in listed:
+        if path.name not in listed and (path.name in own or left_behind(path)):
             path.unlink()
     return manifest
-
-
-def _existing(folder: Path) -> dict[tuple[str, int], Picture]:
-    try:
-        manifest = Manifest.model_validate_json(read_file(MANIFEST, inside=folder))
-    except (PictureError, ValueError):
-        return {}
-    return {(picture.visible, picture.number): picture for picture in manifest.pictures}
 
 
 def _current(picture: Picture, job: Job, settings: Settings, folder: Path) -> bool:

@@ -9,7 +9,9 @@ from typing import Literal as Choice
 
 from pydantic import ConfigDict
 
+from tpvqa.errors import PictureSetError, WorldError
 from tpvqa.told import ToldModel
+from tpvqa.worlds.pictures import MANIFEST
 from tpvqa.worlds.pictures import Manifest as AnyManifest
 from tpvqa.worlds.pictures import Picture as AnyPicture
 from tpvqa.worlds.pictures import PictureSet as AnyPictureSet
@@ -22,6 +24,11 @@ ActionResult = Choice["success", "failure"]
 OriginKind = Choice["photo", "rendered", "variation", "generated"]
 ORIGINS: tuple[OriginKind, ...] = ("photo", "rendered", "variation", "generated")
 OUTCOMES: tuple[ActionResult, ...] = ("success", "failure")
+BROKEN = (
+    "Mend it, or move it away and give the command again that made the set: `tpvqa dataset "
+    "compose` takes up the pictures that lie there, `tpvqa dataset build` renders them anew"
+)
+"""What to do where the manifest of a set is not as it should be."""
 
 
 class _Model(ToldModel):
@@ -104,6 +111,15 @@ class Picture(AnyPicture):
         """What the camera shows of that state."""
         return visible_state(self.true_state)
 
+    @property
+    def impossible(self) -> str | None:
+        """Why no kitchen is in that state; None where one can be."""
+        try:
+            self.visible_state  # noqa: B018 — for what it raises
+        except WorldError as error:
+            return f"its facts are no state of the kitchen: {error} Label it again in {MANIFEST}"
+        return None
+
 
 class Manifest(AnyManifest[Picture]):
     """All pictures of a set of the household, by file name."""
@@ -133,6 +149,17 @@ class PictureSet(AnyPictureSet[Picture]):
         for picture in manifest.pictures:
             self._by_visible[picture.visible].append(picture)
 
+    def check(self) -> None:
+        """As for any set; and whether the kitchen can be as it is said of each picture.
+
+        Raises:
+            PictureSetError: A picture is not as it should be.
+        """
+        super().check()
+        for picture in self.manifest.pictures:
+            if (why := picture.impossible) is not None:
+                raise PictureSetError(f"{self.folder / picture.file}: {why}")
+
     def of(self, visible: VisibleState) -> list[Picture]:
         """The pictures of a visible state, in the manifest's order; empty where there are none."""
         return list(self._by_visible.get(describe(visible), ()))
@@ -155,6 +182,6 @@ def load_pictures(folder: Path | None = None) -> PictureSet:
         Manifest,
         missing="Make them with `tpvqa dataset compose` or `tpvqa dataset build`, or name the "
         "folder that holds them",
-        broken="Make it again with `tpvqa dataset build`",
+        broken=BROKEN,
     )
     return PictureSet(folder, manifest)

@@ -82,13 +82,20 @@ def verify(pictures: PictureSet, tasks: Sequence[Reachable]) -> Report:
     certain = {describe(v): settled(states, facts) for v, states in classes.items()}
     tags = {
         visible: set(observations(visible, tasks))
-        for visible in {picture.visible_state for picture in pictures.manifest.pictures}
+        for visible in {
+            picture.visible_state
+            for picture in pictures.manifest.pictures
+            if picture.impossible is None
+        }
     }
     for picture in pictures.manifest.pictures:
         report.renderers[picture.renderer or picture.origin.kind] += 1
         report.origins[picture.origin.kind] += 1
         report.meshes[picture.meshes] += 1
         report.size += _check_file(pictures, picture, report.gaps)
+        if (why := picture.impossible) is not None:
+            report.gaps.append(f"{picture.file}: {why}")
+            continue
         _check_truth(picture, facts, certain, tags[picture.visible_state], report.gaps)
     names = Counter(picture.file for picture in pictures.manifest.pictures)
     report.gaps += [f"{name}: listed {n} times" for name, n in names.items() if n > 1]

@@ -55,7 +55,7 @@ class Ledger:
             self._file.close()
             raise BenchError(f"{folder}: another bench is at work there; wait for it") from None
         self._agree(dict(settings))
-        self.rows = merged(chain(others, self._read()))
+        self.rows = merged(chain(others, self._read(settings.get("seed"))))
 
     def _agree(self, settings: dict[str, Any]) -> None:
         path = self.folder / SETTINGS
@@ -73,7 +73,7 @@ class Ledger:
             return
         write_whole(path, f"{json.dumps(settings, indent=1)}\n".encode(), remedy=REMEDY)
 
-    def _read(self) -> Iterator[EpisodeRow]:
+    def _read(self, seed: int | None) -> Iterator[EpisodeRow]:
         self._file.seek(0)
         data = self._file.read()
         whole, _, torn = data.rpartition(b"\n")
@@ -90,6 +90,11 @@ class Ledger:
                     f"{self.folder / ROWS}:{number}: not a row of this version "
                     f"({said}). Remove the folder, or name another"
                 ) from None
+            if seed is not None and row.seed != seed:
+                raise BenchError(
+                    f"{self.folder / ROWS}:{number}: is of the seed {row.seed}, and the bench of "
+                    f"{seed}. Remove the line, or name another folder"
+                )
             if not row.error:
                 before, other = finished.setdefault((row.cell, row.episode), (number, row))
                 if not _agree_on(row, other):

@@ -12,7 +12,7 @@ import typer
 from tpvqa.cli.calibration_table import draw, plain, print_calibration
 from tpvqa.cli.notices import about_own_files
 from tpvqa.cli.options import ANSWERING, trial_options
-from tpvqa.cli.outputs import named_by, see_free, see_unread
+from tpvqa.cli.outputs import all_or_none, named_by, see_free, see_unread
 from tpvqa.cli.picture_sets import opened_set
 from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer, combined
@@ -215,10 +215,11 @@ def calibrate(
     doubted = (*one_sided(table), *doubts(table[-1], besides=besides))
     told = (*calibration.notices, *doubted)
     calibration = calibration.model_copy(update={"notices": told})
-    calibration.save(out)
-    if learned is not None and experience is not None:
-        learned.save(experience)
-    draw(image, judged, name)
+    with all_or_none(path for _, path in written):
+        calibration.save(out)
+        if learned is not None and experience is not None:
+            learned.save(experience)
+        draw(image, judged, name)
     if as_json:
         typer.echo(json.dumps(plain(calibration, table, out, image), indent=1))
     else:

@@ -1,6 +1,8 @@
 """Where a command may write: never over what it reads, and over what is there only if told to."""
 
+import os
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,6 +45,19 @@ def see_free(path: Path, option: str, *, force: bool) -> None:
             f"{path} is there, and may be what others go by; name another file with {option}, or "
             "write over it with --force"
         )
+
+
+@contextmanager
+def all_or_none(paths: Iterable[Path]) -> Iterator[None]:
+    """Take away again what is written newly where not all of it can be: it would be in the way."""
+    new = [path for path in paths if not os.path.lexists(path)]
+    try:
+        yield
+    except BaseException:
+        for path in new:
+            with suppress(OSError):
+                path.unlink()
+        raise
 
 
 def named_by(vlm: str | None) -> str:

@@ -1,6 +1,6 @@
 """Sets of labelled pictures that a command names."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from tpvqa.worlds.pictures.manifest import Picture
 
 SHIPPED = "shipped"
+_NAMED = 5
 
 
 def opened_set(where: str, books: "Sequence[QuestionBook] | None") -> "PictureSet[Picture]":
@@ -36,7 +37,30 @@ def opened_set(where: str, books: "Sequence[QuestionBook] | None") -> "PictureSe
         for notice in see_facts(opened, books[0].task):
             tell(f"note: {notice}", error=True)
     opened.check()
+    for notice in _see_shown(opened):
+        tell(f"note: {notice}", error=True)
     return opened
+
+
+def _see_shown(opened: "PictureSet[Picture]") -> Iterator[str]:
+    """What is to be told of pictures in which nothing is to be seen."""
+    from tpvqa.bench.labelled_pictures import look_at
+    from tpvqa.vlm.sight import picture_fault
+    from tpvqa.worlds.pictures import MANIFEST
+
+    faults = {
+        picture.file: why
+        for picture in opened.manifest.pictures
+        for frame in look_at(opened, picture, 0).frames.values()
+        if (why := picture_fault(frame))
+    }
+    for file, why in list(faults.items())[:_NAMED]:
+        yield (
+            f"{opened.folder / file}: {why}, so that nothing can be told from it. Mend it, or take "
+            f"it out of {MANIFEST}"
+        )
+    if len(faults) > _NAMED:
+        yield f"and so it is with {len(faults) - _NAMED} more pictures"
 
 
 def shipped_set() -> Path:

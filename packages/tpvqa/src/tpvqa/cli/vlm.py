@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -120,11 +121,12 @@ def compare(
     with CountBar("looks") as bar:
         try:
             rows = ask_all(vlms, looks, config=config, task=task, repeats=repeats, progress=bar)
-        except TpvqaError:
+        except (TpvqaError, KeyboardInterrupt) as end:
             if made:
-                out.rmdir()
-            raise
-        except KeyboardInterrupt:
+                with suppress(OSError):  # what keeps the answers may lie in it
+                    out.rmdir()
+            if isinstance(end, TpvqaError):
+                raise
             kept = config.vlm.cache is not None
             said = "the same command goes on" if kept else "with --cache FILE it could go on"
             print(f"interrupted; {said}", file=sys.stderr)
@@ -243,8 +245,13 @@ def _tell_doubled(vlms: Sequence[str]) -> None:
 
 def _check_out(out: Path) -> bool:
     """What would end the work at its end is told before it; gives whether the folder is new."""
-    from tpvqa.errors import WriteError
+    from tpvqa.errors import TpvqaError, WriteError
 
+    for name in _WRITTEN:
+        if (out / name).is_symlink():
+            raise TpvqaError(
+                f"{out / name} is a link, and would be lost; name another folder with --out"
+            )
     there = out.exists()
     try:
         out.mkdir(parents=True, exist_ok=True)

@@ -9,8 +9,10 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, Protocol
 
+from pydantic import TypeAdapter
+
 from tpvqa.errors import TrainingError, WriteError
-from tpvqa.files import write_whole
+from tpvqa.files import read_plain, write_whole
 from tpvqa.plugins import Closing
 from tpvqa.training.example import Example, consistent
 from tpvqa.training.protocol import Noticing, Trainer, TrainingSettings
@@ -176,6 +178,7 @@ def see_free(out: Path) -> None:
 def _begin(part: Path, identity: str) -> bool:
     """Make the folder of what is under way; whether it was there."""
     path = part / _IDENTITY
+    _see_own(part)
     try:
         if part.is_dir() and path.is_file():
             if path.read_bytes() != identity.encode():
@@ -189,6 +192,26 @@ def _begin(part: Path, identity: str) -> bool:
         raise WriteError.of(part, error, _ROOM) from error
     write_whole(path, identity.encode(), remedy=_ROOM)
     return False
+
+
+def _see_own(part: Path) -> None:
+    """See that the folder of what is under way is one, or may become it: it is removed at the end.
+
+    Raises:
+        TrainingError: It is a link, or something else lies in it.
+        WriteError: It cannot be read.
+    """
+    try:
+        if not part.is_symlink() and not (part.is_dir() and any(part.iterdir())):
+            return
+    except OSError as error:
+        raise WriteError.of(part, error, _ROOM) from error
+    if part.is_symlink() or not (part / _IDENTITY).is_file():
+        raise TrainingError(
+            f"{part} is where what is under way would lie, and is "
+            f"{'a link' if part.is_symlink() else 'a folder that no training made'}. Move it away, "
+            "or name another folder with --out"
+        )
 
 
 def _identity(
@@ -216,10 +239,16 @@ def _before(
     """The figures before; kept, as the same call is made again after a stop."""
     path = part / _BEFORE
     if path.is_file():
-        from tpvqa.training.scoring import Figure
-
-        told = json.loads(path.read_text(encoding="utf-8"))
-        return Scores(**{name: Figure(**figure) for name, figure in told.items()})
+        try:
+            data = read_plain(path)
+            told = TypeAdapter(Scores).validate_json(data)
+            if told.plain() == json.loads(data):  # no number that is none, nothing besides
+                return told
+        except (OSError, ValueError):
+            pass
+        raise TrainingError(
+            f"{path} is damaged. Remove it, and the same command counts these figures again"
+        )
     before = scores(held, _answers(spec, held, context, progress, "questions before"), seed=seed)
     _write(path, before.plain())
     return before

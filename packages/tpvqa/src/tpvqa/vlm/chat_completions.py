@@ -213,7 +213,11 @@ def read_completion(body: str | bytes, question: str | None = None) -> Reading:
         body: What the server sent.
         question: What was asked, where that is known.
     """
-    readings = read_choices(body, question)
+    return agreed(read_choices(body, question))
+
+
+def agreed(readings: Sequence[Reading]) -> Reading:
+    """What the choices of a reply say, of which one was asked for."""
     if len({reading.reply for reading in readings}) > 1:
         said = " / ".join(reading.text for reading in readings)
         return Reading(Reply.UNKNOWN, text=f"several answers: {said[:200]}")
@@ -290,16 +294,28 @@ def tokens_of(logprobs: Any) -> list[Token]:
         content = _Logprobs.model_validate(logprobs).content or []
     except ValidationError:
         return []
-    return [
-        Token(
-            text=token.token,
-            alternatives={
-                each.token: _logarithm(each.logprob)
-                for each in (token, *(token.top_logprobs or ()))
-            },
-        )
-        for token in content
-    ]
+    return [Token(token.token, _alternatives(token)) for token in content]
+
+
+def _alternatives(token: _Token) -> dict[str, float]:
+    """The logarithms of what a token could have been; tokens that are spelt alike count together.
+
+    A vocabulary may have several such, with and without a space before them, say.
+    """
+    found: dict[str, float] = {}
+    for each in token.top_logprobs or ():
+        logarithm = _logarithm(each.logprob)
+        if each.token in found:
+            logarithm = _together(found[each.token], logarithm)
+        found[each.token] = logarithm
+    return {token.token: _logarithm(token.logprob), **found}
+
+
+def _together(one: float, other: float) -> float:
+    if not (one <= 0 and other <= 0):
+        return math.nan
+    both = math.exp(one) + math.exp(other)
+    return min(0.0, math.log(both)) if both else -math.inf
 
 
 def _logarithm(told: object) -> float:

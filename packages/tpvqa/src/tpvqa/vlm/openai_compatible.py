@@ -394,7 +394,7 @@ class OpenAICompatibleVLM(NeedsPictures, SeesBefore, PlainArguments):
         if isinstance(body, Reading):
             return [[body] * count]
         if inquiry.together:
-            return read_together(body, count, max(1, samples))
+            return read_together(body, count, samples)
         if samples:
             return [[each] for each in read_choices(body, inquiry.texts[0], samples)]
         return [[read_completion(body, inquiry.texts[0])]]

@@ -13,6 +13,7 @@ from tpvqa.vlm.chat_completions import (
     ENDED_BY_ITSELF,
     LONGEST_REPLY,
     Choice,
+    agreed,
     choices_of,
     tokens_of,
 )
@@ -21,7 +22,7 @@ from tpvqa.vlm.reply_shape import unwrapped
 from tpvqa.vlm.yes_no import Token, mass, meaning
 
 
-def read_together(body: str | bytes, count: int, choices: int = 1) -> list[list[Reading]]:
+def read_together(body: str | bytes, count: int, choices: int = 0) -> list[list[Reading]]:
     """Read the body of a reply to so many questions.
 
     An answer that is missing, doubled, or none of yes, no and unknown is *unknown* by itself; where
@@ -30,7 +31,8 @@ def read_together(body: str | bytes, count: int, choices: int = 1) -> list[list[
     Args:
         body: What the server sent.
         count: How many questions it was asked.
-        choices: How many replies it was asked for; what it says beyond them is not read.
+        choices: How many samples it was asked for; what it says beyond them is not read. 0 where
+            one reply was asked for: what others say otherwise is *unknown*.
 
     Returns:
         For each choice the readings, in the order of the questions.
@@ -38,6 +40,8 @@ def read_together(body: str | bytes, count: int, choices: int = 1) -> list[list[
     found = choices_of(body)
     if isinstance(found, Reading):
         return [[found] * count]
+    if not choices:
+        return [[agreed(each) for each in zip(*(_read(one, count) for one in found), strict=True)]]
     return [_read(choice, count) for choice in found[:choices]]
 
 

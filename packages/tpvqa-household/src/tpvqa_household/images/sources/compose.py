@@ -6,6 +6,7 @@ a kill, before the manifest knew of it, is found again. Nothing is ever deleted:
 wanted is moved into the folder `unused`, and taken back from there when it is wanted again.
 """
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +20,7 @@ from tpvqa_household.images.manifest import (
     Picture,
     Shows,
 )
+from tpvqa_household.images.own_pictures import existing, see_own, was_composed
 from tpvqa_household.images.reachable import Reachable
 from tpvqa_household.images.recipe import FACTS
 from tpvqa_household.images.sources.generator import Drawn, Original
@@ -28,6 +30,7 @@ from tpvqa_household.images.verify import observations
 from tpvqa_household.images.visible import VisibleState, describe
 from tpvqa_household.images.writing import alone, replace, write_manifest
 
+_COMMAND = "tpvqa dataset compose"
 UNUSED = "unused"
 """Folder, in that of a set, of pictures that are no longer wanted."""
 REJECTED = "rejected"
@@ -60,10 +63,10 @@ def pending(wanted: Sequence[Wanted], folder: Path) -> list[Wanted]:
     """The pictures that a composition would make, copy or ask for.
 
     Raises:
-        PictureSetError: The folder holds a set that was not composed.
+        PictureSetError: The folder holds pictures that were not composed.
     """
-    existing = _existing(folder)
-    return [one for one in wanted if _there(one, folder, existing) is None]
+    known = _existing(wanted, folder)
+    return [one for one in wanted if _there(one, folder, known) is None]
 
 
 def compose(
@@ -88,15 +91,17 @@ def compose(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with alone(folder):
-            return _Composer(folder, tasks).run(wanted, progress or (lambda done, total: None))
+            known = _existing(wanted, folder)
+            return _Composer(known, folder, tasks).run(
+                wanted, progress or (lambda done, total: None)
+            )
     except OSError as error:
         raise PictureSetError(f"{folder}: cannot be written to ({error})") from error
 
 
 class _Composer:
-    def __init__(self, folder: Path, tasks: Sequence[Reachable]):
-        self._folder, self._tasks = folder, tasks
-        self._existing = _existing(folder)
+    def __init__(self, known: Mapping[str, Picture], folder: Path, tasks: Sequence[Reachable]):
+        self._existing, self._folder, self._tasks = known, folder, tasks
         self._shows: dict[VisibleState, tuple[Shows, ...]] = {}
 
     def run(self, wanted: Sequence[Wanted], progress: Callable[[int, int], None]) -> Composed:
@@ -137,10 +142,18 @@ class _Composer:
         return composed
 
     def _put_away(self, names: set[str]) -> None:
-        for path in self._folder.glob("*.jpg"):
-            if path.name not in names:
-                (self._folder / UNUSED).mkdir(exist_ok=True)
-                path.replace(self._folder / UNUSED / path.name)
+        unused = self._folder / UNUSED
+        away = [path for path in self._folder.glob("*.jpg") if path.name not in names]
+        for path in away:
+            there = unused / path.name
+            if os.path.lexists(there) and not _same(path, there):
+                raise PictureSetError(
+                    f"{there}: is another picture than {path}, which is no longer wanted and would "
+                    "take its place. Move one of them away"
+                )
+        for path in away:
+            unused.mkdir(exist_ok=True)
+            path.replace(unused / path.name)
 
     def _kept(self, one: Wanted, path: Path) -> Picture:
         data = read_file(path)
@@ -190,16 +203,10 @@ class _Composer:
         write_manifest(self._folder, to.manifest)
 
 
-def _existing(folder: Path) -> dict[str, Picture]:
-    try:
-        manifest = Manifest.model_validate_json(read_file(MANIFEST, inside=folder))
-    except (PictureError, ValueError):
-        return {}
-    if any(picture.origin == Origin() for picture in manifest.pictures):
-        raise PictureSetError(
-            f"{folder}: holds a set that `tpvqa dataset build` made. Name another folder"
-        )
-    return {picture.file: picture for picture in manifest.pictures}
+def _existing(wanted: Sequence[Wanted], folder: Path) -> dict[str, Picture]:
+    found = {picture.file: picture for picture in existing(folder, was_composed, _COMMAND)}
+    see_own(folder, {*found, *(one.file for one in wanted)}, _COMMAND)
+    return found
 
 
 def _there(one: Wanted, folder: Path, existing: Mapping[str, Picture]) -> Path | None:
@@ -215,6 +222,13 @@ def _there(one: Wanted, folder: Path, existing: Mapping[str, Picture]) -> Path |
         if known is None and one.generator is not None and one.generator.remote and _whole(data):
             return path  # no manifest knows it: written in the moment of a kill, or put away
     return None
+
+
+def _same(one: Path, other: Path) -> bool:
+    try:
+        return read_file(one) == read_file(other)
+    except PictureError:
+        return False
 
 
 def _whole(data: bytes) -> bool:

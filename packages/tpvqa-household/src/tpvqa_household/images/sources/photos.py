@@ -1,15 +1,18 @@
 """A folder of the user's photos: which action and outcome each of them shows."""
 
 import csv
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from tpvqa.errors import PhotosError, PictureError, WorldError, suggestion_or_list
+from tpvqa.files import read_plain
 from tpvqa.pddl import Atom, State
 from tpvqa.pictures import read_file
 from tpvqa.worlds.pictures import digest
+from tpvqa.worlds.pictures.manifest import fact
 from tpvqa_household.images.manifest import OUTCOMES
 from tpvqa_household.images.recipe import FACTS
 from tpvqa_household.images.sources.labels import Label, file_name
@@ -20,6 +23,7 @@ SUFFIXES = frozenset(
     (".jpg", ".jpeg", ".png", ".webp", ".bmp", ".gif", ".tif", ".tiff", ".heic", ".heif")
 )
 COLUMNS = ("file", "task", "action", "outcome", "facts")
+_LARGEST = 16 * 2**20  # bytes of a table; a device has no end
 SHOWN = 10
 """Faults that are listed; more are counted."""
 
@@ -140,6 +144,11 @@ def _by_folder(folder: Path) -> Iterator[_Claim]:
         hidden = any(part.startswith(".") for part in below.parts)
         if hidden or path.suffix.lower() not in SUFFIXES or not path.is_file():
             continue
+        try:
+            str(below).encode()  # as the manifest names it
+        except UnicodeEncodeError:
+            said = f"{ascii(str(below))[1:-1]}: the name is not UTF-8. Rename it"
+            raise PhotosError(said, file=folder) from None
         parts = below.parts[:-1]
         if not 2 <= len(parts) <= 3:
             raise PhotosError(
@@ -154,18 +163,31 @@ def _by_folder(folder: Path) -> Iterator[_Claim]:
 
 def _by_table(table: Path, folder: Path) -> Iterator[_Claim]:
     try:
-        text = table.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise PhotosError(f"cannot be read ({error})", file=table) from error
+        text = read_plain(table, most=_LARGEST).decode("utf-8-sig")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise PhotosError(f"cannot be read ({reason})", file=table) from error
     reader = csv.DictReader(text.splitlines())
-    columns = [(name or "").strip().lower() for name in reader.fieldnames or ()]
+    try:
+        columns = [(name or "").strip().lower() for name in reader.fieldnames or ()]
+    except csv.Error as error:
+        raise PhotosError(f"is no CSV ({error})", file=table, line=1) from error
     absent = [name for name in ("file", "action", "outcome") if name not in columns]
     strange = [name for name in columns if name not in COLUMNS]
     if absent or strange:
         what = f"no column {absent[0]!r}" if absent else f"unknown column {strange[0]!r}"
         raise PhotosError(f"{what}; the columns are {', '.join(COLUMNS)}", file=table, line=1)
+    twice = next((name for name in columns if columns.count(name) > 1), None)
+    if twice is not None:
+        raise PhotosError(f"the column {twice!r} is there twice; keep one", file=table, line=1)
     reader.fieldnames = columns
-    for row in reader:
+    for row in _rows(reader, table):
+        if None in row:
+            raise PhotosError(
+                f"more cells than the {len(columns)} columns; put cells with commas in quotes",
+                file=table,
+                line=reader.line_num,
+            )
         entry = {key: (row.get(key) or "").strip() for key in COLUMNS}
         if not any(entry.values()):
             continue
@@ -179,6 +201,13 @@ def _by_table(table: Path, folder: Path) -> Iterator[_Claim]:
             table=table,
             line=reader.line_num,
         )
+
+
+def _rows(reader: "csv.DictReader[str]", table: Path) -> Iterator[dict[str, str]]:
+    try:
+        yield from reader
+    except csv.Error as error:
+        raise PhotosError(f"is no CSV ({error})", file=table, line=reader.line_num + 1) from error
 
 
 def _photo(claim: _Claim, labels: Sequence[Label]) -> Photo:
@@ -224,7 +253,7 @@ def _label(claim: _Claim, labels: Sequence[Label]) -> Label:
 def _state(claim: _Claim, label: Label) -> State:
     if not claim.facts:
         return label.state
-    atoms = {Atom.parse(text) for text in claim.facts.replace(";", ")").split(")") if text.strip()}
+    atoms = _facts(claim)
     strange = [atom for atom in sorted(atoms) if atom not in FACTS]
     if strange:
         known = [atom.pddl() for atom in FACTS]
@@ -243,6 +272,15 @@ def _state(claim: _Claim, label: Label) -> State:
             f"{label.shows.action}. Possible: {'; '.join(possible)}"
         )
     return state
+
+
+def _facts(claim: _Claim) -> set[Atom]:
+    """The facts of a cell, in parentheses or apart by semicolons."""
+    parts = re.split(r"(?<=\))|;", claim.facts)
+    try:
+        return {Atom.parse(fact(part.strip())) for part in parts if part.strip()}
+    except ValueError as error:
+        raise claim.wrong(f"column facts: {error}") from error
 
 
 def _changed(usual: State, facts: Set[Atom]) -> State:

@@ -1,6 +1,7 @@
 """One self-contained HTML page about an episode: pictures, questions, answers, decisions."""
 
 import base64
+import os
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -62,7 +63,8 @@ def write_report(folder: Path | str, out: Path | str | None = None, *, force: bo
         raise EpisodeError(f"{path} is a folder; name the file to write, e.g. {path}/report.html")
     if out is not None and not path.parent.is_dir():
         raise EpisodeError(f"{path}: there is no folder {path.parent}; make it, or name another")
-    _see_free(path, folder, force=force)
+    # A link that lies in the folder of an episode was put there by who gave it away.
+    _see_free(path, folder, force=force or (out is None and path.is_symlink()))
     page = render_report(read_episode(folder), folder)
     data = page.encode(errors="replace")
     write_whole(path, data, remedy="Name another file with --out")
@@ -75,7 +77,7 @@ def _see_free(path: Path, folder: Path, *, force: bool) -> None:
             f"{path} is what the episode consists of, and would be lost; name another file with "
             "--out"
         )
-    if not (force or not path.exists() or path.is_symlink() or _is_report(path)):
+    if not (force or not os.path.lexists(path) or _is_report(path)):
         raise EpisodeError(
             f"{path} is there, and is no report of an episode; name another file with --out, or "
             "write over it with --force"

@@ -19,6 +19,7 @@ from collections import OrderedDict
 from typing import Any
 
 from tpvqa.pddl.worker.known_task import KnownTask, Leaving
+from tpvqa.pddl.worker.memory_limit import within
 from tpvqa.pddl.worker.reading_error import ReadingError
 from tpvqa.pddl.worker.search import Searcher, SearchOutcome
 
@@ -143,9 +144,8 @@ class Worker:
         self._memory = math.inf if memory is None else memory << 20
         limit = highest
         if memory is not None:
-            limit = (memory << 20) + max(_MARGIN, memory << 18)
+            limit = within((memory << 20) + max(_MARGIN, memory << 18))
             if highest != resource.RLIM_INFINITY:
-                limit = min(limit, highest)
                 self._memory = min(self._memory, highest - _MARGIN)
         resource.setrlimit(resource.RLIMIT_AS, (limit, highest))
 

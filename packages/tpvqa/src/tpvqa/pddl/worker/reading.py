@@ -65,6 +65,8 @@ def read(domain_text: str, problem_text: str) -> tuple[Any, Unsure]:
     if found is not None:
         raise ReadingError(found[0], "domain", found[1])
     _check_things(blocks)
+    # Of two the parser takes the last, and blames whoever uses the other.
+    _check_unique("predicates", _declared(blocks["domain"], ":predicates"))
     try:
         unsure = taken_out(blocks["problem"])
     except UnsureError as error:
@@ -135,12 +137,17 @@ def _check_things(blocks: Mapping[str, Block]) -> None:
 
 
 def _function_names(domain: Block) -> set[str]:
-    return {
-        str(each[0])
-        for section in sections(domain, ":functions")
+    return set(map(str, _declared(domain, ":functions")))
+
+
+def _declared(domain: Block, kind: str) -> list[Any]:
+    """The names, with their lines, that blocks of a section of a domain begin with."""
+    return [
+        each[0]
+        for section in sections(domain, kind)
         for each in section
-        if isinstance(each, Block) and each
-    }
+        if isinstance(each, Block) and each and isinstance(each[0], str)
+    ]
 
 
 def _not_understood(error: Exception) -> ReadingError:
@@ -336,14 +343,13 @@ def _check_derived(task: Any) -> None:
 
 
 def _check_names(task: Any, domain: Block) -> None:
-    """Two actions, predicates or parameters of one name would be ambiguous.
+    """Two actions or parameters of one name would be ambiguous.
 
     Actions are those of the text, as the translator drops the ones without an effect.
     """
     kinds = (":action", ":durative-action")
     written = (action[1] for kind in kinds for action in sections(domain, kind))
     _check_unique("actions", (name for name in written if isinstance(name, str)))
-    _check_unique("predicates", (each.name for each in task.predicates if each.name != "="))
     for action in task.actions:
         _check_unique(
             f"parameters of the action {shown(action.name)}",

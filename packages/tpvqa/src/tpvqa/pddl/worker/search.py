@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tpvqa.pddl.worker.ahead import BEGIN, Ahead
+from tpvqa.pddl.worker.memory_limit import within
 
 if TYPE_CHECKING:
     from tpvqa.pddl.worker.grounding import AtomKey, SASTemplate
@@ -68,7 +69,7 @@ class _Child:
     """A `downward` process that waits for its task on standard input."""
 
     def __init__(self, binary: str, search: str, memory: int | None, in_child: Callable[[], None]):
-        self.search, self.memory = search, memory
+        self.search, self.memory, self._limit = search, memory, memory
         self.ahead: Ahead | None = None
         self._plan = os.memfd_create("plan")
         self._log = os.memfd_create("log")
@@ -87,7 +88,8 @@ class _Child:
         os.set_blocking(self._input.fileno(), False)
         self._handle = os.pidfd_open(self._process.pid)
         if memory is not None:
-            limit = memory << 20
+            limit = within(memory << 20)
+            self._limit = limit >> 20
             resource.prlimit(self._process.pid, resource.RLIMIT_AS, (limit, limit))
 
     def fits(self, search: str, memory: int | None, ahead: Ahead | None) -> bool:
@@ -127,7 +129,7 @@ class _Child:
     def outcome(self) -> SearchOutcome:
         """How the search ended, once the process has."""
         plan, log = _contents(self._plan), _contents(self._log)
-        return _outcome(self._process.returncode, plan, log, self.memory)
+        return _outcome(self._process.returncode, plan, log, self._limit)
 
     def kill(self) -> None:
         """End the process, if it still runs."""

@@ -5,7 +5,9 @@ a reader does not know are passed over, so that every set can be read as a plain
 """
 
 import hashlib
+import re
 from functools import cached_property, lru_cache
+from json import JSONDecodeError
 from pathlib import Path
 from typing import Annotated, Generic, TypeVar
 from typing import Literal as Choice
@@ -14,8 +16,9 @@ from pydantic import AfterValidator, ConfigDict, Field, ValidationError
 
 from tpvqa.errors import PictureError, PictureSetError
 from tpvqa.pddl import Atom, State
+from tpvqa.pddl.arithmetic import COMPARISONS
 from tpvqa.pictures import read_file
-from tpvqa.told import ToldModel, first_fault
+from tpvqa.told import ToldModel, check_names, first_fault
 
 MANIFEST = "manifest.json"
 _LONGEST_NAME = 300
@@ -29,13 +32,27 @@ def _name(text: str) -> str:
     return text
 
 
+_WORD = r"[^\s(),]+"
+_ATOM = re.compile(
+    rf"\s*(\(\s*{_WORD}(\s+{_WORD})*\s*\)|{_WORD}(\s+{_WORD})*"
+    rf"|{_WORD}\(\s*({_WORD}(\s*,\s*{_WORD})*)?\s*\))\s*"
+)
+
+
 @lru_cache(maxsize=4096)
-def _fact(text: str) -> str:
-    """A fact as PDDL writes it."""
-    return Atom.parse(_name(text)).pddl()
+def fact(text: str) -> str:
+    """A fact as PDDL writes it.
+
+    Raises:
+        ValueError: It is none; `Atom.parse` overlooks a parenthesis too many or too few.
+    """
+    atom = Atom.parse(_name(text))
+    if atom.predicate not in COMPARISONS and not _ATOM.fullmatch(text):
+        raise ValueError(f"{text!r} is not an atom; write it as (predicate object …)")
+    return atom.pddl()
 
 
-Fact = Annotated[str, AfterValidator(_fact)]
+Fact = Annotated[str, AfterValidator(fact)]
 
 
 def _below(file: str) -> str:
@@ -135,6 +152,12 @@ def read_manifest(folder: Path, kind: type[M], *, missing: str, broken: str) -> 
         text = read_file(MANIFEST, inside=folder, most=_MOST_BYTES)
     except PictureError as error:
         raise PictureSetError(f"{error}. {missing}") from error
+    try:
+        check_names(text)
+    except (JSONDecodeError, UnicodeDecodeError, RecursionError):
+        pass  # the model that it is read into says so
+    except ValueError as error:  # of two labels one would count, and nobody knows which is meant
+        raise PictureSetError(f"{path}: {error} in one object. {broken}") from None
     try:
         return kind.model_validate_json(text)
     except ValidationError as error:

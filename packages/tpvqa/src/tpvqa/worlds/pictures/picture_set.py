@@ -64,17 +64,33 @@ class PictureSet(Generic[P]):
             )
 
     def check(self) -> None:
-        """See whether all pictures are there, and are those that the manifest means.
+        """See whether all pictures are there, and are those that the manifest means, and whether
+        what it says of the same picture twice is the same.
 
         Raises:
             PictureSetError: One is not.
         """
+        self._see_agreed()
         for picture in self.manifest.pictures:
             if digest(self.read(picture)) != picture.sha256:
                 raise PictureSetError(
                     f"{self.folder / picture.file}: its SHA-256 is not the manifest's. "
                     f"Put the right picture there, or label it again in {MANIFEST}"
                 )
+
+    def _see_agreed(self) -> None:
+        said: dict[str, dict[str, tuple[bool, str]]] = {}
+        for picture in self.manifest.pictures:
+            known, true = said.setdefault(picture.sha256, {}), set(picture.state)
+            for fact in sorted(picture.seen):
+                holds, file = known.setdefault(fact, (fact in true, picture.file))
+                if holds != (fact in true):
+                    also = "twice" if file == picture.file else f"as {shown(file)}, too"
+                    raise PictureSetError(
+                        f"{self.folder / picture.file}: the picture is listed {also}, and of "
+                        f"{fact} it is said that it is true and that it is false. Keep one label "
+                        f"in {MANIFEST}"
+                    )
 
 
 def load_set(folder: Path) -> PictureSet[Picture]:
