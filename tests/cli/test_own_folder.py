@@ -63,6 +63,12 @@ def test_a_folder_that_holds_no_single_task_is_refused(
     assert says in " ".join(told.split())
 
 
+def test_of_a_folder_of_folders_these_are_named(tpvqa: Run, ward: Path) -> None:
+    code, _, told = tpvqa("plan", str(ward.parent))
+    assert code == 2
+    assert "Name one of its folders: my ward" in " ".join(told.split())
+
+
 def test_a_shipped_task_goes_before_a_folder_of_its_name(
     tpvqa: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

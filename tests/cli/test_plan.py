@@ -240,7 +240,7 @@ def test_no_name_of_a_planner_and_half_an_atom(typed: Typed, folder: Path) -> No
 
 
 def test_a_plan_under_a_limit_of_memory() -> None:
-    command = f"ulimit -v 1500000; {sys.executable} -m tpvqa plan eat_apple"
-    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=120)
+    command = ["bash", "-c", 'ulimit -v 1500000; exec "$0" -m tpvqa plan eat_apple', sys.executable]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "cut_in_half(apple, knife, left, right)" in done.stdout

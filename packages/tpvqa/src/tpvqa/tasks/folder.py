@@ -33,9 +33,10 @@ def only_task(folder: Path) -> tuple[Path, Path]:
     """
     problems = problems_in(folder)
     if not problems:
+        inside = ", ".join(sorted(each.parent.name for each in folder.glob(f"*/{DOMAIN}")))
+        remedy = f"Name one of its folders: {inside}" if inside else "Name domain and problem"
         raise TpvqaError(
-            f"{folder} holds no problem: *.pddl besides {DOMAIN}, nor *{PROGRAM} alone. "
-            "Name the files themselves, the domain first"
+            f"{folder} holds no problem: *.pddl besides {DOMAIN}, nor *{PROGRAM} alone. {remedy}"
         )
     if len(problems) > 1:
         names = ", ".join(each.name for each in problems)
