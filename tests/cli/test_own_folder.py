@@ -19,6 +19,7 @@ def ward(tmp_path: Path) -> Path:
 
 
 def test_a_folder_plans_as_its_files_do(tpvqa: Run, ward: Path) -> None:
+    (ward / "older.pddl").mkdir()
     files = [str(ward / name) for name in ("domain.pddl", "problem.pddl")]
     code, by_folder, _ = tpvqa("plan", str(ward), "--json")
     again, by_files, _ = tpvqa("plan", *files, "--json")

@@ -23,7 +23,7 @@ from tpvqa.vlm import Answer, Reply
 
 SAME = 3
 """Looks in a row at which nothing new is seen, before no more are taken."""
-SETTLED = 6
+STALE = 6
 """Rounds of questions in a row that settle nothing more, before no more are asked."""
 LESS = 0.9
 """Something is settled where so much of what was in doubt is left, or less."""
@@ -98,7 +98,7 @@ def first_look(
         doubt = fsum(_doubt(each, prior) for each in questions.values() if views(each))
         stale = stale + 1 if doubt > LESS * least else 0
         least = min(least, doubt)
-        if stale >= SETTLED and rounds >= enough:
+        if stale >= STALE and rounds >= enough:
             return
 
 

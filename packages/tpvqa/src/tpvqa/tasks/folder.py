@@ -22,7 +22,7 @@ def problems_in(
     """
     known = {realpath(each) for each in (folder / DOMAIN, *domains)}
     found = [*folder.glob("*.pddl"), *(folder.glob(f"*{PROGRAM}") if programs else ())]
-    return [each for each in sorted(found) if realpath(each) not in known]
+    return [each for each in sorted(found) if each.is_file() and realpath(each) not in known]
 
 
 def only_task(folder: Path) -> tuple[Path, Path]:
