@@ -25,7 +25,7 @@ from household_problems import household_problem  # type: ignore[import-not-foun
 from nearest import seconds  # type: ignore[import-not-found]
 
 from tpvqa.assembly import Trial
-from tpvqa.belief.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
 from tpvqa.config import TaskConfig, TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.monitors import Ask, Monitor, PlanFrom, Step, Verdict

@@ -16,11 +16,11 @@ from statistics import mean, quantiles
 import numpy as np
 
 from tpvqa.assembly import Trial
-from tpvqa.belief.belief import MOST, SMALLEST, Belief
-from tpvqa.belief.calibration import AnswerRates, Calibration, Curve, Group
-from tpvqa.belief.faults import FaultModel, JointState, Rates
-from tpvqa.belief.information import Floats
-from tpvqa.belief.weighed import Instead
+from tpvqa.belief.answers.information import Floats
+from tpvqa.belief.answers.weighed import Instead
+from tpvqa.belief.calibrating.calibration import AnswerRates, Calibration, Curve, Group
+from tpvqa.belief.filtering.belief import MOST, SMALLEST, Belief
+from tpvqa.belief.filtering.faults import FaultModel, JointState, Rates
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.monitors.belief import BeliefMonitor

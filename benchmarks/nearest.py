@@ -13,8 +13,8 @@ import statistics
 import time
 from random import Random
 
-from tpvqa.belief.constraints import Constraints
-from tpvqa.belief.nearest import Facts, Nearest
+from tpvqa.belief.states.constraints import Constraints
+from tpvqa.belief.states.nearest import Facts, Nearest
 from tpvqa.pddl import Atom, State
 
 RUNS = 100

@@ -18,12 +18,17 @@ TABLES = {
     HOUSEHOLD: "Rooms of the household",
     ROBOTS: "Rooms of the robots",
 }
+BELIEF = SOURCE / "belief"
 
 
 def rooms(source: Path) -> dict[str, set[str]]:
     """Room → what it may import, from the table; "everything above" spelled out."""
+    return table(TABLES[source])
+
+
+def table(title: str) -> dict[str, set[str]]:
     found: dict[str, set[str]] = {}
-    section = PAGE.partition(f"## {TABLES[source]}\n")[2].partition("\n## ")[0]
+    section = PAGE.partition(f"## {title}\n")[2].partition("\n## ")[0]
     for line in section.splitlines():
         match = re.match(r"\| `(\w+)` \|.*\| ([^|]+) \|$", line)
         if match:
@@ -107,6 +112,19 @@ def test_a_room_imports_only_what_the_table_allows(path: Path) -> None:
     assert imported_rooms(path, source.name) - {room} <= rooms(source)[room]
 
 
+def test_rooms_of_the_belief_import_only_what_their_table_allows() -> None:
+    allowed, met = table("Rooms of the belief"), set()
+    for path in BELIEF.rglob("*.py"):
+        room = path.relative_to(BELIEF).parts[0].removesuffix(".py")
+        if room == "__init__":
+            continue
+        met.add(room)
+        names = imports(path.read_text())
+        imported = {name.split(".")[2] for name in names if name.startswith("tpvqa.belief.")}
+        assert imported - {room} <= allowed[room], path
+    assert met == set(allowed)
+
+
 def test_the_core_imports_nothing_of_the_other_distributions() -> None:
     for path in OF_THE_CORE:
         roots = {name.partition(".")[0] for name in imports(path.read_text())}
@@ -181,7 +199,7 @@ def test_no_script_hides_a_module_of_the_standard_library_from_those_beside_it()
 CORE = "packages/tpvqa/src/tpvqa"
 ASKING = {
     f"{CORE}/vlm/checking.py": "vlm.ask",
-    f"{CORE}/belief/evidence.py": "self._words.ask",
+    f"{CORE}/belief/weighing/evidence.py": "self._words.ask",
     f"{CORE}/monitors/asker.py": "asker.ask",
     f"{CORE}/monitors/correcting.py": "self._asker.ask",
     f"{CORE}/monitors/palme_vqa.py": "self._asker.ask",

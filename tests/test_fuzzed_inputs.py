@@ -13,8 +13,8 @@ import pytest
 from tests.mutants import mutant
 from tests.pddl import fuzzing
 from tpvqa.belief import Calibration
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.trust import GRID
+from tpvqa.belief.answers.trust import GRID
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.config.layers import as_yaml, combined, file_layer
 from tpvqa.config.model import TrialConfig
 from tpvqa.errors import PDDLError, PlacedError, TpvqaError

@@ -9,7 +9,7 @@ import pytest
 
 from tests.conftest import Install
 from tpvqa import Trial, TrialConfig
-from tpvqa.belief.shipped import shipped_calibration
+from tpvqa.belief.calibrating.shipped import shipped_calibration
 from tpvqa.defaults import default_vlm
 from tpvqa.errors import MissingExtraError, PluginError, UnknownNameError
 from tpvqa.monitors.making import make_monitor

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tpvqa.assembly import Trial
-from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.filtering.faults import FaultModel
 from tpvqa.config import TrialConfig
 from tpvqa.drivers import Parts
 from tpvqa.episodes import EpisodeWriter, read_episode

@@ -2,7 +2,8 @@
 
 Prints by what factor the words of each recorded VLM, in each environment, are worth more or less
 than the default calibration takes them to be worth (log odds of being right, yes and no alike):
-`RECORDED` in `tpvqa.belief.trust`. From the shipped recordings of ViPlan (Merler et al. 2025).
+`RECORDED` in `tpvqa.belief.answers.trust`. From the shipped recordings of ViPlan (Merler et al.
+2025).
 """
 
 import gzip
@@ -11,7 +12,7 @@ from collections import Counter
 from importlib.resources import files
 from math import log
 
-from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.vlm import Reply
 
 ANSWERS = files("tpvqa.vlm.recorded") / "answers.json.gz"

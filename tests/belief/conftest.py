@@ -2,7 +2,7 @@
 
 import pytest
 
-from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.filtering.faults import FaultModel
 from tpvqa.pddl import Task, load_task
 from tpvqa.questions import QuestionBook
 from tpvqa.tasks import find_task

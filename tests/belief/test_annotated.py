@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from tests.planning.random_states import scrambled, walk
-from tpvqa.belief.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
 from tpvqa.pddl import Task, literals
 from tpvqa.pddl.validation import validate
 from tpvqa.planning import Plan, Planner

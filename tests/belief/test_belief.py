@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.belief.brute_force import World, act, marginal
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
 from tpvqa.pddl import Action, Atom, Task, load_task
 from tpvqa.tasks import find_task
 from tpvqa.worlds.world_file import WorldRules, load_world_file

@@ -9,14 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.biases import FIRST, KEPT, Biases, Row
-from tpvqa.belief.calibration import AnswerRates, Calibration, Group
-from tpvqa.belief.chances import Chances
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.trust import Trust
+from tpvqa.belief.answers.biases import FIRST, KEPT, Biases, Row
+from tpvqa.belief.answers.trust import Trust
+from tpvqa.belief.calibrating.calibration import AnswerRates, Calibration, Group
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.learning.chances import Chances
+from tpvqa.belief.learning.experience import Experience
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.pddl import Literal, load_task
 from tpvqa.questions import FactQuestion, QuestionBook, Way
 from tpvqa.tasks import find_task

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tpvqa.belief import AnswerRates, Apart, Calibration, Curve, Group
-from tpvqa.belief.bounds import BOUND
+from tpvqa.belief.answers.bounds import BOUND
 from tpvqa.errors import CalibrationError, WriteError
 from tpvqa.pddl import Action, Atom, Conjunction
 from tpvqa.questions import ActionQuestion, ActionWay, FactQuestion, FactWay, Way

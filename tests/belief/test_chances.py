@@ -6,11 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.chances import Beta, Chances
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.faults import Rates
-from tpvqa.belief.trust import Trust
+from tpvqa.belief.answers.trust import Trust
+from tpvqa.belief.calibrating.beta import Beta
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.filtering.faults import Rates
+from tpvqa.belief.learning.chances import Chances
+from tpvqa.belief.learning.experience import Experience
 
 cases = st.floats(0.5, 200)
 

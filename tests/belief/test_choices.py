@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from tpvqa.belief.annotated import AnnotatedPlan
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import SkillState
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.choices import Chooser
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.filtering.sight import Sight
+from tpvqa.belief.learning.skills import SkillState
 from tpvqa.pddl import Atom, load_task, task_from_text
 from tpvqa.planning.regression import regress
 

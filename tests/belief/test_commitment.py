@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.annotated import AnnotatedPlan
-from tpvqa.belief.commitment import Commitments
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel, JointState, Rates
-from tpvqa.belief.outlook import Outlook
-from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import SkillState
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.commitment import Commitments
+from tpvqa.belief.deciding.outlook import Outlook
+from tpvqa.belief.filtering.faults import FaultModel, JointState, Rates
+from tpvqa.belief.filtering.sight import Sight
+from tpvqa.belief.learning.skills import SkillState
 from tpvqa.pddl import Atom, load_task
 from tpvqa.planning.regression import regress
 

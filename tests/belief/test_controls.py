@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.belief.test_belief import plan_of
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.controls import Controls, worth_asking
+from tpvqa.belief.answers.trust import Trust
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.trust import Trust
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel
+from tpvqa.belief.weighing.controls import Controls, worth_asking
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.pddl import Literal, load_task
 from tpvqa.questions import FactQuestion, FactWay, QuestionBook, Way
 from tpvqa.tasks import find_task

@@ -4,12 +4,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.chances import Chances
-from tpvqa.belief.counted import Came, CountedFaults, LabelledAct, SkillCount, count_faults
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.faults import Rates
-from tpvqa.belief.skills import ALIKE, NAMED
-from tpvqa.belief.spread import TRIES, alike
+from tpvqa.belief.calibrating.counted import (
+    Came,
+    CountedFaults,
+    LabelledAct,
+    SkillCount,
+    count_faults,
+)
+from tpvqa.belief.filtering.faults import Rates
+from tpvqa.belief.learning.chances import Chances
+from tpvqa.belief.learning.experience import Experience
+from tpvqa.belief.learning.skills import ALIKE, NAMED
+from tpvqa.belief.learning.spread import TRIES, alike
 from tpvqa.monitors.belief_settings import BeliefSettings
 from tpvqa.pddl import Action, Conjunction
 

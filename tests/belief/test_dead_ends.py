@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 
 from tests.listing import every_state
 from tests.pddl.conditional_domains import tasks
-from tpvqa.belief.dead_ends import DeadEnds
-from tpvqa.belief.undoing import BackToBefore
+from tpvqa.belief.states.dead_ends import DeadEnds
+from tpvqa.belief.states.undoing import BackToBefore
 from tpvqa.pddl import Atom, Task, task_from_text
 
 

@@ -7,17 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.doubts import Doubts, moved
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.kinds import FRESH
-from tpvqa.belief.places import further_places, things
-from tpvqa.belief.priors import Priors
-from tpvqa.belief.starts import drawn_start, opened
-from tpvqa.belief.surprise import Surprise
-from tpvqa.belief.trust import Trust
+from tpvqa.belief.answers.kinds import FRESH
+from tpvqa.belief.answers.trust import Trust
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.doubts import Doubts, moved
+from tpvqa.belief.filtering.faults import FaultModel
+from tpvqa.belief.filtering.priors import Priors
+from tpvqa.belief.filtering.starts import drawn_start, opened
+from tpvqa.belief.states.places import further_places, things
+from tpvqa.belief.states.surprise import Surprise
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.pddl import Atom, load_task
 from tpvqa.questions.question import FactQuestion, Way
 from tpvqa.vlm import Answer, Reply

@@ -9,14 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tpvqa.belief import AnswerRates, Calibration, Group
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.evidence import ANYWAY, Evidence
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.heard import Heard
-from tpvqa.belief.information import LATE, answers_to_be_sure
-from tpvqa.belief.kinds import FRESH, KINDS
-from tpvqa.belief.trust import Trust
-from tpvqa.belief.worth import Said, Worth, by_truth
+from tpvqa.belief.answers.heard import Heard
+from tpvqa.belief.answers.information import LATE, answers_to_be_sure
+from tpvqa.belief.answers.kinds import FRESH, KINDS
+from tpvqa.belief.answers.trust import Trust
+from tpvqa.belief.answers.worth import Said, Worth, by_truth
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.weighing.evidence import ANYWAY, Evidence
 from tpvqa.pddl import Literal, load_task
 from tpvqa.questions import QuestionBook, Way
 from tpvqa.tasks import find_task

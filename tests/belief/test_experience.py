@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.trust import GRID
+from tpvqa.belief.answers.trust import GRID
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.errors import CalibrationError
 
 OLD = {"version": 1, "failure": [3.0, 9.0], "disturbance": [1.0, 2.0], "trials": 4}

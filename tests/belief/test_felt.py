@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.sight import Sight
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.filtering.sight import Sight
 from tpvqa.pddl import load_task
 
 WARD = Path(__file__).parents[1] / "fixtures" / "drawers"

@@ -8,10 +8,10 @@ from random import Random
 import pytest
 
 from tests.ward import ward
-from tpvqa.belief.first import Prior
-from tpvqa.belief.mutexes import h2_mutexes
-from tpvqa.belief.origins import Origins
-from tpvqa.belief.priors import Priors, load_priors
+from tpvqa.belief.filtering.first import Prior
+from tpvqa.belief.filtering.priors import Priors, load_priors
+from tpvqa.belief.states.mutexes import h2_mutexes
+from tpvqa.belief.states.origins import Origins
 from tpvqa.pddl import Atom, State, Task, load_task
 from tpvqa.pddl.pattern import Pattern
 from tpvqa.tasks import find_task

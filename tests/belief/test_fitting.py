@@ -9,9 +9,9 @@ import pytest
 
 from tests.belief.talking import trials
 from tpvqa.belief import Calibration, LabelledAnswer
-from tpvqa.belief.fitting import fit
-from tpvqa.belief.held_out import held_out
-from tpvqa.belief.runs import runs
+from tpvqa.belief.calibrating.fitting import fit
+from tpvqa.belief.calibrating.held_out import held_out
+from tpvqa.belief.calibrating.runs import runs
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.config import TrialConfig

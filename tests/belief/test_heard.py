@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.heard import Heard
-from tpvqa.belief.kinds import KINDS
-from tpvqa.belief.lasting import SHARES, STAYS, own_rate
-from tpvqa.belief.led import Led
-from tpvqa.belief.worth import Cases, Said, Worth
+from tpvqa.belief.answers.heard import Heard
+from tpvqa.belief.answers.kinds import KINDS
+from tpvqa.belief.answers.lasting import SHARES, STAYS, own_rate
+from tpvqa.belief.answers.led import Led
+from tpvqa.belief.answers.worth import Cases, Said, Worth
 
 RATES = 0.85, 0.15
 RATIO = float(np.log(RATES[0] / RATES[1]))

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.information import (
+from tpvqa.belief.answers.information import (
     Floats,
     Reliability,
     answers_to_be_sure,

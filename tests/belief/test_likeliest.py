@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.constraints import Group
-from tpvqa.belief.likeliest import Clause, Likeliest, Variable
+from tpvqa.belief.states.constraints import Group
+from tpvqa.belief.states.likeliest import Clause, Likeliest, Variable
 from tpvqa.pddl import Atom, Literal, State
 
 ATOMS = tuple(Atom("fact", (name,)) for name in "abcdefg")

@@ -4,10 +4,10 @@ from random import Random
 
 import pytest
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.memory import ByRules, Past
-from tpvqa.belief.undoing import BackToBefore
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.states.memory import ByRules, Past
+from tpvqa.belief.states.undoing import BackToBefore
 from tpvqa.pddl import Action, Atom, State, Task, task_from_text
 
 DOMAIN = """(define (domain blocks)

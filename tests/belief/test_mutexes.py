@@ -6,10 +6,10 @@ from random import Random
 import pytest
 
 from tests.pddl.feature_domains import SAMPLES, Sample
-from tpvqa.belief.constraints import Constraints
-from tpvqa.belief.disturbances import disturbances
-from tpvqa.belief.mutexes import Mutexes, h2_mutexes
-from tpvqa.belief.transitions import Transition, of_action
+from tpvqa.belief.states.constraints import Constraints
+from tpvqa.belief.states.disturbances import disturbances
+from tpvqa.belief.states.mutexes import Mutexes, h2_mutexes
+from tpvqa.belief.states.transitions import Transition, of_action
 from tpvqa.pddl import Atom, State, Task, load_task, task_from_text
 from tpvqa.tasks import find_task
 from tpvqa.worlds.undo import UndoRule

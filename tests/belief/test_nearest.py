@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.constraints import Constraints
-from tpvqa.belief.nearest import Nearest
+from tpvqa.belief.states.constraints import Constraints
+from tpvqa.belief.states.nearest import Nearest
 from tpvqa.errors import BeliefError, ContradictionError
 from tpvqa.pddl import Atom, State, load_task
 

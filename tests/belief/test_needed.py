@@ -6,12 +6,12 @@ from hypothesis import strategies as st
 
 from tests.belief.test_belief import plan_of
 from tests.planning.random_states import random_states
-from tpvqa.belief.annotated import AnnotatedPlan
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel, JointState, Rates
-from tpvqa.belief.needed import Needed
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.choices import Chooser
+from tpvqa.belief.deciding.needed import Needed
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, JointState, Rates
 from tpvqa.pddl import Atom, load_task, task_from_text
 from tpvqa.planning.regression import regress
 from tpvqa.tasks import find_task

@@ -5,7 +5,7 @@ from threading import Barrier, Thread
 import pytest
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
-from tpvqa.belief.one_thread import one_thread
+from tpvqa.belief.deciding.one_thread import one_thread
 
 
 def threads() -> list[int]:

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from tests.belief.test_evidence import FIND, MODEL, NEAR, QUESTION
 from tpvqa.belief import AnswerRates, Calibration, Group
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import Rates
-from tpvqa.belief.kinds import KINDS
-from tpvqa.belief.other_words import OtherWords
+from tpvqa.belief.answers.kinds import KINDS
+from tpvqa.belief.answers.other_words import OtherWords
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import Rates
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.questions import FactQuestion
 from tpvqa.vlm import Answer, Reply
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from tpvqa.belief.annotated import AnnotatedPlan
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.outlook import PLANS, Outlook
-from tpvqa.belief.sight import Sight
-from tpvqa.belief.skills import SkillState
-from tpvqa.belief.table import Choice, Table
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.outlook import PLANS, Outlook
+from tpvqa.belief.deciding.table import Choice, Table
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.filtering.sight import Sight
+from tpvqa.belief.learning.skills import SkillState
 from tpvqa.pddl import load_task
 from tpvqa.planning import Plan
 from tpvqa.planning.making import make_planner

@@ -10,11 +10,8 @@ from pydantic import ValidationError
 
 from tests.pddl.feature_domains import DERIVED
 from tpvqa.belief import Calibration
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.bounds import BOUND
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.own_words import (
+from tpvqa.belief.answers.bounds import BOUND
+from tpvqa.belief.calibrating.own_words import (
     LabelledReading,
     LabelledReport,
     OwnWords,
@@ -24,7 +21,10 @@ from tpvqa.belief.own_words import (
     fit_sensors,
     fit_skills,
 )
-from tpvqa.belief.readings import AGAIN
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.weighing.evidence import Evidence
+from tpvqa.belief.weighing.readings import AGAIN
 from tpvqa.pddl import Atom, load_task, task_from_text
 
 WARD = Path(__file__).parents[1] / "fixtures" / "drawers"

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from tests.ward import ward
-from tpvqa.belief.priors import Priors, load_priors
-from tpvqa.belief.remarks_on_priors import remarks
+from tpvqa.belief.filtering.priors import Priors, load_priors
+from tpvqa.belief.filtering.remarks_on_priors import remarks
 from tpvqa.errors import PriorsError
 from tpvqa.pddl import Atom, Task
 from tpvqa.pddl.loading import task_from_text

@@ -9,9 +9,9 @@ from hypothesis import assume, given, settings
 from tests.listing import every_state
 from tests.pddl.conditional_domains import tasks
 from tests.trolley import trolley
-from tpvqa.belief.first import Prior
-from tpvqa.belief.priors import Priors
-from tpvqa.belief.reached import reached
+from tpvqa.belief.filtering.first import Prior
+from tpvqa.belief.filtering.priors import Priors
+from tpvqa.belief.states.reached import reached
 from tpvqa.pddl import Atom, Task, load_task
 
 UNKNOWN = Priors(nothing_known=True)

@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tpvqa.belief import LabelledAnswer
-from tpvqa.belief.calibration import AnswerRates
-from tpvqa.belief.repeats import Repeats, fit_repeats
+from tpvqa.belief.calibrating.calibration import AnswerRates
+from tpvqa.belief.calibrating.repeats import Repeats, fit_repeats
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 

@@ -7,11 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tpvqa.belief import Calibration
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.own_words import FAILED, SkillWorth
-from tpvqa.belief.reports import Reports
+from tpvqa.belief.calibrating.own_words import FAILED, SkillWorth
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.learning.reports import Reports
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.pddl import Atom, load_task
 
 WARD = Path(__file__).parents[1] / "fixtures" / "drawers"

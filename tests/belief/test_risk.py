@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tpvqa.belief.risk import RiskBound, RiskCalibration, least_trials
+from tpvqa.belief.calibrating.risk import RiskBound, RiskCalibration, least_trials
 from tpvqa.errors import CalibrationError
 from tpvqa.monitors.stated_risk import apart, as_stated, split_risk
 

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.rounds import Rounds
+from tpvqa.belief.deciding.rounds import Rounds
 from tpvqa.pddl import load_task
 
 TASK = load_task("clean_dishes")

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.settling import Settling, Settlings
+from tpvqa.belief.weighing.settling import Settling, Settlings
 
 DOUBTS = st.dictionaries(
     st.sampled_from("abcd"), st.tuples(st.floats(0.01, 0.25), st.floats(0.0, 1.0))

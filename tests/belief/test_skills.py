@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.chances import Chances
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.learned import Learned
-from tpvqa.belief.skills import GIVEN_UP, NAMED
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.learning.chances import Chances
+from tpvqa.belief.learning.learned import Learned
+from tpvqa.belief.learning.skills import GIVEN_UP, NAMED
 from tpvqa.pddl import Action, Atom, Task, load_task
 from tpvqa.tasks import find_task
 from tpvqa.worlds.world_file import load_world_file

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.belief.test_belief import plan_of
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.faults import FaultModel, Rates
-from tpvqa.belief.steps import Steps
+from tpvqa.belief.deciding.steps import Steps
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
 from tpvqa.pddl import Atom, load_task, task_from_text
 from tpvqa.tasks import find_task
 from tpvqa.worlds.world_file import load_world_file

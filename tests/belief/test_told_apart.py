@@ -9,14 +9,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.belief.test_evidence import BOOK, FIND, MODEL, TASK
-from tpvqa.belief import AnswerRates, Calibration, Group, evidence, told_apart
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import Rates
-from tpvqa.belief.information import Floats
-from tpvqa.belief.kinds import KINDS
-from tpvqa.belief.told_apart import ToldApart
-from tpvqa.belief.trust import GRID, Trust
+from tpvqa.belief import AnswerRates, Calibration, Group
+from tpvqa.belief.answers import told_apart
+from tpvqa.belief.answers.information import Floats
+from tpvqa.belief.answers.kinds import KINDS
+from tpvqa.belief.answers.told_apart import ToldApart
+from tpvqa.belief.answers.trust import GRID, Trust
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import Rates
+from tpvqa.belief.weighing import evidence
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.pddl import Literal
 from tpvqa.vlm import Answer, Reply
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from runpy import run_path
 
 from tpvqa.belief import Calibration
-from tpvqa.belief.trust import GRID, RECORDED, Trust
+from tpvqa.belief.answers.trust import GRID, RECORDED, Trust
 from tpvqa.vlm import Reply
 
 TOOL = Path(__file__).parents[2] / "tools" / "default_trust.py"

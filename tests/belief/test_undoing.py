@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tpvqa.belief.mutexes import h2_mutexes
-from tpvqa.belief.undoing import BackToBefore
+from tpvqa.belief.states.mutexes import h2_mutexes
+from tpvqa.belief.states.undoing import BackToBefore
 from tpvqa.pddl import Atom, State, Task, load_task
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -3,12 +3,12 @@
 import pytest
 
 from tests.belief.test_belief import plan_of
-from tpvqa.belief.annotated import AnnotatedPlan
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.chances import Chances
-from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel, Rates
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.choices import Chooser
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, Rates
+from tpvqa.belief.learning.chances import Chances
 from tpvqa.pddl import Action, Atom, Task, load_task, task_from_text
 from tpvqa.planning.regression import regress
 from tpvqa.tasks import find_task

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tpvqa.belief.heard import Heard
-from tpvqa.belief.information import TIMES, settled
-from tpvqa.belief.kinds import FRESH, KINDS, RECORDED
-from tpvqa.belief.trust import GRID, Trust
-from tpvqa.belief.worth import Cases, Said, Worth, by_truth
+from tpvqa.belief.answers.heard import Heard
+from tpvqa.belief.answers.information import TIMES, settled
+from tpvqa.belief.answers.kinds import FRESH, KINDS, RECORDED
+from tpvqa.belief.answers.trust import GRID, Trust
+from tpvqa.belief.answers.worth import Cases, Said, Worth, by_truth
 
 RIGHT = 0.8
 NONE = np.zeros(0, bool)

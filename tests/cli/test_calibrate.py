@@ -11,8 +11,8 @@ from PIL import Image
 from tests.cli.conftest import Run
 from tests.episodes.test_log import file_size
 from tpvqa.belief import Calibration, Group
-from tpvqa.belief.chances import Chances
-from tpvqa.belief.experience import Experience
+from tpvqa.belief.learning.chances import Chances
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.episodes.own_files import LABELS

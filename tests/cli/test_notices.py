@@ -1,7 +1,7 @@
 """What a user is told before a trial."""
 
-from tpvqa.belief.fitting import fit
-from tpvqa.belief.labelled_answer import LabelledAnswer
+from tpvqa.belief.calibrating.fitting import fit
+from tpvqa.belief.calibrating.labelled_answer import LabelledAnswer
 from tpvqa.cli.notices import about_calibration
 from tpvqa.pddl import task_from_text
 from tpvqa.questions import Way

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from tests.cli.conftest import Run
-from tpvqa.belief.experience import Experience
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.bench.labelled_episodes import label_episodes
 from tpvqa.bench.recorded_faults import experience_from
 from tpvqa.labelling import LABELS

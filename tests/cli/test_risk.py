@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Run
-from tpvqa.belief.risk import RiskCalibration
+from tpvqa.belief.calibrating.risk import RiskCalibration
 from tpvqa.episodes import read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.events import Ended

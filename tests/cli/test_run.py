@@ -20,7 +20,7 @@ from tests.moments import moments
 from tests.planning.test_processes import eventually
 from tpvqa import __version__
 from tpvqa.belief import Calibration
-from tpvqa.belief.experience import Experience
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.episodes import read_episode
 from tpvqa.events import Ended
 from tpvqa.tasks import find_task

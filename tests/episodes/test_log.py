@@ -13,7 +13,7 @@ import pytest
 from tests.doubles import configured
 from tests.episodes.believing import started
 from tpvqa.assembly import Trial
-from tpvqa.belief.experience import Experience
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.episodes import EpisodeWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.episodes.report import render_report, write_report

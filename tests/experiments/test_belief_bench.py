@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.ledger import ROWS, Ledger

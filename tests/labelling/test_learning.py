@@ -12,7 +12,7 @@ from tests.doubles import ScriptedVLM, configured
 from tests.labelling.robot import Truths, forget_truth, label_nothing, record
 from tpvqa.assembly import Trial
 from tpvqa.belief import LabelledAnswer
-from tpvqa.belief.fitting import fit
+from tpvqa.belief.calibrating.fitting import fit
 from tpvqa.bench.labelled_episodes import label_episodes
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import LOG

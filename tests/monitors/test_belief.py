@@ -16,8 +16,8 @@ from tests.doubles import Answerer, ScriptedVLM, configured, known_truth, truthf
 from tests.resumed import story
 from tpvqa.assembly import Trial
 from tpvqa.belief import AnswerRates, Calibration, Group
-from tpvqa.belief.calibration import Curve
-from tpvqa.belief.faults import FaultModel
+from tpvqa.belief.calibrating.calibration import Curve
+from tpvqa.belief.filtering.faults import FaultModel
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.errors import PluginError

@@ -9,8 +9,8 @@ import pytest
 
 from tests import ward
 from tpvqa import Trial, TrialConfig
-from tpvqa.belief.priors import Priors
-from tpvqa.belief.risk import RiskBound
+from tpvqa.belief.calibrating.risk import RiskBound
+from tpvqa.belief.filtering.priors import Priors
 from tpvqa.config import SimulationConfig, StartConfig, TaskConfig
 from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG

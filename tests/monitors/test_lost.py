@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from tpvqa.belief.belief import Belief
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.outlook import Outlook
-from tpvqa.belief.sight import Sight
+from tpvqa.belief.deciding.outlook import Outlook
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel
+from tpvqa.belief.filtering.sight import Sight
 from tpvqa.monitors.lost import lost
 from tpvqa.pddl import Atom, Task, load_task
 

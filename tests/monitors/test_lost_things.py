@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tpvqa.assembly import Trial
-from tpvqa.belief.faults import FaultModel, JointState
+from tpvqa.belief.filtering.faults import FaultModel, JointState
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Ended

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tpvqa.belief.risk import RiskBound
+from tpvqa.belief.calibrating.risk import RiskBound
 from tpvqa.monitors.saying_done import EVEN, REACHED, says_done
 
 GOALS = st.floats(0, 1)

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.chances import Chances
-from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.learned import Learned
+from tpvqa.belief.deciding.choices import Chooser
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel
+from tpvqa.belief.learning.chances import Chances
+from tpvqa.belief.learning.learned import Learned
 from tpvqa.bench.judge import CALLED_DEAD
 from tpvqa.monitors.ways import UNSEEN, Ways
 from tpvqa.pddl import load_task

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from tests.listing import every_state
 from tests.pddl.conditional_domains import tasks
 from tests.trolley import INIT, trolley
-from tpvqa.belief.undoing import BackToBefore
+from tpvqa.belief.states.undoing import BackToBefore
 from tpvqa.pddl import Atom, Task, task_from_text
 
 ROOMS = ("hall", "attic", "cellar")

@@ -9,7 +9,7 @@ import pytest
 from tests.cli.conftest import Run, tpvqa
 from tpvqa.assembly import Trial
 from tpvqa.assembly.reach import asking
-from tpvqa.belief.priors import Priors
+from tpvqa.belief.filtering.priors import Priors
 from tpvqa.config import TrialConfig
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events.events import Asked

@@ -49,8 +49,8 @@ import os, resource, sys
 from pathlib import Path
 
 from tpvqa.belief import Calibration
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.risk import RiskCalibration
+from tpvqa.belief.learning.experience import Experience
+from tpvqa.belief.calibrating.risk import RiskCalibration
 from tpvqa.episodes import read_episode
 from tpvqa.errors import TpvqaError
 from tpvqa.serving.refusal import Refusal

@@ -10,10 +10,10 @@ goes back to what may have come undone unseen.
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.evidence import NOTICED
-from tpvqa.belief.faults import JointState, Rates
-from tpvqa.belief.sight import Sight
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import JointState, Rates
+from tpvqa.belief.filtering.sight import Sight
+from tpvqa.belief.weighing.evidence import NOTICED
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.stage import Stage, true_simulation

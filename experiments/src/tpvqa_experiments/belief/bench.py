@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.published import version_of

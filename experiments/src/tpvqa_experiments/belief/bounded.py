@@ -8,7 +8,7 @@ round.
 
 from collections.abc import Sequence
 
-from tpvqa.belief.risk import RiskBound, least_trials
+from tpvqa.belief.calibrating.risk import RiskBound, least_trials
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.stated_risk import learnt
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from tpvqa.belief.calibration import Calibration, Group
-from tpvqa.belief.fitting import fit
-from tpvqa.belief.labelled_answer import LabelledAnswer
-from tpvqa.belief.own_words import OwnWords
+from tpvqa.belief.calibrating.calibration import Calibration, Group
+from tpvqa.belief.calibrating.fitting import fit
+from tpvqa.belief.calibrating.labelled_answer import LabelledAnswer
+from tpvqa.belief.calibrating.own_words import OwnWords
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.condition import RATES, settings_of
 from tpvqa.bench.labelled import gather

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tpvqa.belief.ablations import PARTS
+from tpvqa.belief.filtering.ablations import PARTS
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.figures import Figure
 from tpvqa.bench.row import EpisodeRow

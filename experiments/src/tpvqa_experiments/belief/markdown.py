@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from tpvqa.belief.ablations import PARTS
 from tpvqa.belief.costs import Costs
+from tpvqa.belief.filtering.ablations import PARTS
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.summary import summarise

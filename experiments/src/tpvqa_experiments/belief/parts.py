@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from tpvqa.belief.ablations import PARTS
+from tpvqa.belief.filtering.ablations import PARTS
 from tpvqa.bench.cell import Cell
 from tpvqa_experiments.paper import TASKS
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.ledger import REMEDY

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from functools import cache
 
 from tpvqa.belief import LabelledAnswer
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.fitting import fit
-from tpvqa.belief.kinds import FRESH, KINDS, Kind
+from tpvqa.belief.answers.kinds import FRESH, KINDS, Kind
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.fitting import fit
 from tpvqa.bench.labelled_recordings import label_recordings
 from tpvqa.errors import BenchError
 from tpvqa.pddl import Task

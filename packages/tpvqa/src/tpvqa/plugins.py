@@ -5,8 +5,8 @@ A package offers one by an entry point in the group of its kind, `tpvqa.planners
 
 `tpvqa.trainers` has, under the name of a VLM, the class that trains it (see `tpvqa.training`).
 Three more groups hold functions, which `load` finds and their readers call: `tpvqa.tasks` (families
-of tasks, see `tpvqa.tasks`), `tpvqa.calibrations` (of a VLM, by the name of its specification, see
-`tpvqa.belief.shipped`) and `tpvqa.commands` (of the command line, see `tpvqa.cli.plugged`).
+of tasks), `tpvqa.calibrations` (of a VLM, by the name of its specification, see
+`tpvqa.belief.calibrating.shipped`) and `tpvqa.commands` (see `tpvqa.cli.plugged`).
 
 A *specification* is what users write: a name, or a name and what follows its first colon, such
 as "oracle:0.8:0.5" or "openai:llama3:8b". The convention for what stands behind an entry point:

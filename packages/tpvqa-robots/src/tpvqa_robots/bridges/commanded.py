@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from tpvqa.belief import Calibration
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import FaultModel, FaultRules, Rates
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel, FaultRules, Rates
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.events.decision import Decision
 from tpvqa.monitors import Ask, Check, Look, Step, Verdict
 from tpvqa.observation import Observation

@@ -15,12 +15,12 @@ from tpvqa.assembly.reach import asking
 from tpvqa.assembly.simulating import simulate
 from tpvqa.assembly.told import read_told, see_fitting, stated_bound
 from tpvqa.assembly.wanting import see_wanted
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.priors import Priors, load_priors
-from tpvqa.belief.risk import RiskBound
-from tpvqa.belief.shipped import shipped_calibration
-from tpvqa.belief.starts import opened
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.risk import RiskBound
+from tpvqa.belief.calibrating.shipped import shipped_calibration
+from tpvqa.belief.filtering.priors import Priors, load_priors
+from tpvqa.belief.filtering.starts import opened
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.defaults import default_vlm, default_world
 from tpvqa.drivers import Journal, Listener, Parts, Performer, SteppingTrial
@@ -52,7 +52,7 @@ from tpvqa.worlds.making import make_world
 from tpvqa.worlds.world_file import WorldRules, load_world_file
 
 if TYPE_CHECKING:
-    from tpvqa.belief.faults import FaultModel
+    from tpvqa.belief.filtering.faults import FaultModel
     from tpvqa.drivers.asynchronous import AsynchronousTrial
 
 

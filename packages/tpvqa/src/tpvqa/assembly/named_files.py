@@ -4,8 +4,8 @@ from pathlib import Path
 
 from tpvqa.assembly.grounding import grounded
 from tpvqa.assembly.told import read_told
-from tpvqa.belief.priors import load_priors
-from tpvqa.belief.risk import RiskCalibration
+from tpvqa.belief.calibrating.risk import RiskCalibration
+from tpvqa.belief.filtering.priors import load_priors
 from tpvqa.config import TrialConfig
 from tpvqa.errors import TpvqaError
 from tpvqa.pddl.state_file import read_state

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import islice, product
 
-from tpvqa.belief.priors import Priors
+from tpvqa.belief.filtering.priors import Priors
 from tpvqa.pddl import Atom, Task
 from tpvqa.pddl.schema import ActionSchema, EffectSchema, LiteralSchema, required
 from tpvqa.questions import QuestionBook

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from tpvqa.belief.memory import Undoing
-from tpvqa.belief.priors import Priors
-from tpvqa.belief.starts import drawn_start
-from tpvqa.belief.undoing import BackToBefore
+from tpvqa.belief.filtering.priors import Priors
+from tpvqa.belief.filtering.starts import drawn_start
+from tpvqa.belief.states.memory import Undoing
+from tpvqa.belief.states.undoing import BackToBefore
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.events import Started
 from tpvqa.pddl import Action, Atom, State, Task

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tpvqa import DECIDES_AS
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.named_calibration import named_calibration
-from tpvqa.belief.risk import RiskBound, RiskCalibration
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.named_calibration import named_calibration
+from tpvqa.belief.calibrating.risk import RiskBound, RiskCalibration
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.config import TrialConfig
 from tpvqa.config.layers import settings
 from tpvqa.config.model import MonitorConfig

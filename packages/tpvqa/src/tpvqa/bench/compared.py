@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.grid import Grid, known_calibrations
 from tpvqa.bench.report import Results, write_bench_report

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tpvqa.belief.calibration import Calibration
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.checking import check
 from tpvqa.bench.ledger import REMEDY, Ledger

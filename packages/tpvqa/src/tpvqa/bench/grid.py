@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.shipped import shipped_calibration
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.shipped import shipped_calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.defaults import SYMBOLIC, default_vlm, default_world

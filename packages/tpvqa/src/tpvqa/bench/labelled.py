@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tpvqa.belief import LabelledAnswer
-from tpvqa.belief.counted import Came, LabelledAct
-from tpvqa.belief.own_words import LabelledReading, LabelledReport, OwnWords
+from tpvqa.belief.calibrating.counted import Came, LabelledAct
+from tpvqa.belief.calibrating.own_words import LabelledReading, LabelledReport, OwnWords
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.right_answers import yes_is_right

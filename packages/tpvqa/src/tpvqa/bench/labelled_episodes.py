@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 
 from tpvqa.assembly.simulating import undoings
 from tpvqa.belief import Calibration, LabelledAnswer
-from tpvqa.belief.fitting import fit
-from tpvqa.belief.own_words import OwnWords
+from tpvqa.belief.calibrating.fitting import fit
+from tpvqa.belief.calibrating.own_words import OwnWords
 from tpvqa.bench.labelled import Labeller
 from tpvqa.bench.written_actions import WrittenActions
 from tpvqa.episodes import read_episode

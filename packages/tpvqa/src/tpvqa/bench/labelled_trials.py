@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from tpvqa.belief import LabelledAnswer
-from tpvqa.belief.own_words import OwnWords
+from tpvqa.belief.calibrating.own_words import OwnWords
 from tpvqa.bench.checking import check
 from tpvqa.bench.grid import Grid
 from tpvqa.bench.labelled import gather

@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-from tpvqa.belief.chances import Beta, Chances
-from tpvqa.belief.counted import LabelledAct, count_faults
-from tpvqa.belief.experience import Experience
+from tpvqa.belief.calibrating.beta import Beta
+from tpvqa.belief.calibrating.counted import LabelledAct, count_faults
+from tpvqa.belief.learning.chances import Chances
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.errors import CalibrationError
 
 

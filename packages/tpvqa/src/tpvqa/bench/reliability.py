@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.belief import LabelledAnswer
-from tpvqa.belief.fitting import telling
-from tpvqa.belief.held_out import HeldOut
-from tpvqa.belief.runs import runs
+from tpvqa.belief.calibrating.fitting import telling
+from tpvqa.belief.calibrating.held_out import HeldOut
+from tpvqa.belief.calibrating.runs import runs
 from tpvqa.bench.figures import Figure
 from tpvqa.bench.statistics import wilson
 from tpvqa.bench.style import styled_pyplot

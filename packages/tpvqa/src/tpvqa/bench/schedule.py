@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from types import MappingProxyType
 
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.risk import RiskBound
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.risk import RiskBound
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.dask_workers import as_they_finish, dask_client
 from tpvqa.bench.ledger import Ledger

@@ -11,10 +11,10 @@ from threading import get_ident
 from typing import Any
 
 from tpvqa.assembly import Trial
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.faults import FaultModel
-from tpvqa.belief.risk import RiskBound
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.risk import RiskBound
+from tpvqa.belief.filtering.faults import FaultModel
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.judge import Judge
 from tpvqa.bench.own_task import OwnTask

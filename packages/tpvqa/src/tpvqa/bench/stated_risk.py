@@ -5,8 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.risk import RiskBound, RiskCalibration, least_trials
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.risk import RiskBound, RiskCalibration, least_trials
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.own_task import OwnTask

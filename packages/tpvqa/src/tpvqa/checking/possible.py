@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from itertools import combinations
 
-from tpvqa.belief.mutexes import Mutexes, h2_mutexes
+from tpvqa.belief.states.mutexes import Mutexes, h2_mutexes
 from tpvqa.checking.finding import Finding, Severity, named
 from tpvqa.checking.places import line_of_action, line_of_goal, line_of_predicate
 from tpvqa.pddl import Action, Atom, Conjunction, Literal, Task, literals

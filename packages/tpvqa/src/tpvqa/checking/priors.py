@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from tpvqa.belief.priors import load_priors
-from tpvqa.belief.remarks_on_priors import remarks
+from tpvqa.belief.filtering.priors import load_priors
+from tpvqa.belief.filtering.remarks_on_priors import remarks
 from tpvqa.checking.finding import Finding, Severity, of_error
 from tpvqa.errors import BeliefError, PriorsError
 from tpvqa.pddl import Task

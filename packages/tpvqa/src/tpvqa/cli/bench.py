@@ -14,7 +14,7 @@ from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Key, Layer
 
 if TYPE_CHECKING:
-    from tpvqa.belief.calibration import Calibration
+    from tpvqa.belief.calibrating.calibration import Calibration
     from tpvqa.bench.grid import Grid
     from tpvqa.bench.own_task import OwnTask
     from tpvqa.config import TrialConfig
@@ -240,7 +240,7 @@ def _is_path(name: str) -> bool:
 
 
 def _calibration(config: "TrialConfig") -> "Calibration | None":
-    from tpvqa.belief.named_calibration import named_calibration
+    from tpvqa.belief.calibrating.named_calibration import named_calibration
 
     file = config.monitor.calibration
     return None if file is None else named_calibration(Path(file))
@@ -248,7 +248,7 @@ def _calibration(config: "TrialConfig") -> "Calibration | None":
 
 def _notices(grid: "Grid", calibration: "Calibration | None") -> list[str]:
     """What a user should know of what the VLMs' answers are taken to be worth."""
-    from tpvqa.belief.shipped import shipped_calibration
+    from tpvqa.belief.calibrating.shipped import shipped_calibration
     from tpvqa.cli.notices import about_calibration
     from tpvqa.errors import BenchError
     from tpvqa.plugins import Kind, load_spec, takes

@@ -19,7 +19,7 @@ from tpvqa.config.layers import Key, Layer, combined
 
 if TYPE_CHECKING:
     from tpvqa.belief import LabelledAnswer
-    from tpvqa.belief.experience import Experience
+    from tpvqa.belief.learning.experience import Experience
     from tpvqa.bench.labelled_episodes import Labelled
     from tpvqa.cli.progress import CountBar
     from tpvqa.config import TrialConfig
@@ -137,9 +137,9 @@ def calibrate(
     "After" is always of answers that the calibration in question was not learnt from: each half
     of the trials is judged by what the other half taught.
     """
-    from tpvqa.belief.fitting import fit
-    from tpvqa.belief.held_out import held_out
-    from tpvqa.belief.own_words import OwnWords
+    from tpvqa.belief.calibrating.fitting import fit
+    from tpvqa.belief.calibrating.held_out import held_out
+    from tpvqa.belief.calibrating.own_words import OwnWords
     from tpvqa.bench.labelled_trials import label_trials
     from tpvqa.bench.own_task import own_tasks
     from tpvqa.bench.recorded_faults import experience_from
@@ -237,7 +237,7 @@ def _check(
         read: What is read, and is never written over.
         force: Whether what is there may be written over.
     """
-    from tpvqa.belief.platt import regression
+    from tpvqa.belief.calibrating.platt import regression
     from tpvqa.bench.style import styled_pyplot
     from tpvqa.errors import CalibrationError
     from tpvqa.files import see_writable

@@ -11,8 +11,8 @@ from tpvqa.cli.saying import cell, tell
 
 if TYPE_CHECKING:
     from tpvqa.belief import Calibration
-    from tpvqa.belief.counted import CountedFaults
-    from tpvqa.belief.held_out import HeldOut
+    from tpvqa.belief.calibrating.counted import CountedFaults
+    from tpvqa.belief.calibrating.held_out import HeldOut
     from tpvqa.bench.reliability import Line
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
-    from tpvqa.belief.calibration import Calibration
-    from tpvqa.belief.priors import Priors
+    from tpvqa.belief.calibrating.calibration import Calibration
+    from tpvqa.belief.filtering.priors import Priors
     from tpvqa.config import TrialConfig
     from tpvqa.errors import AnswerError
     from tpvqa.pddl import Task
@@ -98,7 +98,7 @@ def about_start(task: "Task", priors: "Priors | None" = None, monitor: object = 
 
 def about_said(trial: "Trial") -> Iterator[str]:
     """What to know of files of questions and of priors that say nothing, or something in vain."""
-    from tpvqa.belief.remarks_on_priors import remarks
+    from tpvqa.belief.filtering.remarks_on_priors import remarks
     from tpvqa.errors import QuestionsError
     from tpvqa.yaml_places import read_yaml
 

@@ -171,7 +171,7 @@ def ask(
 
 def _load(wanted: "TaskConfig", timeout: float) -> "tuple[LoadedTask, QuestionBook]":
     from tpvqa.assembly.reach import asking
-    from tpvqa.belief.priors import Priors
+    from tpvqa.belief.filtering.priors import Priors
     from tpvqa.pddl import load_task
     from tpvqa.questions import QuestionBook
     from tpvqa.tasks import find_task

@@ -17,7 +17,7 @@ from tpvqa.files import resolved
 
 if TYPE_CHECKING:
     from tpvqa.assembly import Trial
-    from tpvqa.belief.risk import RiskCalibration
+    from tpvqa.belief.calibrating.risk import RiskCalibration
     from tpvqa.bench.own_task import OwnTask
 
 _EXIT = "Exit codes: 0 written, 2 bad input, 6 could not be written, 130 interrupted."
@@ -128,7 +128,7 @@ def _check(monitor: str, out: Path) -> None:
 
 def _is_risk(file: Path) -> bool:
     """Whether a file is what this command writes."""
-    from tpvqa.belief.risk import RiskCalibration
+    from tpvqa.belief.calibrating.risk import RiskCalibration
     from tpvqa.errors import CalibrationError
 
     try:
@@ -158,7 +158,7 @@ def _own(trial: "Trial") -> "OwnTask | None":
 
 def _rows(known: "RiskCalibration") -> list[dict[str, float]]:
     """What every risk that so many trials can tell comes to."""
-    from tpvqa.belief.risk import least_trials
+    from tpvqa.belief.calibrating.risk import least_trials
 
     found = []
     for each in _RISKS:

@@ -277,7 +277,7 @@ def _about_calibration(trial: "Trial") -> list[str]:
 def _keep_experience(trial: "Trial", ended: "Ended") -> "WriteError | None":
     """Write what was learned where the user keeps it, unless other trials wrote there since; gives
     why it could not be written."""
-    from tpvqa.belief.experience import Experience
+    from tpvqa.belief.learning.experience import Experience
     from tpvqa.errors import WriteError
 
     learned, file = trial.experience, trial.config.monitor.experience

@@ -5,10 +5,10 @@ from math import exp, log
 
 from pydantic import ValidationError
 
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.information import LATE, answers_to_be_sure
-from tpvqa.belief.trust import Trust
+from tpvqa.belief.answers.information import LATE, answers_to_be_sure
+from tpvqa.belief.answers.trust import Trust
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.events import Ended, Event, Started, TrialState
 from tpvqa.events.events import Acting, Answered, QuestionRecord
 from tpvqa.vlm import Reply

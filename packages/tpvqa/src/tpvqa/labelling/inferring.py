@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tpvqa.belief import Apart, Calibration, LabelledAnswer
-from tpvqa.belief.fitting import fit
+from tpvqa.belief.calibrating.fitting import fit
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.errors import TpvqaError
 from tpvqa.labelling.recorded import Asking, RecordedEpisode, said_in_trial

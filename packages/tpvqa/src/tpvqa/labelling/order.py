@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import blake2b
 
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.counts import PSEUDO
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.counts import PSEUDO
 from tpvqa.labelling.labels import Said
 from tpvqa.labelling.recorded import Asking
 from tpvqa.questions import Way

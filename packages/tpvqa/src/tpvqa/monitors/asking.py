@@ -3,11 +3,11 @@
 from collections.abc import Callable, Collection, Generator, Sequence
 from typing import Any
 
-from tpvqa.belief.belief import Belief
+from tpvqa.belief.answers.last_answer import Picture
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.inquiry import DOUBT, Budget, Inquiry
-from tpvqa.belief.last_answer import Picture
+from tpvqa.belief.deciding.inquiry import DOUBT, Budget, Inquiry
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.monitors.feeling import Feeling
 from tpvqa.monitors.inspection import SENSED, Inspection, Replies
 from tpvqa.monitors.requests import Ask, AskPerson, Look, Request

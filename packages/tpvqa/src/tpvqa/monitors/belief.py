@@ -4,24 +4,24 @@ from collections.abc import Collection, Generator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tpvqa.belief.ablations import belief_without
-from tpvqa.belief.biases import Biases
-from tpvqa.belief.calibration import Calibration
-from tpvqa.belief.choices import Chooser
-from tpvqa.belief.controls import Controls
-from tpvqa.belief.doubts import Doubts
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.faults import FaultModel, FaultRules
-from tpvqa.belief.first import Prior
-from tpvqa.belief.inquiry import DOUBT, Inquirer, Inquiry
-from tpvqa.belief.learned import Learned
-from tpvqa.belief.priors import Priors
-from tpvqa.belief.risk import RiskBound, confidence
-from tpvqa.belief.settling import Settling, Settlings
-from tpvqa.belief.sight import Sight
-from tpvqa.belief.table import Choice, Table
-from tpvqa.belief.trust import Trust
+from tpvqa.belief.answers.biases import Biases
+from tpvqa.belief.answers.trust import Trust
+from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.risk import RiskBound, confidence
+from tpvqa.belief.deciding.choices import Chooser
+from tpvqa.belief.deciding.inquiry import DOUBT, Inquirer, Inquiry
+from tpvqa.belief.deciding.table import Choice, Table
+from tpvqa.belief.filtering.ablations import belief_without
+from tpvqa.belief.filtering.doubts import Doubts
+from tpvqa.belief.filtering.faults import FaultModel, FaultRules
+from tpvqa.belief.filtering.first import Prior
+from tpvqa.belief.filtering.priors import Priors
+from tpvqa.belief.filtering.sight import Sight
+from tpvqa.belief.learning.experience import Experience
+from tpvqa.belief.learning.learned import Learned
+from tpvqa.belief.weighing.controls import Controls
+from tpvqa.belief.weighing.evidence import Evidence
+from tpvqa.belief.weighing.settling import Settling, Settlings
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.asking import Asking
 from tpvqa.monitors.belief_settings import BeliefSettings

@@ -5,14 +5,14 @@ from typing import Self
 
 from pydantic import ValidationError
 
-from tpvqa.belief.ablations import PARTS
-from tpvqa.belief.chances import Chances
+from tpvqa.belief.answers.other_words import OtherWords
+from tpvqa.belief.calibrating.counted import CountedFaults
+from tpvqa.belief.calibrating.own_words import SkillWorth
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.counted import CountedFaults
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.faults import Rates
-from tpvqa.belief.other_words import OtherWords
-from tpvqa.belief.own_words import SkillWorth
+from tpvqa.belief.filtering.ablations import PARTS
+from tpvqa.belief.filtering.faults import Rates
+from tpvqa.belief.learning.chances import Chances
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.errors import PluginError, suggestion
 from tpvqa.monitors.stated_risk import risk_from
 from tpvqa.told import first_fault

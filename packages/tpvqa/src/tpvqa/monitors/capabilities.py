@@ -6,7 +6,7 @@ from tpvqa.plugins import class_of
 from tpvqa.questions import QuestionBook
 
 if TYPE_CHECKING:
-    from tpvqa.belief.experience import Experience
+    from tpvqa.belief.learning.experience import Experience
     from tpvqa.monitors.protocol import Check
 
 

@@ -5,14 +5,14 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.faults import Showing
-from tpvqa.belief.inquiry import DOUBT, Budget, Inquiry
-from tpvqa.belief.learned import Learned
-from tpvqa.belief.sight import Sight
+from tpvqa.belief.deciding.choices import Chooser
+from tpvqa.belief.deciding.inquiry import DOUBT, Budget, Inquiry
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import Showing
+from tpvqa.belief.filtering.sight import Sight
+from tpvqa.belief.learning.learned import Learned
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.monitors.inspection import Inspection
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import PlanFrom, Request

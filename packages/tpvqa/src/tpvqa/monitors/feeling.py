@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable, Sequence
 
-from tpvqa.belief.sight import Sight
+from tpvqa.belief.filtering.sight import Sight
 from tpvqa.observation import SensedFact
 from tpvqa.pddl import Atom, Literal
 from tpvqa.questions import QuestionBook

@@ -4,12 +4,12 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from math import fsum, inf
 from typing import Any
 
-from tpvqa.belief.belief import MOST, Belief
-from tpvqa.belief.evidence import Evidence
-from tpvqa.belief.first import Prior
-from tpvqa.belief.inquiry import DOUBT, Budget
-from tpvqa.belief.last_answer import Picture
-from tpvqa.belief.seeking import LIKELY
+from tpvqa.belief.answers.last_answer import Picture
+from tpvqa.belief.deciding.inquiry import DOUBT, Budget
+from tpvqa.belief.deciding.seeking import LIKELY
+from tpvqa.belief.filtering.belief import MOST, Belief
+from tpvqa.belief.filtering.first import Prior
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Inspection, Replies
 from tpvqa.monitors.protocol import Check

@@ -3,7 +3,7 @@
 from collections import Counter
 from dataclasses import dataclass, field
 
-from tpvqa.belief.last_answer import Picture
+from tpvqa.belief.answers.last_answer import Picture
 from tpvqa.pddl import Action, Atom, Literal
 from tpvqa.questions import FactQuestion, FactWay, QuestionBook, Way
 from tpvqa.vlm import Reply

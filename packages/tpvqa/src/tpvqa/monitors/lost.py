@@ -1,7 +1,7 @@
 """What tells joint states that no plan leads on from: no plan needs it, so nobody would ask."""
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.outlook import Outlook
+from tpvqa.belief.deciding.outlook import Outlook
+from tpvqa.belief.filtering.belief import Belief
 from tpvqa.pddl import Atom, State
 
 LIKELY = 0.02

@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tpvqa.belief.annotated import AnnotatedPlan
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.replies_in_words import words
-from tpvqa.belief.risk import RiskBound
+from tpvqa.belief.calibrating.replies_in_words import words
+from tpvqa.belief.calibrating.risk import RiskBound
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
+from tpvqa.belief.filtering.belief import Belief
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Inspection, Noticed, Replies
 from tpvqa.monitors.protocol import Step

@@ -1,6 +1,6 @@
 """Where the goal is probable enough to say that it is reached."""
 
-from tpvqa.belief.risk import RiskBound
+from tpvqa.belief.calibrating.risk import RiskBound
 
 EVEN = 0.5
 """A goal that is more probable than this is reached more probably than not, as is believed."""

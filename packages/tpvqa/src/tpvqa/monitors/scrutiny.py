@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Sequence
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.inquiry import Budget, Inquiry
+from tpvqa.belief.deciding.inquiry import Budget, Inquiry
+from tpvqa.belief.filtering.belief import Belief
 from tpvqa.monitors.inspection import Inspection
 from tpvqa.pddl import Atom, literals
 from tpvqa.questions import FactQuestion, QuestionBook

@@ -1,6 +1,6 @@
 """The risk that a belief monitor states: in its specification, and in words."""
 
-from tpvqa.belief.risk import RiskBound, confidence
+from tpvqa.belief.calibrating.risk import RiskBound, confidence
 from tpvqa.errors import PluginError
 
 BELIEF = "belief"

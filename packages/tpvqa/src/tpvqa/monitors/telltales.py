@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.sight import Sight
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.sight import Sight
 from tpvqa.pddl import Action, Atom
 
 DOUBT = 0.05

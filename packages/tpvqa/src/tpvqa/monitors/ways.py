@@ -4,14 +4,14 @@ from collections.abc import Generator, Sequence
 from itertools import groupby
 from typing import Any
 
-from tpvqa.belief.annotated import AnnotatedPlan
-from tpvqa.belief.belief import Belief
-from tpvqa.belief.choices import Chooser
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.learned import Learned
-from tpvqa.belief.outlook import KNOWN
-from tpvqa.belief.seeking import LIKELY
-from tpvqa.belief.skills import CLOSELY, NAMED, SUSPECT
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.choices import Chooser
+from tpvqa.belief.deciding.outlook import KNOWN
+from tpvqa.belief.deciding.seeking import LIKELY
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.learning.learned import Learned
+from tpvqa.belief.learning.skills import CLOSELY, NAMED, SUSPECT
 from tpvqa.errors import PlannerError
 from tpvqa.monitors.inspection import Inspection
 from tpvqa.monitors.protocol import Step

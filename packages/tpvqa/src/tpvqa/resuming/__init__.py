@@ -10,9 +10,9 @@ from pydantic import BaseModel, ValidationError
 
 from tpvqa.assembly import Trial
 from tpvqa.belief import Calibration
-from tpvqa.belief.experience import Experience
-from tpvqa.belief.priors import load_priors
-from tpvqa.belief.risk import RiskBound
+from tpvqa.belief.calibrating.risk import RiskBound
+from tpvqa.belief.filtering.priors import load_priors
+from tpvqa.belief.learning.experience import Experience
 from tpvqa.drivers import Listener
 from tpvqa.episodes import EpisodeWriter
 from tpvqa.episodes.log import episode_folder

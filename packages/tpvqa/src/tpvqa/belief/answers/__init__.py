@@ -1,0 +1,1 @@
+"""What answers are worth: how they err, how errors last, and what was heard."""

@@ -1,0 +1,1 @@
+"""Labelled answers → calibrations, and what else is counted beforehand."""

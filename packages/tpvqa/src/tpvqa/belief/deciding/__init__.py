@@ -1,0 +1,1 @@
+"""What each choice is expected to cost, and what is asked beforehand."""

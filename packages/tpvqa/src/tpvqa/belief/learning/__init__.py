@@ -1,0 +1,1 @@
+"""What is learned while it acts: how often actions, skills and their reports fail."""

@@ -1,0 +1,1 @@
+"""Answers and readings as evidence, and what is expected of further ones."""
