@@ -1,5 +1,6 @@
 """Dask's workers on this machine: nobody else is let in, and one that dies at the start is told."""
 
+import os
 import time
 from pathlib import Path
 from urllib.error import HTTPError
@@ -56,6 +57,22 @@ def test_a_worker_that_dies_at_the_start(
     ):
         pass
     assert ("no licence" in str(caught.value)) == ("licence" in broken)
+    assert "Traceback" not in capfd.readouterr().err
+
+
+@pytest.mark.slow
+def test_ctrl_c_while_workers_start_is_answered_once_they_have(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    preload = tmp_path / "preload.py"
+    pressed = f"os.kill({os.getpid()}, signal.SIGINT); os.kill(os.getpid(), signal.SIGINT)"
+    preload.write_text(f"import os, signal\n{pressed}\n")
+    with (
+        dask.config.set({"distributed.worker.preload": [str(preload)]}),
+        pytest.raises(KeyboardInterrupt),
+        dask_client(1),
+    ):
+        pytest.fail("it was not answered")
     assert "Traceback" not in capfd.readouterr().err
 
 

@@ -68,3 +68,15 @@ def test_a_note_that_cannot_be_written_stops_no_trial(shell: Shell, nowhere: str
     code, out, _ = shell(f"{TRIAL} --json {nowhere}")
     result = json.loads(out)  # no note is in it
     assert code == (0 if result["completed"] else 1)
+
+
+@pytest.mark.parametrize("words", ["show e", "run --help"])
+def test_a_terminal_of_no_columns_is_one_of_unknown_size(
+    shell: Shell, monkeypatch: pytest.MonkeyPatch, words: str
+) -> None:
+    shell(TRIAL)
+    monkeypatch.delenv("COLUMNS", raising=False)
+    usual = shell(words)
+    monkeypatch.setenv("COLUMNS", "0")
+    monkeypatch.setenv("LINES", "0")
+    assert shell(words) == usual

@@ -54,6 +54,15 @@ def test_requests_and_cost_are_said_before_and_after(tmp_path: Path) -> None:
         assert said["percent"] == {"rendered": 20.0, "variation": 60.0, "generated": 20.0}
 
 
+@pytest.mark.parametrize("price", ["inf", "1e400", "nan", "-1"])
+def test_a_price_that_no_file_can_hold_is_refused(tmp_path: Path, price: str) -> None:
+    with ImagesServer() as server:
+        ask = arguments(tmp_path, server, "--yes", "--price", price)
+        refused = CliRunner().invoke(dataset, ask)
+    assert (refused.exit_code, server.requests) == (2, [])
+    assert "--price" in refused.output
+
+
 def test_a_refused_picture_fails_the_command(tmp_path: Path) -> None:
     refused = refusal(400, "no knives", code="content_policy_violation")
     with ImagesServer(script=lambda n: refused if n == 0 else None) as server:

@@ -1,8 +1,11 @@
 """The embedded network as a user meets it, with the weights that ship."""
 
 import json
+import os
 import shutil
 import statistics
+import subprocess
+import sys
 import time
 from io import BytesIO
 from pathlib import Path
@@ -170,3 +173,12 @@ def test_a_picture_with_all_questions_of_a_step_is_quick(vlm: EmbeddedVLM) -> No
         vlm.ask(seen, asked)
         seconds.append(time.perf_counter() - began)
     assert min(seconds) < 0.15
+
+
+def test_nothing_is_kept_or_sent_about_the_user(tmp_path: Path) -> None:
+    """Left alone, onnxruntime 1.32 numbers the device in the user's folder, and sends reports."""
+    here = {"HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    words = ["ask", str(REFERENCE / "0.png"), "Is the fridge open?"]
+    done = subprocess.run([sys.executable, "-m", "tpvqa", *words], env=here, check=False)
+    assert done.returncode == 0
+    assert not list(tmp_path.rglob("*onnx*"))

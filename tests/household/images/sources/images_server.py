@@ -10,6 +10,7 @@ import re
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from io import BytesIO
@@ -44,6 +45,8 @@ class Act:
     body: str | Mapping[str, Any] | None = None
     headers: Mapping[str, str] = field(default_factory=dict)
     wait: float = 0.0
+    endless: bytes = b""
+    """Said again and again after the headers, ten times a second."""
 
 
 Script = Callable[[int], Act | None]
@@ -64,6 +67,7 @@ class ImagesServer:
         self.requests: list[Request] = []
         self.fetched: list[Request] = []
         self.lost = 0  # how many of the next fetches of a finished picture fail
+        self.endless_picture = b""  # what fetches of a finished picture are met with for ever
         self._lock = threading.Lock()
         self._server = _Server(("127.0.0.1", 0), _Handler)
         self._server.images = self
@@ -100,7 +104,7 @@ class ImagesServer:
             self.requests.append(request)
         act = self.script(before) or Act()
         time.sleep(act.wait)
-        if act.status != 200 or act.body is not None:
+        if act.status != 200 or act.body is not None or act.endless:
             return act
         entry: dict[str, str]
         if self.by_url:
@@ -139,6 +143,9 @@ class _Handler(BaseHTTPRequestHandler):
             images.lost -= 1
             self._send(refusal(502, "try again"))
             return
+        if images.endless_picture:
+            self._repeat(images.endless_picture)
+            return
         match = re.fullmatch(r"/made/(\d+)\.png", self.path)
         assert match is not None
         self._write(200, {"Content-Type": "image/png"}, picture(int(match[1])))
@@ -147,6 +154,9 @@ class _Handler(BaseHTTPRequestHandler):
         return {name.lower(): value for name, value in self.headers.items()}
 
     def _send(self, act: Act) -> None:
+        if act.endless:
+            self._repeat(act.endless)
+            return
         body = act.body if isinstance(act.body, str) else json.dumps(act.body or {})
         self._write(act.status, {"Content-Type": "application/json", **act.headers}, body.encode())
 
@@ -160,6 +170,15 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(data)
         except OSError:
             self.close_connection = True  # the client has gone
+
+    def _repeat(self, data: bytes) -> None:
+        self.close_connection = True
+        with suppress(OSError):  # the client goes away
+            self.send_response(200)
+            self.end_headers()
+            while True:
+                self.wfile.write(data)
+                time.sleep(0.1)
 
     def log_message(self, format: str, *args: Any) -> None:
         """Say nothing."""

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.household.images.sources.images_server import Act, ImagesServer, refusal
-from tpvqa.errors import GeneratorError, PictureSetError
+from tpvqa.errors import GeneratorError, PictureSetError, WriteError
 from tpvqa.worlds.pictures import MANIFEST
 from tpvqa.worlds.simulation import Simulation
 from tpvqa_household.images.manifest import Manifest, Picture, load_pictures
@@ -149,6 +149,21 @@ def test_a_picture_written_in_the_moment_of_a_kill_is_not_asked_for_again(
         (kitchen.out / MANIFEST).unlink()
         assert kitchen.compose(server, count=5).manifest == whole
         assert len(server.requests) == asked
+
+
+def test_what_a_kill_left_half_written_is_taken_away(kitchen: Kitchen) -> None:
+    with ImagesServer() as server:
+        kitchen.compose(server, count=5)
+        (kitchen.out / ".0123456789abcdef.part").write_bytes(b"half")
+        kitchen.compose(server, count=5)
+    assert not list(kitchen.out.glob(".*"))
+
+
+def test_a_set_that_cannot_be_written_is_told_as_such(kitchen: Kitchen) -> None:
+    kitchen.out.write_bytes(b"a file of the user's")
+    with ImagesServer() as server, pytest.raises(WriteError, match=r"is no folder.*goes on with"):
+        kitchen.compose(server, count=5)
+    assert kitchen.out.read_bytes() == b"a file of the user's"
 
 
 def test_a_damaged_picture_is_made_again(kitchen: Kitchen) -> None:

@@ -123,6 +123,46 @@ def test_a_slow_server_is_not_waited_for_for_ever() -> None:
         assert images.generate("a plate", seed=1).data == picture(1)
 
 
+def test_a_server_that_says_a_little_for_ever_is_late() -> None:
+    with ImagesServer(script=first(Act(endless=b" "))) as server:
+        images = OpenAIImages("some", base_url=server.url, request_timeout=0.5)
+        assert images.generate("a plate", seed=1).data == picture(1)
+
+
+def test_a_picture_that_comes_for_ever_is_late(server: ImagesServer) -> None:
+    server.by_url, server.endless_picture = True, b"x"
+    images = OpenAIImages("some", base_url=server.url, request_timeout=0.5, retries=1)
+    with pytest.raises(GeneratorError, match=r"not whole within 0\.5 s, 2 times"):
+        images.generate("a plate", seed=1)
+
+
+@pytest.mark.parametrize("by_url", [False, True])
+def test_no_more_is_read_than_a_picture_may_have(by_url: bool) -> None:
+    endless = b"A" * 2**24
+    script = first() if by_url else lambda _: Act(endless=endless)
+    with ImagesServer(script=script, by_url=by_url) as server:
+        server.endless_picture = endless
+        images = OpenAIImages("some", base_url=server.url, retries=0)
+        with pytest.raises(GeneratorError, match="more than 64 MiB"):
+            images.generate("a plate", seed=1)
+
+
+def test_a_reply_that_is_compressed_is_not_unpacked() -> None:
+    script = first(Act(body="{}", headers={"Content-Encoding": "gzip"}))
+    with ImagesServer(script=script) as server:
+        images = OpenAIImages("some", base_url=server.url)
+        assert images.generate("a plate", seed=1).data == picture(1)
+
+
+def test_a_complaint_nested_too_deeply_is_told_as_it_came() -> None:
+    deep = Act(400, "[" * 100_000)
+    with (
+        ImagesServer(script=lambda _: deep) as server,
+        pytest.raises(GeneratorError, match=r"refuses to be asked.*\[\[\["),
+    ):
+        OpenAIImages("some", base_url=server.url).generate("a plate", seed=1)
+
+
 @pytest.mark.parametrize(
     ("act", "said"),
     [

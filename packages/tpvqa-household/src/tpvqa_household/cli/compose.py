@@ -58,7 +58,8 @@ def compose(
         str | None, typer.Option(help="openai: address of a server of your own.")
     ] = None,
     price: Annotated[
-        float | None, typer.Option(min=0, help="openai: dollars a picture, to say what it costs.")
+        float | None,
+        typer.Option(min=0, max=10_000, help="openai: dollars a picture, to say what it costs."),
     ] = None,
     per_minute: Annotated[
         float | None, typer.Option(min=0.01, help="openai: requests a minute, at most.")

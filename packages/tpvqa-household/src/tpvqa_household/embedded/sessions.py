@@ -1,5 +1,6 @@
 """The network in onnxruntime: picture → map, map and questions → logits; the frozen branch."""
 
+import os
 from functools import cached_property
 from typing import Any
 
@@ -21,6 +22,8 @@ class Sessions:
     """
 
     def __init__(self, weights: Weights, *, threads: int):
+        # Read as it is imported: else it keeps a number of the device, and reports to its maker.
+        os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
         import onnxruntime
 
         options = onnxruntime.SessionOptions()

@@ -86,14 +86,11 @@ def build(
         progress: Told the number of pictures done and of all, after each.
 
     Raises:
-        PictureSetError: A picture could not be made, or the folder cannot be written to.
+        PictureSetError: A picture could not be made, or another build is at work there.
+        WriteError: The folder cannot be written to; what was made stays.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with alone(folder):
-            return _build(jobs, folder, settings, workers, progress or (lambda done, total: None))
-    except OSError as error:
-        raise PictureSetError(f"{folder}: cannot be written to ({error})") from error
+    with alone(folder):
+        return _build(jobs, folder, settings, workers, progress or (lambda done, total: None))
 
 
 def _build(

@@ -6,6 +6,7 @@ good a grasp there is, its angle as sine and cosine of twice it, and its width. 
 project's own; docs/grasp-card.md says what taught them.
 """
 
+import os
 from functools import cache
 from importlib import resources
 from importlib.util import find_spec
@@ -122,6 +123,8 @@ def _session() -> Any:
         raise MissingExtraError(
             "onnxruntime", "grasps", "The network of grasps", distribution=DISTRIBUTION
         )
+    # Read as it is imported: else it keeps a number of the device, and reports to its maker.
+    os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
     import onnxruntime
 
     options = onnxruntime.SessionOptions()

@@ -10,6 +10,7 @@ import signal
 import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any
 
 from tpvqa.errors import BenchError, MissingExtraError
@@ -145,19 +146,22 @@ def _cause(error: BaseException) -> str:
 
 @contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """Let processes that start meanwhile ignore Ctrl-C: who started them ends them. A SIGTERM is
-    answered once they have started."""
+    """Let processes that start meanwhile be deaf to Ctrl-C: who started them ends them. To a Ctrl-C
+    or a SIGTERM this process answers once they have started."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+    # Not ignored: what is sent meanwhile would be lost, and nannies end their workers by SIGTERM.
     noted: list[int] = []
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # Not ignored: that would be inherited, and nannies end their workers by it.
-    ended = signal.signal(signal.SIGTERM, lambda number, _: noted.append(number))
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = [signal.signal(each, lambda number, _: noted.append(number)) for each in signals]
+    resource_tracker.ensure_running()  # where it is begun, it lets Ctrl-C through to who is next
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])  # processes inherit it
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
-        signal.signal(signal.SIGTERM, ended)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for each, handler in zip(signals, before, strict=True):
+            signal.signal(each, handler)
         if noted:
-            os.kill(os.getpid(), signal.SIGTERM)
+            os.kill(os.getpid(), noted[-1])

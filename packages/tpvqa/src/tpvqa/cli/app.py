@@ -27,7 +27,14 @@ from tpvqa.cli import (
 )
 from tpvqa.cli.plugged import PluggedGroup
 from tpvqa.cli.saying import tell
-from tpvqa.cli.streams import all_printed, check_output, end_notes, give_up, print_anything
+from tpvqa.cli.streams import (
+    all_printed,
+    check_output,
+    end_notes,
+    give_up,
+    print_anything,
+    take_no_size_of_nothing,
+)
 from tpvqa.errors import TpvqaError, WriteError, cut
 
 NOT_WRITTEN = 6
@@ -132,6 +139,7 @@ def main() -> None:
     not be written; Ctrl-C, or SIGTERM, becomes "interrupted" and exit code 130.
     """
     print_anything()
+    take_no_size_of_nothing()
     try:
         _main()
     finally:

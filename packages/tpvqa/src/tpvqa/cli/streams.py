@@ -20,6 +20,16 @@ def print_anything() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
+def take_no_size_of_nothing() -> None:
+    """Let a terminal that is said to have no columns, or no lines, count as one that says nothing.
+
+    Some shells and runners of jobs set them to 0, and Rich would print none of a trial.
+    """
+    for name in ("COLUMNS", "LINES"):
+        if os.environ.get(name, "").strip("0") == "":
+            os.environ.pop(name, None)
+
+
 def check_output(arguments: Sequence[str]) -> None:
     """See, before anything is done, that a result that a program is to read can be printed.
 

@@ -1,6 +1,6 @@
 """The HTTP client for a server that is not trusted: no redirects, and replies of bounded size."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from typing import TYPE_CHECKING, Any
@@ -11,32 +11,36 @@ if TYPE_CHECKING:
     from openai import DefaultAsyncHttpxClient
 
 MOST_BYTES = 4 * 2**20
-"""Of a reply: 2,000 tokens with 20 alternatives each have 3.5 MB."""
+"""Of a reply in words: 2,000 tokens with 20 alternatives each have 3.5 MB."""
 
 
 class ReplyTooLargeError(Exception):
-    """A reply goes on beyond `MOST_BYTES`, or is compressed though nobody asked for that."""
+    """A reply goes on beyond what it may have, or is compressed though nobody asked for that."""
 
 
-async def _bound(response: Any) -> None:
+def _bound(most: int) -> Callable[[Any], Awaitable[None]]:
     """Let no more be read of a response than it may have.
 
     Its class is httpx's or that of httpx's successor, whichever openai uses.
     """
-    encoding = response.headers.get("content-encoding", "").strip().lower()
-    if encoding not in ("", "identity"):  # a few bytes can become gigabytes
-        raise ReplyTooLargeError("it is compressed, which was not asked for")
-    parts = response.aiter_raw
 
-    async def bounded(chunk_size: int | None = None) -> AsyncIterator[bytes]:
-        left = MOST_BYTES
-        async for part in parts(chunk_size):
-            left -= len(part)
-            if left < 0:
-                raise ReplyTooLargeError(f"it has more than {MOST_BYTES // 2**20} MiB")
-            yield part
+    async def bound(response: Any) -> None:
+        encoding = response.headers.get("content-encoding", "").strip().lower()
+        if encoding not in ("", "identity"):  # a few bytes can become gigabytes
+            raise ReplyTooLargeError("it is compressed, which was not asked for")
+        parts = response.aiter_raw
 
-    response.aiter_raw = bounded
+        async def bounded(chunk_size: int | None = None) -> AsyncIterator[bytes]:
+            left = most
+            async for part in parts(chunk_size):
+                left -= len(part)
+                if left < 0:
+                    raise ReplyTooLargeError(f"it has more than {most // 2**20} MiB")
+                yield part
+
+        response.aiter_raw = bounded
+
+    return bound
 
 
 def seconds_to_wait(retry_after: str, now: datetime | None = None) -> float | None:
@@ -52,8 +56,11 @@ def seconds_to_wait(retry_after: str, now: datetime | None = None) -> float | No
     return max(0.0, (until - (now or datetime.now(UTC))).total_seconds())
 
 
-def bounded_client() -> "DefaultAsyncHttpxClient":
+def bounded_client(*, most: int = MOST_BYTES) -> "DefaultAsyncHttpxClient":
     """A client that sends to the address that it is given, and reads no more than it should.
+
+    Args:
+        most: How many bytes a reply may have.
 
     Raises:
         ValueError: There can be none with the environment's proxies or certificates. The message
@@ -65,7 +72,7 @@ def bounded_client() -> "DefaultAsyncHttpxClient":
         return DefaultAsyncHttpxClient(
             follow_redirects=False,
             headers={"Accept-Encoding": "identity"},
-            event_hooks={"response": [_bound]},
+            event_hooks={"response": [_bound(most)]},
         )
     except Exception as error:  # noqa: BLE001  httpx and ssl raise of many kinds
         raise ValueError(why_no_client(error)) from None

@@ -25,7 +25,7 @@ class Retry(Exception):  # noqa: N818 — a request to try again, not an error
         self.why, self.pause, self.no_server = why, pause, no_server
 
 
-_UNDECODED = (AssertionError, LookupError, RecursionError, ValueError)
+UNDECODED = (AssertionError, LookupError, RecursionError, ValueError)
 """What openai's package raises of an error's body that says nothing it can read."""
 _HUNG_UP = "Server disconnected"
 """How httpx begins to say that there was no reply at all, by the same error as of a broken one."""
@@ -133,7 +133,7 @@ class Server:
             return Reading(Reply.UNKNOWN, text="garbled reply: nested too deeply")
         except UnicodeEncodeError:  # nothing was sent, so this is no answer of the server's
             raise
-        except _UNDECODED as error:
+        except UNDECODED as error:
             return Reading(Reply.UNKNOWN, text=f"garbled reply: {type(error).__name__}: {error}")
         if "html" in response.headers.get("content-type", ""):
             if self._speaks:  # the address is right: a gateway's page of errors

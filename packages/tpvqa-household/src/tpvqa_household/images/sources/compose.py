@@ -86,17 +86,12 @@ def compose(
 
     Raises:
         GeneratorError: A generator cannot be used; what was made stays.
-        PictureSetError: The folder cannot be written to, or holds another set.
+        PictureSetError: The folder holds another set, or another build is at work there.
+        WriteError: The folder cannot be written to; what was made stays.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with alone(folder):
-            known = _existing(wanted, folder)
-            return _Composer(known, folder, tasks).run(
-                wanted, progress or (lambda done, total: None)
-            )
-    except OSError as error:
-        raise PictureSetError(f"{folder}: cannot be written to ({error})") from error
+    with alone(folder):
+        known = _existing(wanted, folder)
+        return _Composer(known, folder, tasks).run(wanted, progress or (lambda done, total: None))
 
 
 class _Composer:

@@ -66,7 +66,7 @@ def complaint(body: object) -> Mapping[str, str]:
     if isinstance(body, (str, bytes)):
         try:
             body = json.loads(body)
-        except ValueError:
+        except (ValueError, RecursionError):
             return {"message": str(body)[:300]}
     inner = body.get("error", body) if isinstance(body, Mapping) else body
     if not isinstance(inner, Mapping):

@@ -1,18 +1,22 @@
 """The images API of OpenAI and of servers that speak it: variations, edits, generations."""
 
+import asyncio
 import importlib.util
 import os
 import time
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from tpvqa.addresses import checked_address
 from tpvqa.chance import chance
 from tpvqa.errors import GeneratorError, MissingExtraError, PictureRefused
-from tpvqa.vlm.http_client import seconds_to_wait
+from tpvqa.pictures import MOST_BYTES
+from tpvqa.vlm.connection import Connection
+from tpvqa.vlm.http_client import ReplyTooLargeError, bounded_client, seconds_to_wait
+from tpvqa.vlm.server import UNDECODED
 from tpvqa.vlm.server_text import ServerText
-from tpvqa.vlm.surroundings import check_headers
+from tpvqa.vlm.surroundings import check_headers, innermost
 from tpvqa.worlds.pictures import digest
 from tpvqa_household.images.sources.generator import Drawn, Original
 from tpvqa_household.images.sources.images_reply import (
@@ -24,12 +28,12 @@ from tpvqa_household.images.sources.images_reply import (
 from tpvqa_household.images.sources.picture_file import as_png, read_picture, square
 
 if TYPE_CHECKING:
-    from openai import APIStatusError, OpenAI
+    from openai import APIStatusError
 
 SIDE = 512
 """Of a picture that is sent, and of what DALL-E 2 is asked for."""
 _LONGEST_PAUSE = 30.0
-_LARGEST = 50_000_000  # bytes of a picture that is fetched from an address
+_LARGEST = 2 * MOST_BYTES  # of a reply: in base64 a picture takes a third more
 
 
 class _Again(Exception):  # noqa: N818 — a request to try again, not an error
@@ -94,7 +98,7 @@ class OpenAIImages:
         self._retries = retries
         self._spacing = 60.0 / per_minute if per_minute else 0.0
         self._next_turn = 0.0
-        self._client: OpenAI | None = None
+        self._connection: Connection | None = None
 
     @property
     def name(self) -> str:
@@ -110,7 +114,7 @@ class OpenAIImages:
         """A variation of a picture, or an edit by its prompt."""
         png = as_png(square(read_picture(original.data), SIDE))
         sent: dict[str, Any] = {"image": ("picture.png", png, "image/png"), **self._form()}
-        images = self._connect().images.with_raw_response
+        images = self._connect().client.images.with_raw_response
         ask: Callable[..., Any] = images.create_variation
         if self.model != "dall-e-2":
             ask = images.edit
@@ -119,14 +123,14 @@ class OpenAIImages:
 
     def generate(self, prompt: str, *, seed: int) -> Drawn:
         """A picture from words."""
-        images = self._connect().images.with_raw_response
+        images = self._connect().client.images.with_raw_response
         return self._insist(images.generate, {"prompt": prompt, **self._form()}, seed, of="")
 
     def close(self) -> None:
         """Close the connections. Can be called twice."""
-        client, self._client = self._client, None
-        if client is not None:
-            client.close()
+        connection, self._connection = self._connection, None
+        if connection is not None:
+            connection.close()
 
     def _form(self) -> dict[str, Any]:
         form: dict[str, Any] = {"model": self.model, "n": 1}
@@ -137,8 +141,8 @@ class OpenAIImages:
             form["response_format"] = "b64_json"
         return form
 
-    def _connect(self) -> "OpenAI":
-        if self._client is None:
+    def _connect(self) -> Connection:
+        if self._connection is None:
             import openai
 
             key = os.environ.get("OPENAI_API_KEY", "").strip()
@@ -150,15 +154,16 @@ class OpenAIImages:
             self._text = ServerText(key)
             try:
                 check_headers(key)
-                self._client = openai.OpenAI(
+                client = openai.AsyncOpenAI(
                     api_key=key or "none-needed",
                     base_url=self.base_url,
                     max_retries=0,
-                    http_client=openai.DefaultHttpxClient(follow_redirects=False),
+                    http_client=bounded_client(most=_LARGEST),
                 )
             except (openai.OpenAIError, ValueError) as error:
                 raise GeneratorError(f"{self._where()} cannot be asked: {error}") from error
-        return self._client
+            self._connection = Connection(client)
+        return self._connection
 
     def _insist(
         self, ask: Callable[..., Any], sent: dict[str, Any], seed: int, *, of: str
@@ -209,31 +214,28 @@ class OpenAIImages:
         timeout = max(0.1, min(self._request_timeout, end - time.monotonic()))
         self.requests += 1
         try:
-            return read_reply(ask(**sent, timeout=timeout).content)
-        except openai.APITimeoutError:
-            raise _Again(f"late: nothing within {timeout:g} s") from None
-        except openai.APIConnectionError as error:
-            why = str(error.__cause__ or error) or type(error.__cause__).__name__
-            raise _Again(f"no connection: {why}") from None
+            return read_reply(self._connect().run(_asked, ask, sent, timeout))
+        except (TimeoutError, openai.APITimeoutError):
+            raise _Again(f"late: not whole within {timeout:g} s") from None
+        except (openai.APIConnectionError, ReplyTooLargeError) as error:
+            cause = innermost(error.__cause__ or error)
+            if isinstance(cause, ReplyTooLargeError):
+                raise _Again(f"garbled reply: {cause}", garbled=True) from None
+            raise _Again(f"no connection: {str(cause) or type(cause).__name__}") from None
         except openai.APIStatusError as error:
             self._refused(error)
-        except ValueError as error:
+        except UNDECODED as error:
             raise _Again(str(error), garbled=True) from None
 
     def _fetch(self, at: Elsewhere, end: float) -> bytes:
-        import httpx
-
         timeout = max(0.1, min(self._request_timeout, end - time.monotonic()))
         try:
-            with httpx.stream("GET", at.url, timeout=timeout, follow_redirects=True) as reply:
-                reply.raise_for_status()
-                data = bytearray()
-                for piece in reply.iter_bytes():
-                    data += piece
-                    if len(data) > _LARGEST:
-                        raise GeneratorError(f"{at.url}: larger than any picture")
-            return whole(bytes(data))
-        except (httpx.HTTPError, httpx.InvalidURL, ValueError) as error:
+            return whole(self._connect().run(_fetched, at.url, timeout))
+        except TimeoutError:
+            raise _Again(f"the picture's address: not whole within {timeout:g} s") from None
+        except ReplyTooLargeError as error:
+            raise GeneratorError(f"{at.url}: {error}") from None
+        except Exception as error:  # noqa: BLE001  of httpx, or of its successor
             raise _Again(f"the picture's address: {error}") from None
 
     def _refused(self, error: "APIStatusError") -> NoReturn:
@@ -269,3 +271,19 @@ def _pause(again: _Again, attempt: int, seed: int) -> float:
         return again.pause
     spread = 0.75 + 0.5 * chance(0, 0, "pause", seed, attempt).random()
     return float(min(_LONGEST_PAUSE, 0.5 * 2**attempt * spread))
+
+
+async def _asked(ask: Callable[..., Any], sent: Mapping[str, Any], seconds: float) -> bytes:
+    """The body of a reply. The client's own limit is of each part, which may be a byte."""
+    async with asyncio.timeout(seconds):
+        reply = await ask(**sent, timeout=seconds)
+    content: bytes = reply.content
+    return content
+
+
+async def _fetched(url: str, seconds: float) -> bytes:
+    async with asyncio.timeout(seconds), bounded_client(most=_LARGEST) as client:
+        reply = await client.get(url, timeout=seconds, follow_redirects=True)
+    reply.raise_for_status()
+    content: bytes = reply.content
+    return content
