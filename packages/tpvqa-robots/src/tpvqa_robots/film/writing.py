@@ -1,13 +1,16 @@
 """Pictures → an MP4, and a GIF that is small enough for a page."""
 
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
 from tpvqa.errors import MissingExtraError, WriteError
+from tpvqa.files import write_whole
 from tpvqa_robots import DISTRIBUTION
 
 GIF_SIZE, GIF_COLOURS = (720, 360), 128
@@ -15,6 +18,7 @@ _RARE = 48
 """Colours of small things, among the others."""
 GIF_BYTES = 3_000_000
 """How large a GIF may be."""
+REMEDY = "Make room, or name another folder with --out"
 
 
 def write_mp4(file: Path, pictures: Sequence[NDArray[np.uint8]], *, rate: int) -> None:
@@ -32,13 +36,19 @@ def write_mp4(file: Path, pictures: Sequence[NDArray[np.uint8]], *, rate: int) -
         ) from error
     height, width, _ = pictures[0].shape
     try:
-        to = write_frames(str(file), (width, height), fps=rate, quality=7, macro_block_size=1)
-        to.send(None)
-        for picture in pictures:
-            to.send(np.ascontiguousarray(picture))
-        to.close()
+        with TemporaryDirectory() as folder:  # a film that was begun is none
+            encoded = Path(folder, file.name)
+            to = write_frames(
+                str(encoded), (width, height), fps=rate, quality=7, macro_block_size=1
+            )
+            to.send(None)
+            for picture in pictures:
+                to.send(np.ascontiguousarray(picture))
+            to.close()
+            data = encoded.read_bytes()
     except OSError as error:
-        raise WriteError(f"{file} could not be written: {error}") from error
+        raise WriteError(f"{file} could not be encoded: {error}. {REMEDY}.") from error
+    write_whole(file, data, remedy=REMEDY)
 
 
 def write_gif(file: Path, pictures: Sequence[NDArray[np.uint8]], *, rate: int) -> None:
@@ -54,20 +64,19 @@ def write_gif(file: Path, pictures: Sequence[NDArray[np.uint8]], *, rate: int) -
         ]
         palette = _palette(small[:: max(1, len(small) // 6)])
         frames = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in small]
-        try:
-            frames[0].save(
-                file,
-                save_all=True,
-                append_images=frames[1:],
-                duration=round(1000 * every / rate),
-                loop=0,
-                optimize=True,
-            )
-        except OSError as error:
-            raise WriteError(f"{file} could not be written: {error}") from error
-        if file.stat().st_size <= GIF_BYTES:
+        encoded = BytesIO()
+        frames[0].save(
+            encoded,
+            format="GIF",
+            save_all=True,
+            append_images=frames[1:],
+            duration=round(1000 * every / rate),
+            loop=0,
+            optimize=True,
+        )
+        if encoded.tell() <= GIF_BYTES:
+            write_whole(file, encoded.getvalue(), remedy=REMEDY)
             return
-    file.unlink()
     raise WriteError(f"{file} would be larger than {GIF_BYTES / 1e6:g} MB.")
 
 
