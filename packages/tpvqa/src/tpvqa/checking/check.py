@@ -7,6 +7,7 @@ from tpvqa.checking import possible, wordings, world
 from tpvqa.checking.contradicting import of_effects
 from tpvqa.checking.finding import Finding, Severity, of_error
 from tpvqa.checking.left_open import of_left_open
+from tpvqa.checking.opposites import of_opposites
 from tpvqa.checking.priors import of_priors
 from tpvqa.checking.seeing import Telling
 from tpvqa.drafting import words
@@ -110,7 +111,8 @@ def _findings(
         yield from wordings.without_words(task, given, words(task), into)
     book = QuestionBook(task, given)
     yield from wordings.alike(task, book, questions)
-    yield from Telling(task, book, rules, into=rules_into, questions=into).findings()
+    yield from Telling(task, book, rules, into=rules_into).findings()
+    yield from of_opposites(task, book, into)
     yield from world.of_rules(task, rules, world_file)
     yield from world.not_taken(task, rules, rules_into)
     yield from of_priors(task, told[0], rules, told[1])
