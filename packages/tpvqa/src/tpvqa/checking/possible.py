@@ -149,7 +149,7 @@ def _excluded(action: Action, proved: Mutexes, undone: frozenset[str]) -> str:
 
 
 def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
-    """A goal that cannot be reached, or for which no plan is found in time."""
+    """A goal that holds at first, cannot be reached, or for which no plan is found in time."""
     file, line = named(task.problem_path), line_of_goal(task)
     demanded = dict.fromkeys(each.atom for each in required_of(task.goal) if each.positive)
     for one, other in combinations(demanded, 2):
@@ -163,6 +163,16 @@ def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
                 line,
             )
             return
+    if not task.left_open and task.goal_holds(task.init):
+        yield Finding(
+            "goal-holds",
+            Severity.WARNING,
+            "the goal holds already: the plan is empty",
+            "Mend the goal or the initial state, unless there is to be nothing to do.",
+            file,
+            line,
+        )
+        return
     if task.lasting is not None and not isinstance(planner, TemporalPlanner):
         yield Finding(
             "plan-not-sought",
