@@ -5,8 +5,10 @@ from enum import Enum, auto
 from functools import cache
 
 from tpvqa.drafting.lexicon import (
+    ADJECTIVES,
     INTRANSITIVE,
     IRREGULAR,
+    PARTICLES,
     POSTURES,
     PREPOSITIONS,
     REGULAR,
@@ -130,3 +132,14 @@ def stands(words: list[str]) -> bool:
     base, form = verb_form(words[0]) or ("", None)
     further = words[1:] != [] and (len(words) > 2 or words[1] not in PREPOSITIONS - {"between"})
     return further and base in POSTURES and form is Form.THIRD
+
+
+def is_there(words: list[str]) -> bool:
+    """Whether words say where something is: in lift, on left; not in door locked."""
+    if len(words) < 2 or words[0] not in PREPOSITIONS or words[-1] in PREPOSITIONS:
+        return False
+    how = words[-1] in ADJECTIVES | PARTICLES or (verb_form(words[-1]) or ("", None))[1] in (
+        Form.PARTICIPLE,
+        Form.ING,
+    )
+    return len(words) == 2 or not how

@@ -11,7 +11,10 @@ PREPOSITIONS = word_set(
     "for from in inside into near of off on onto outside over through to toward towards under "
     "underneath upon with within"
 )
-PLACING = word_set("at behind in inside into near on onto to under")
+PLACING = word_set(
+    "above against at behind below beneath beside in inside into near on onto over to under "
+    "underneath upon"
+)
 """Prepositions behind which a thing stands that is there: on the stand."""
 PARTICLES = word_set("away back down in off on open out over shut together up")
 """What follows a verb as a part of it: pick up, switch on, put back."""
@@ -87,7 +90,9 @@ PARTS = word_set("lid cap cover label handle wheel door plug seal stopper")
 """What a thing may have or lack."""
 BARE = word_set(
     "foot hand board place line order half time hold bed power fire gear rest home reverse motion "
-    "use stock focus sync tune view sight tow transit tension position service bloom season"
+    "use stock focus sync tune view sight tow transit tension position service bloom season "
+    "contact reach duty control pressure progress operation danger standby flight storage orbit "
+    "charge work alert"
 )
 """What goes without an article behind a preposition: on foot, in half, in focus."""
 TOOLS = word_set(
