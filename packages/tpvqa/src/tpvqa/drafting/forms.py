@@ -6,6 +6,7 @@ from functools import cache
 
 from tpvqa.drafting.lexicon import (
     ADJECTIVES,
+    DOUBLED,
     INTRANSITIVE,
     IRREGULAR,
     PARTICLES,
@@ -105,7 +106,7 @@ def _regular(base: str) -> str:
 
 
 def _doubles(base: str) -> bool:
-    if len(base) > 5 and base.endswith("el"):
+    if base in DOUBLED or (len(base) > 5 and base.endswith("el")):
         return True  # labelled, refuelled
     stem = base.removeprefix("un").removeprefix("re") if len(base) > 4 else base
     short = len(re.findall(r"[aeiou]+", stem)) == 1
