@@ -6,6 +6,7 @@ from pathlib import Path
 from tpvqa.checking import possible, wordings, world
 from tpvqa.checking.contradicting import of_effects
 from tpvqa.checking.finding import Finding, Severity, of_error
+from tpvqa.checking.idle_effects import of_idle_effects
 from tpvqa.checking.left_open import of_left_open
 from tpvqa.checking.opposites import of_opposites
 from tpvqa.checking.priors import of_priors
@@ -86,6 +87,7 @@ def _findings(
     yield from possible.of_goal(task, planner, timeout)
     yield from possible.of_metric(task)
     yield from possible.of_actions(task, _undone(rules))
+    yield from of_idle_effects(task, _undone(rules))
     yield from possible.of_predicates(task)
     yield from of_effects(task)
     yield from of_left_open(task)

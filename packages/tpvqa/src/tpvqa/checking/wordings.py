@@ -13,10 +13,10 @@ from tpvqa.checking.places import (
     line_of_object,
     line_of_predicate,
 )
-from tpvqa.checking.possible import atoms_of, required_of
+from tpvqa.checking.possible import atoms_of
 from tpvqa.drafting import LOOK, Words
 from tpvqa.pddl import Action, Atom, Literal, Task
-from tpvqa.pddl.conditions import literals
+from tpvqa.pddl.conditions import literals, required_of
 from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import QuestionBook
 from tpvqa.questions.wordings import Wordings
