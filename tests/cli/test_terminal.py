@@ -199,6 +199,12 @@ def test_what_was_sensed_is_not_cut_amid_a_phrase() -> None:
             "safelight lit 0.50 → 0.05 after two noes; on to mix the developer (step 6)",
         ),
         (
+            "tank dry 0.50 → 0.05 after two noes, which load the film into the reel (step 4) "
+            "needs; on to mix the developer (step 6), as what comes before it is done already: "
+            "safelight lit (0.98)",
+            "tank dry 0.50 → 0.05 after two noes; on to mix the developer (step 6)",
+        ),
+        (
             "jobo capped 0.00; robot holding the developer in its left gripper 0.00 after a no; "
             "back to cap the jobo (step 5): developer lying in the wet room (1.00)",
             "jobo capped 0.00; …; back to cap the jobo (step 5)",

@@ -24,6 +24,10 @@ from tpvqa.drafting.names import spelled, words_of
         ("fix", "fixes fixing fixed fixed"),
         ("tie", "ties tying tied tied"),
         ("drive", "drives driving drove driven"),
+        ("ring", "rings ringing rang rung"),
+        ("transfer", "transfers transferring transferred transferred"),
+        ("equip", "equips equipping equipped equipped"),
+        ("override", "overrides overriding overrode overridden"),
     ],
 )
 def test_verbs_go_as_in_a_grammar(base: str, forms: str) -> None:

@@ -110,3 +110,37 @@ def test_people_have_names_and_things_are_what_they_are() -> None:
     assert '"Anna"' in text
     assert '"tall visitor"' not in text.replace("tall_visitor", "")  # its name as it is
     assert '"bulb 60w"' in text
+
+
+def test_what_is_at_one_place_and_then_at_another_goes_to_it() -> None:
+    _, said, _ = drafted(
+        "(lift-at ?s - scene) (on ?p - pot ?s - shelf)",
+        "call-lift|?s ?from - scene|(lift-at ?s) (not (lift-at ?from))",
+        "put|?p - pot ?a ?b - shelf|(on ?p ?b) (not (on ?p ?a))",
+    )
+    plain = {name: each.replace(".the", "").replace("the ", "") for name, each in said.items()}
+    assert plain["call-lift"] == "call lift from {from} to {s}"
+    assert plain["put"] == "put {p} from {a} on {b}"
+
+
+def test_verbs_of_laboratories_and_lines_are_known() -> None:
+    actions = {
+        "thaw": "thaw the {p}",
+        "invert": "invert the {p}",
+        "cap": "cap the {p}",
+        "scan-barcode": "scan the barcode of the {p}",
+        "press-button": "press the button of the {p}",
+        "ring-bell": "ring the bell of the {p}",
+        "transfer": "transfer the {p}",
+    }
+    _, said, text = drafted("(bare ?p - pot)", *(f"{each}|?p - pot|(bare ?p)" for each in actions))
+    assert said == actions
+    assert LOOK not in text.partition("actions:")[2]
+    assert "transferred the" in text
+
+
+def test_that_something_was_rung_is_seldom_shown() -> None:
+    asked, _, text = drafted("(bell-rung ?p - pot)", "ring|?p - pot|(bell-rung ?p)")
+    assert asked["bell-rung"][0] == "Is the bell of the {p} rung?"
+    assert "bell-rung:   # LOOK: does a picture show it?" in text
+    assert 'done: "rang the {p}"' in text

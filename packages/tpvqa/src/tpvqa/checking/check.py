@@ -6,7 +6,9 @@ from pathlib import Path
 from tpvqa.checking import possible, wordings, world
 from tpvqa.checking.contradicting import of_effects
 from tpvqa.checking.finding import Finding, Severity, of_error
+from tpvqa.checking.idle_effects import of_idle_effects
 from tpvqa.checking.left_open import of_left_open
+from tpvqa.checking.opposites import of_opposites
 from tpvqa.checking.priors import of_priors
 from tpvqa.checking.seeing import Telling
 from tpvqa.drafting import words
@@ -85,6 +87,7 @@ def _findings(
     yield from possible.of_goal(task, planner, timeout)
     yield from possible.of_metric(task)
     yield from possible.of_actions(task, _undone(rules))
+    yield from of_idle_effects(task, _undone(rules))
     yield from possible.of_predicates(task)
     yield from of_effects(task)
     yield from of_left_open(task)
@@ -110,7 +113,8 @@ def _findings(
         yield from wordings.without_words(task, given, words(task), into)
     book = QuestionBook(task, given)
     yield from wordings.alike(task, book, questions)
-    yield from Telling(task, book, rules, into=rules_into, questions=into).findings()
+    yield from Telling(task, book, rules, into=rules_into).findings()
+    yield from of_opposites(task, book, into)
     yield from world.of_rules(task, rules, world_file)
     yield from world.not_taken(task, rules, rules_into)
     yield from of_priors(task, told[0], rules, told[1])

@@ -5,9 +5,11 @@ from itertools import combinations
 
 from tpvqa.belief.states.mutexes import Mutexes, h2_mutexes
 from tpvqa.checking.finding import Finding, Severity, named
+from tpvqa.checking.idle_effects import unmet
+from tpvqa.checking.never_ended import never_ended
 from tpvqa.checking.places import line_of_action, line_of_goal, line_of_predicate
-from tpvqa.pddl import Action, Atom, Conjunction, Literal, Task, literals
-from tpvqa.pddl.conditions import Condition
+from tpvqa.pddl import Action, Atom, Task, literals
+from tpvqa.pddl.conditions import required_of
 from tpvqa.pddl.lasting import Phase
 from tpvqa.pddl.schema import (
     ActionSchema,
@@ -15,7 +17,6 @@ from tpvqa.pddl.schema import (
     Junction,
     LiteralSchema,
     Quantified,
-    required,
 )
 from tpvqa.planning import Plan, Planner, TimedOut, Unsolvable
 from tpvqa.planning.obstacles import obstacle
@@ -95,22 +96,8 @@ def _never(task: Task, schema: ActionSchema, undone: frozenset[str]) -> str:
     for parameter in schema.parameters:
         if not task.objects_by_type.get(parameter.type):
             return f"there is no object of the type {parameter.type} for {parameter.name}"
-    possible = task.reachable_atoms | task.init
-    for literal in required(schema.precondition):
-        if literal.predicate == "=" or not literal.positive or literal.predicate in undone:
-            continue
-        kinds = {p.name: p.type for p in schema.parameters}
-        fitting = any(
-            atom.predicate == literal.predicate
-            and all(
-                argument == word if word not in kinds else task.is_a(argument, kinds[word])
-                for word, argument in zip(literal.arguments, atom.arguments, strict=True)
-            )
-            for atom in possible
-        )
-        if not fitting:
-            said = f"({' '.join((literal.predicate, *literal.arguments))})"
-            return f"it needs {said}, which never holds, and nothing brings it about"
+    if said := unmet(task, schema.precondition, schema.parameters, undone):
+        return said
     if undone & set(_predicates(schema.precondition)):
         return ""
     return UNMET
@@ -124,15 +111,6 @@ def _idle(task: Task, schema: ActionSchema) -> str:
         return ""
     said = " and ".join(f"({' '.join((each.predicate, *each.arguments))})" for each in ended)
     return f"it ends {said}, which never holds"
-
-
-def required_of(condition: Condition) -> Iterator[Literal]:
-    """The literals that a ground condition cannot do without."""
-    if isinstance(condition, Literal):
-        yield condition
-    elif isinstance(condition, Conjunction):
-        for part in condition.parts:
-            yield from required_of(part)
 
 
 def _excluded(action: Action, proved: Mutexes, undone: frozenset[str]) -> str:
@@ -149,7 +127,7 @@ def _excluded(action: Action, proved: Mutexes, undone: frozenset[str]) -> str:
 
 
 def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
-    """A goal that cannot be reached, or for which no plan is found in time."""
+    """A goal that holds at first, cannot be reached, or for which no plan is found in time."""
     file, line = named(task.problem_path), line_of_goal(task)
     demanded = dict.fromkeys(each.atom for each in required_of(task.goal) if each.positive)
     for one, other in combinations(demanded, 2):
@@ -163,6 +141,16 @@ def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
                 line,
             )
             return
+    if not task.left_open and task.goal_holds(task.init):
+        yield Finding(
+            "goal-holds",
+            Severity.WARNING,
+            "the goal holds already: the plan is empty",
+            "Mend the goal or the initial state, unless there is to be nothing to do.",
+            file,
+            line,
+        )
+        return
     if task.lasting is not None and not isinstance(planner, TemporalPlanner):
         yield Finding(
             "plan-not-sought",
@@ -178,7 +166,11 @@ def of_goal(task: Task, planner: Planner, timeout: float) -> Iterator[Finding]:
         case Plan():
             return
         case Unsolvable(reason):
-            why = obstacle(task, task.init) or f"there is no plan: {reason}"
+            why = (
+                obstacle(task, task.init)
+                or never_ended(task, planner, timeout)
+                or f"there is no plan: {reason}"
+            )
             yield Finding(
                 "goal-unreachable",
                 Severity.ERROR,

@@ -24,14 +24,10 @@ class Telling:
         book: Its questions.
         rules: Its world file.
         into: The world file's name, for what is proposed.
-        questions: The questions file's name.
     """
 
-    def __init__(
-        self, task: Task, book: QuestionBook, rules: WorldRules, into: str, questions: str
-    ):
+    def __init__(self, task: Task, book: QuestionBook, rules: WorldRules, into: str):
         self.task, self.book, self.rules, self.into = task, book, rules, into
-        self.questions = questions
 
     def asked(self, literal: Literal, action: Action | None = None) -> bool:
         """Whether a VLM is asked about it."""
@@ -58,7 +54,6 @@ class Telling:
             )
         yield from self._silent_actions(unseen)
         yield from self._alike_in_what_shows()
-        yield from self._told_twice()
 
     def _unseen(self) -> Iterator[tuple[str, str]]:
         """Changing predicates that are needed and that nothing tells; of opposites one."""
@@ -168,35 +163,6 @@ class Telling:
                 named(self.task.domain_path),
                 line_of_action(self.task, action.name),
             )
-
-    def _told_twice(self) -> Iterator[Finding]:
-        """Facts of which exactly one holds, and both are asked."""
-        pairs: dict[tuple[str, str], int] = {}
-        for group in self.task.mutex_groups:
-            if not group.exactly_one or len(group.atoms) != 2:
-                continue
-            one, other = sorted(group.atoms)
-            if one.predicate != other.predicate and one.arguments == other.arguments:
-                pair = (one.predicate, other.predicate)
-                asked = all(self.asked(Literal(each)) for each in (one, other))
-                pairs[pair] = pairs.get(pair, 0) + (1 if asked else 0)
-        for (one_name, other_name), count in pairs.items():
-            if count:
-                yield Finding(
-                    "opposites",
-                    Severity.NOTE,
-                    f"exactly one of {one_name} and {other_name} holds, and both are asked about",
-                    "One question may do; a second one in other words may err otherwise, so that "
-                    "both are well where errors last.",
-                    named(self.task.domain_path),
-                    line_of_predicate(self.task, other_name),
-                    (
-                        "never_asked:",
-                        f'  - fact: "{_form(self.task, other_name)}"',
-                        f"    because: it is asked as {one_name}, its opposite",
-                    ),
-                    self.questions,
-                )
 
 
 def _senses(rules: tuple[SensedRule, ...], atom: Atom, task: Task) -> bool:

@@ -13,10 +13,10 @@ from tpvqa.checking.places import (
     line_of_object,
     line_of_predicate,
 )
-from tpvqa.checking.possible import atoms_of, required_of
+from tpvqa.checking.possible import atoms_of
 from tpvqa.drafting import LOOK, Words
 from tpvqa.pddl import Action, Atom, Literal, Task
-from tpvqa.pddl.conditions import literals
+from tpvqa.pddl.conditions import literals, required_of
 from tpvqa.pddl.whole import seen_predicates, whole_actions
 from tpvqa.questions import QuestionBook
 from tpvqa.questions.wordings import Wordings
@@ -267,6 +267,8 @@ def _same_actions(task: Task, book: QuestionBook, file: Path | None) -> Iterator
     texts: dict[str, Action] = {}
     told: set[frozenset[str]] = set()
     for action in islice(task.ground_actions(), _LOOKED_AT):
+        if _at_odds(task, action):
+            continue
         first = texts.setdefault(_as_read(book.say(action)), action)
         pair = frozenset((first.name, action.name))
         one = len(pair) == 1
@@ -284,6 +286,17 @@ def _same_actions(task: Task, book: QuestionBook, file: Path | None) -> Iterator
         )
 
 
+def _at_odds(task: Task, action: Action) -> bool:
+    """Whether an action needs facts that never hold together, such as one thing in two places."""
+    needed = _needed(action)
+    return any(len(needed & group.atoms) > 1 for atom in needed for group in task.groups_of(atom))
+
+
+def _needed(action: Action) -> frozenset[Atom]:
+    """What an action needs to be true."""
+    return frozenset(each.atom for each in required_of(action.precondition) if each.positive)
+
+
 def _differ(task: Task, one: Action, other: Action) -> bool:
     """Whether two ways of an action bring about other facts, or may both be possible and need
     other facts: not to pick up a thing from where it is, and from where it is not."""
@@ -291,10 +304,7 @@ def _differ(task: Task, one: Action, other: Action) -> bool:
         return True
     if frozenset(literals(one.precondition)) == frozenset(literals(other.precondition)):
         return False
-    mine, its = (
-        frozenset(each.atom for each in required_of(action.precondition) if each.positive)
-        for action in (one, other)
-    )
+    mine, its = _needed(one), _needed(other)
     return not any(
         another in group.atoms
         for atom in mine - its

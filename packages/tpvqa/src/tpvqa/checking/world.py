@@ -5,6 +5,10 @@ from pathlib import Path
 
 from tpvqa.checking.finding import Finding, Severity, named
 from tpvqa.checking.places import line_of_action, line_of_entry
+from tpvqa.drafting.doubt import is_done
+from tpvqa.drafting.forms import is_ing
+from tpvqa.drafting.lexicon import PREPOSITIONS
+from tpvqa.drafting.names import words_of
 from tpvqa.pddl import Task
 from tpvqa.pddl.pattern import Pattern
 from tpvqa.pddl.schema import ActionSchema, Junction, LiteralSchema
@@ -35,7 +39,7 @@ def of_rules(task: Task, rules: WorldRules, file: Path | None) -> Iterator[Findi
 
 
 def not_taken(task: Task, rules: WorldRules, into: str) -> Iterator[Finding]:
-    """Arguments that are whatever is true, such as where the robot sets out from."""
+    """Arguments that are whatever is true, such as where the robot, or a lift, sets out from."""
     known = {(rule.action, rule.argument) for rule in rules.rebind}
     for schema in task.schemas:
         for argument, fact in _where_it_is(task, schema):
@@ -44,9 +48,9 @@ def not_taken(task: Task, rules: WorldRules, into: str) -> Iterator[Finding]:
             yield Finding(
                 "argument-not-taken",
                 Severity.NOTE,
-                f"{argument} of {schema.name} is where the robot is: a skill hardly takes it",
+                f"{argument} of {schema.name} is {_whatever(fact)}: a skill hardly takes it",
                 "If yours does not, say so; else a simulated world fails an action that was "
-                "planned from where the robot no longer is.",
+                "planned with what no longer holds.",
                 named(task.domain_path),
                 line_of_action(task, schema.name),
                 (
@@ -57,6 +61,15 @@ def not_taken(task: Task, rules: WorldRules, into: str) -> Iterator[Finding]:
                 ),
                 into,
             )
+
+
+def _whatever(fact: str) -> str:
+    """What a fact says of what it is true of: (lift-at ?from), where the lift is."""
+    words = words_of(fact.strip("()").split()[0])
+    who = [word for word in words if word not in PREPOSITIONS]
+    if len(who) == len(words) or (who and (is_ing(who[-1]) or is_done(who[-1]))):
+        return f"whatever {fact} is true of"
+    return f"where the {' '.join(who) or 'robot'} is"
 
 
 def _where_it_is(task: Task, schema: ActionSchema) -> Iterator[tuple[str, str]]:

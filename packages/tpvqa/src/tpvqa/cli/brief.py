@@ -4,7 +4,8 @@ import re
 
 _LEFT_OUT = (
     r", which [^;]* needs(?=;|$)",
-    r"(?:, which can be done(?: already)?(?:: [^;]*)?|(?<=\)): [^;]*)(?=;|$)",
+    r"(?:, (?:which can be|as what comes before it is) done(?: already)?(?:: [^;]*)?"
+    r"|(?<=\)): [^;]*)(?=;|$)",
     r"(?: and)? after (?:an?|two|three|\d+) [^;]*?(?=;|$)",
     r" \(not worth asking\)(?=;|$)",
 )

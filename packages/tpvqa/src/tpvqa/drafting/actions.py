@@ -27,6 +27,9 @@ _JOINS = {
 }
 """What joins a verb to the second thing that it is about."""
 _TAKING = word_set("pick take fetch collect get grab")
+_PLACING = _INTO | _TAKING | {"unstack"}
+_PLACING |= {verb for verb, joint in lexicon.TAKES.items() if joint in ("in", "into", "on", "at")}
+"""Verbs that say themselves how a thing is where it goes: put on, load into."""
 _DIRECT = word_set("board enter leave exit cross reach visit")
 """Verbs whose direct object is where somebody goes, or comes from."""
 _WAYS = word_set("up down left right forward forwards backward backwards north south east west")
@@ -339,8 +342,10 @@ class Actions:
         for name, end in ends.items():
             if end.source:
                 continue
-            both = nouns[name].parameter == "to" and any(e.source for e in ends.values())
-            if verb in _MOVING or both:
+            sources = [each for each in ends.values() if each.source]
+            both = nouns[name].parameter == "to" and sources
+            goes = verb not in _PLACING and any(each.fact == end.fact != () for each in sources)
+            if verb in _MOVING or both or goes:
                 yield f"to {nouns[name].said}"
                 continue
             place = self._phrases.placed(nouns[name], preposition or end.preposition)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import Clause, Noun
 from tpvqa.drafting.forms import Form, verb_form
-from tpvqa.drafting.lexicon import ADJECTIVES, PREPOSITIONS
+from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS
 from tpvqa.drafting.of_nothing import WEATHER
 
 
@@ -59,3 +59,12 @@ def is_done(word: str) -> bool:
     """Whether a word says what was done with a thing: washed."""
     form = verb_form(word)
     return form is not None and form[1] is Form.PARTICIPLE
+
+
+def is_misread(clause: Clause) -> bool:
+    """Whether it is of what is no thing: "the trolley in of the {t}"."""
+    named, of, _ = clause.subject.said.partition(" of ")
+    words = named.split()
+    if not of or words[1:] in (["inside"], ["outside"], ["back"]):
+        return False
+    return not PREPOSITIONS.isdisjoint(words) or words[-1] in PARTICLES

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, part, unknown
-from tpvqa.drafting.doubt import either_of, is_done, open_to_doubt, seldom_shown
+from tpvqa.drafting.doubt import either_of, is_done, is_misread, open_to_doubt, seldom_shown
 from tpvqa.drafting.facts_tables import PLAIN, ROADS, SAME
 from tpvqa.drafting.forms import (
     Form,
@@ -13,11 +13,13 @@ from tpvqa.drafting.forms import (
     does_verb,
     ing,
     is_ing,
+    is_there,
     participle,
     stands,
     verb_form,
 )
 from tpvqa.drafting.lexicon import ADJECTIVES, PREPOSITIONS
+from tpvqa.drafting.named_places import in_hand, there
 from tpvqa.drafting.of_nothing import of_nothing
 from tpvqa.drafting.predicates import of_noun, of_verb, without_kind
 from tpvqa.drafting.things import Things, plural, some
@@ -63,12 +65,13 @@ class Facts:
         none = words[0] == "no" and len(nouns) == 1 and words[-1] in PREPOSITIONS and len(words) > 2
         denied = words[0] in _NEGATIONS and len(words) > 1 and not none
         lacks = words[0] == "no" and len(nouns) == 1 and self._is_thing(words[1:])
-        clauses = list(self._clauses(words[1:] if denied else words, nouns, predicate))
+        meant = words[1:] if denied else words
+        clauses = [c for c in self._clauses(meant, nouns, predicate) if not is_misread(c)]
         if lacks:
             clauses = [Clause("does", nouns[0], f"have {some(words[1:])}")]
         unsure = not clauses
         if unsure:
-            clauses = [unknown(words[1:] if denied else words, nouns)]
+            clauses = [unknown(meant, nouns)]
         if self._may_end(predicate):  # what has been bolted may be loose again
             now = [c for c in clauses if not (c.auxiliary == "has" and c.rest.startswith("been "))]
             clauses = now or clauses
@@ -131,6 +134,9 @@ class Facts:
             first, alone = self._named(nouns[0]), len(nouns) == 1
             if alone and len(words) > 1 and words[0] in first and is_ing(words[1]):
                 yield Clause("is", nouns[0], " ".join(words[1:]))  # bottle-standing
+                return
+            if alone and words[0] in first and is_there(words[1:]):
+                yield from there(words[1:], nouns[0])  # trolley-in-lift
                 return
             acts = self._things.act(nouns[0].objects)
             words = without_kind(words, first, alone=alone, acts=acts)
@@ -297,19 +303,14 @@ class Facts:
         """on_table(x), in_hand(x, h), at_robot(place)."""
         preposition, *named = words
         first, *rest = nouns
-        named = named[1:] if named[0] in ("a", "an", "the") and named[1:] else named  # in_the_air
         what = " ".join(named)
         if rest and self._things.hold(rest[0].objects):
             yield Clause("is", first, " ".join([f"in {rest[0].said}", *self._others(rest[1:])]))
             yield Clause("is", rest[0], f"holding {first.said}")
         elif named[-1] in lexicon.HANDS:
-            whose = (
-                rest[0].said + "'s" if rest and self._things.act(rest[0].objects) else "the robot's"
-            )
-            yield Clause("is", first, f"in {whose} {what}")
             holder = rest[0] if rest and self._things.act(rest[0].objects) else ROBOT
-            yield Clause("is", holder, f"holding {first.said}")
-        elif not rest and named[-1] in lexicon.AGENTS and preposition in ("at", "in"):
+            yield from in_hand(first, what, holder)
+        elif not rest and preposition in ("at", "in") and self._goes_about(named[-1], first):
             subject = Noun(f"the {'robot' if what == 'robby' else what}")
             place = self._phrases.stood_at(first, preposition)
             yield Clause("is", subject, place)
@@ -320,12 +321,13 @@ class Facts:
             place = f"{preposition} {first.said}"
             yield Clause("is", ROBOT, place)
             yield from self._elsewhere_said(ROBOT, place, preposition)
-        elif not rest and what in lexicon.BARE:
-            yield Clause("is", first, f"{preposition} {what}")
-        elif not rest:
-            yield Clause("is", first, f"{preposition} the {what}")
-            if preposition in SAME:
-                yield Clause("is", first, f"{SAME[preposition]} the {what}")
+        elif not rest and is_there(words):
+            yield from there(words, first)
+
+    def _goes_about(self, word: str, noun: Noun) -> bool:
+        """Whether a word is who is at a place: at-robot(room), not in-van(patient)."""
+        within = word in lexicon.INSIDE and not self._things.are_places(noun.objects)
+        return word in lexicon.AGENTS and not within
 
     def _somebody_is_at(self, words: list[str], nouns: list[Noun]) -> Iterator[Clause]:
         """robot_at(place), lift-at(floor)."""

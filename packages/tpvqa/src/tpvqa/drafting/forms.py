@@ -5,8 +5,11 @@ from enum import Enum, auto
 from functools import cache
 
 from tpvqa.drafting.lexicon import (
+    ADJECTIVES,
+    DOUBLED,
     INTRANSITIVE,
     IRREGULAR,
+    PARTICLES,
     POSTURES,
     PREPOSITIONS,
     REGULAR,
@@ -103,7 +106,7 @@ def _regular(base: str) -> str:
 
 
 def _doubles(base: str) -> bool:
-    if len(base) > 5 and base.endswith("el"):
+    if base in DOUBLED or (len(base) > 5 and base.endswith("el")):
         return True  # labelled, refuelled
     stem = base.removeprefix("un").removeprefix("re") if len(base) > 4 else base
     short = len(re.findall(r"[aeiou]+", stem)) == 1
@@ -130,3 +133,14 @@ def stands(words: list[str]) -> bool:
     base, form = verb_form(words[0]) or ("", None)
     further = words[1:] != [] and (len(words) > 2 or words[1] not in PREPOSITIONS - {"between"})
     return further and base in POSTURES and form is Form.THIRD
+
+
+def is_there(words: list[str]) -> bool:
+    """Whether words say where something is: in lift, on left; not in door locked."""
+    if len(words) < 2 or words[0] not in PREPOSITIONS or words[-1] in PREPOSITIONS:
+        return False
+    how = words[-1] in ADJECTIVES | PARTICLES or (verb_form(words[-1]) or ("", None))[1] in (
+        Form.PARTICIPLE,
+        Form.ING,
+    )
+    return len(words) == 2 or not how

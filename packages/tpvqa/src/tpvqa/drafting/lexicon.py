@@ -11,7 +11,10 @@ PREPOSITIONS = word_set(
     "for from in inside into near of off on onto outside over through to toward towards under "
     "underneath upon with within"
 )
-PLACING = word_set("at behind in inside into near on onto to under")
+PLACING = word_set(
+    "above against at behind below beneath beside in inside into near on onto over to under "
+    "underneath upon"
+)
 """Prepositions behind which a thing stands that is there: on the stand."""
 PARTICLES = word_set("away back down in off on open out over shut together up")
 """What follows a verb as a part of it: pick up, switch on, put back."""
@@ -83,11 +86,16 @@ ADJECTIVES = word_set(
     "orange front bottom middle raw unlocked unloaded unsafe undone nearby north south east "
     "west"
 )
-PARTS = word_set("lid cap cover label handle wheel door plug seal stopper")
+PARTS = word_set(
+    "lid cap cover label handle wheel door plug seal stopper barcode button switch knob hatch "
+    "nozzle valve filter battery screen latch bell doorbell"
+)
 """What a thing may have or lack."""
 BARE = word_set(
     "foot hand board place line order half time hold bed power fire gear rest home reverse motion "
-    "use stock focus sync tune view sight tow transit tension position service bloom season"
+    "use stock focus sync tune view sight tow transit tension position service bloom season "
+    "contact reach duty control pressure progress operation danger standby flight storage orbit "
+    "charge work alert"
 )
 """What goes without an article behind a preposition: on foot, in half, in focus."""
 TOOLS = word_set(
@@ -102,7 +110,7 @@ UNSEEN = word_set(
     "tired hungry hot warm cold cool charged powered energised energized primed valid safe unsafe "
     "paid booked assigned retired rebuilt faulty encoded coded recorded reported informed heavy "
     "fed watered dosed medicated vaccinated exposed photographed sketched scanned sampled weighed "
-    "greeted visited explored listened heard read learnt learned counted smelt tasted notified"
+    "greeted visited explored listened heard read learnt learned counted smelt tasted notified rung"
 )
 """What a picture seldom shows."""
 SIDES = word_set(
@@ -116,45 +124,55 @@ DEGREES = word_set("almost half halfway already still semi well over self not ve
 NO_ADVERBS = word_set("assembly belly family fly jelly ply supply level light spare")
 """Things, though they look like words that say how."""
 
-IRREGULAR = {  # base: (past, past participle)
+IRREGULAR = {
     "be": ("was", "been"), "become": ("became", "become"), "begin": ("began", "begun"),
-    "bend": ("bent", "bent"), "bind": ("bound", "bound"), "blow": ("blew", "blown"),
-    "break": ("broke", "broken"), "bring": ("brought", "brought"), "build": ("built", "built"),
-    "burn": ("burnt", "burnt"), "buy": ("bought", "bought"), "cast": ("cast", "cast"),
-    "catch": ("caught", "caught"),
+    "bend": ("bent", "bent"), "bind": ("bound", "bound"), "bleed": ("bled", "bled"),
+    "blow": ("blew", "blown"), "break": ("broke", "broken"), "bring": ("brought", "brought"),
+    "build": ("built", "built"), "burn": ("burnt", "burnt"), "burst": ("burst", "burst"),
+    "buy": ("bought", "bought"), "cast": ("cast", "cast"), "catch": ("caught", "caught"),
     "choose": ("chose", "chosen"), "come": ("came", "come"), "cut": ("cut", "cut"),
     "dig": ("dug", "dug"), "do": ("did", "done"), "draw": ("drew", "drawn"),
     "drink": ("drank", "drunk"), "drive": ("drove", "driven"), "eat": ("ate", "eaten"),
     "fall": ("fell", "fallen"), "feed": ("fed", "fed"), "find": ("found", "found"),
-    "fly": ("flew", "flown"), "freeze": ("froze", "frozen"), "get": ("got", "got"),
-    "give": ("gave", "given"), "go": ("went", "gone"), "grind": ("ground", "ground"),
-    "grow": ("grew", "grown"), "hang": ("hung", "hung"), "have": ("had", "had"),
+    "flee": ("fled", "fled"), "fling": ("flung", "flung"), "fly": ("flew", "flown"),
+    "freeze": ("froze", "frozen"), "get": ("got", "got"), "give": ("gave", "given"),
+    "go": ("went", "gone"), "grind": ("ground", "ground"), "grow": ("grew", "grown"),
+    "hang": ("hung", "hung"), "have": ("had", "had"), "hear": ("heard", "heard"),
     "hide": ("hid", "hidden"), "hit": ("hit", "hit"), "hold": ("held", "held"),
-    "keep": ("kept", "kept"), "know": ("knew", "known"), "lay": ("laid", "laid"),
-    "lead": ("led", "led"),
-    "leave": ("left", "left"), "let": ("let", "let"), "lie": ("lay", "lain"),
-    "light": ("lit", "lit"), "lose": ("lost", "lost"), "make": ("made", "made"),
-    "mean": ("meant", "meant"),
-    "meet": ("met", "met"), "overtake": ("overtook", "overtaken"), "pay": ("paid", "paid"),
-    "put": ("put", "put"), "read": ("read", "read"),
-    "reset": ("reset", "reset"), "rewind": ("rewound", "rewound"),
-    "ride": ("rode", "ridden"),
+    "hurt": ("hurt", "hurt"), "keep": ("kept", "kept"), "kneel": ("knelt", "knelt"),
+    "know": ("knew", "known"), "lay": ("laid", "laid"), "lead": ("led", "led"),
+    "leave": ("left", "left"), "lend": ("lent", "lent"), "let": ("let", "let"),
+    "lie": ("lay", "lain"), "light": ("lit", "lit"), "lose": ("lost", "lost"),
+    "make": ("made", "made"), "mean": ("meant", "meant"), "meet": ("met", "met"),
+    "override": ("overrode", "overridden"), "overtake": ("overtook", "overtaken"),
+    "overwrite": ("overwrote", "overwritten"), "pay": ("paid", "paid"),
+    "preset": ("preset", "preset"), "put": ("put", "put"), "quit": ("quit", "quit"),
+    "read": ("read", "read"), "rebuild": ("rebuilt", "rebuilt"), "redo": ("redid", "redone"),
+    "regrind": ("reground", "reground"), "rehang": ("rehung", "rehung"),
+    "relight": ("relit", "relit"), "remake": ("remade", "remade"), "reread": ("reread", "reread"),
+    "rerun": ("reran", "rerun"), "resend": ("resent", "resent"), "reset": ("reset", "reset"),
+    "retake": ("retook", "retaken"), "rewind": ("rewound", "rewound"),
+    "rewrite": ("rewrote", "rewritten"), "ride": ("rode", "ridden"), "ring": ("rang", "rung"),
     "rise": ("rose", "risen"), "run": ("ran", "run"), "saw": ("sawed", "sawn"),
     "say": ("said", "said"), "see": ("saw", "seen"), "seek": ("sought", "sought"),
     "sell": ("sold", "sold"), "send": ("sent", "sent"), "set": ("set", "set"),
     "sew": ("sewed", "sewn"), "shake": ("shook", "shaken"), "shear": ("sheared", "shorn"),
-    "shoot": ("shot", "shot"),
-    "show": ("showed", "shown"), "shut": ("shut", "shut"), "sit": ("sat", "sat"),
-    "slide": ("slid", "slid"), "sow": ("sowed", "sown"), "speak": ("spoke", "spoken"),
-    "spin": ("spun", "spun"), "split": ("split", "split"), "spread": ("spread", "spread"),
-    "stand": ("stood", "stood"), "steal": ("stole", "stolen"), "stick": ("stuck", "stuck"),
-    "strike": ("struck", "struck"),
-    "sweep": ("swept", "swept"), "swim": ("swam", "swum"), "swing": ("swung", "swung"),
-    "take": ("took", "taken"), "teach": ("taught", "taught"), "tear": ("tore", "torn"),
-    "tell": ("told", "told"), "throw": ("threw", "thrown"), "undo": ("undid", "undone"),
-    "understand": ("understood", "understood"), "unwind": ("unwound", "unwound"),
-    "wake": ("woke", "woken"), "wear": ("wore", "worn"), "wind": ("wound", "wound"),
-    "withdraw": ("withdrew", "withdrawn"), "wring": ("wrung", "wrung"),
+    "shine": ("shone", "shone"), "shoot": ("shot", "shot"), "show": ("showed", "shown"),
+    "shrink": ("shrank", "shrunk"), "shut": ("shut", "shut"), "sing": ("sang", "sung"),
+    "sit": ("sat", "sat"), "sleep": ("slept", "slept"), "slide": ("slid", "slid"),
+    "slit": ("slit", "slit"), "sow": ("sowed", "sown"), "speak": ("spoke", "spoken"),
+    "spend": ("spent", "spent"), "spin": ("spun", "spun"), "split": ("split", "split"),
+    "spread": ("spread", "spread"), "stand": ("stood", "stood"), "steal": ("stole", "stolen"),
+    "stick": ("stuck", "stuck"), "strew": ("strewed", "strewn"), "strike": ("struck", "struck"),
+    "sweep": ("swept", "swept"), "swell": ("swelled", "swollen"), "swim": ("swam", "swum"),
+    "swing": ("swung", "swung"), "take": ("took", "taken"), "teach": ("taught", "taught"),
+    "tear": ("tore", "torn"), "tell": ("told", "told"), "throw": ("threw", "thrown"),
+    "unbind": ("unbound", "unbound"), "understand": ("understood", "understood"),
+    "undo": ("undid", "undone"), "unfreeze": ("unfroze", "unfrozen"),
+    "unstick": ("unstuck", "unstuck"), "unwind": ("unwound", "unwound"), "wake": ("woke", "woken"),
+    "wear": ("wore", "worn"), "weave": ("wove", "woven"), "win": ("won", "won"),
+    "wind": ("wound", "wound"), "withdraw": ("withdrew", "withdrawn"),
+    "withhold": ("withheld", "withheld"), "wring": ("wrung", "wrung"),
     "write": ("wrote", "written"),
 }  # fmt: skip
 REGULAR = word_set(
@@ -188,9 +206,29 @@ REGULAR = word_set(
     "unhook unmount untie validate wet withdraw hitch unhitch gather stuff tumble extract clip "
     "unclip poll eject crimp solder pipette decant aspirate incubate stopper dilute sift "
     "sieve haul drag tether untether rivet deploy dose bolt unbolt grapple convey escort shuttle "
-    "aim brace coil dim drape engage expose fuse net oil pry puff sketch slew smoke swab"
+    "aim brace coil dim drape engage expose fuse net oil pry puff sketch slew smoke swab "
+    "thaw invert homogenise homogenize agitate swirl chill preheat reheat refrigerate simmer "
+    "knead whip grate chop mince marinate garnish strain blend defrost hydrate rehydrate "
+    "moisten sanitise sanitize pasteurise pasteurize inoculate irrigate evaporate titrate "
+    "energise energize magnetise magnetize demagnetise demagnetize desolder unsolder rewire "
+    "splice hone burnish anneal quench etch engrave emboss stamp sandblast varnish prime coat "
+    "laminate bond caulk grout recalibrate realign readjust tune retune pressurise pressurize "
+    "depressurise depressurize vent purge accelerate decelerate halt pause resume abort "
+    "initialise initialize reboot restart reload reinsert reattach reconnect remount reopen "
+    "reseal retighten reposition orient reorient pivot swivel twist untwist wiggle hover moor "
+    "unmoor elevate ascend descend roll unroll detect hook settle palletise palletize bundle "
+    "relabel restock replenish allocate accept reject approve confirm cancel acknowledge notify "
+    "warn announce wave nod invite usher accompany chase intercept patrol survey sense "
+    "recognise recognize classify compare diagnose assess plough weed mulch sprinkle transplant "
+    "groom launder bleach scour scrape blot ventilate unfurl bandage suture inject sedate "
+    "intubate administer massage undress jettison download upload synchronise synchronize cap "
+    "dislodge unjam unblock unstrap unbox degrease descale defog retrieve untangle rescan "
+    "reprint redeploy humidify dehumidify swap demount snip skim pluck reap thresh leash "
+    "unleash uncrate sear vend"
 )
 """Base forms of regular verbs."""
+DOUBLED = word_set("dial equip patrol transfer")
+"""Of these, those of two syllables that double their last letter: equipped."""
 
 INTRANSITIVE = word_set(
     "arrive board depart escape explode fall fly go land leave move rise sail travel walk "
@@ -233,7 +271,7 @@ TAKES = {
     "use": "by", "grip": "by", "locate": "at", "position": "at", "pile": "on", "lay": "on",
     "set": "in", "spread": "on", "pour": "into", "wash": "in", "rack": "in", "scan": "by",
     "tell": "to", "report": "to", "hitch": "to", "tether": "to", "hook": "to", "bolt": "to",
-    "clip": "to", "couple": "to", "cable": "to",
+    "clip": "to", "couple": "to", "cable": "to", "coat": "with",
 }  # fmt: skip
 """What joins a participle to a second thing: inserted in, connected to."""
 

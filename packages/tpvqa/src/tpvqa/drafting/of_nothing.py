@@ -7,7 +7,7 @@ from tpvqa.drafting.clauses import ROBOT, Clause, Noun, part
 from tpvqa.drafting.facts_tables import HELD, UNNAMED
 from tpvqa.drafting.forms import Form, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, word_set
-from tpvqa.drafting.things import some
+from tpvqa.drafting.things import behind, some
 
 WEATHER = ("raining", "snowing", "freezing", "burning")
 """What it does, whoever it is."""
@@ -64,7 +64,7 @@ def of_nothing(words: list[str]) -> Iterator[Clause]:
     own = words[split - 1] in lexicon.PARTS_OF_ROBOTS and words[0] != "robot"
     whose = "robot's " if own else ""
     noun = part(f"{whose}{subject}")
-    rest = " ".join(words[split:])
+    rest = behind(words[split:])
     yield Clause("is", noun, rest)
     if rest in ("empty", "free") and own:
         yield Clause("is", noun, "free" if rest == "empty" else "empty")

@@ -7,8 +7,7 @@ from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, part
 from tpvqa.drafting.facts_tables import COMPARED, ELSE, HANDLING, LINKS, PICTURES, ROADS
 from tpvqa.drafting.forms import Form, ing, participle, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS, STATES
-from tpvqa.drafting.names import is_number
-from tpvqa.drafting.things import plural, some
+from tpvqa.drafting.things import behind, plural, some
 from tpvqa.questions.template import indefinite_article
 
 HELD = ("hold", "carry", "grasp", "lift", "grip")
@@ -128,8 +127,8 @@ def _done(
     ):
         yield Clause("has", part(extra, first.said), f"been {said}")
         return
-    if len(words) > 2 and words[1] in lexicon.PLACING and _stands_for_one(words[2:]):
-        extra = " ".join([words[1], "the", *words[2:]])  # mounted-in-stand
+    if len(words) > 2 and words[1] in PREPOSITIONS:
+        extra = behind(words[1:])  # mounted-in-stand
     state = {"opened": "open", "shut": "closed"}.get(said, said)
     state = f"{state} {extra}".strip()
     been = f"been {said} {extra}".strip()
@@ -299,14 +298,6 @@ def _strewn(words: list[str]) -> bool:
     if form is None or form[1] is not Form.PARTICIPLE:
         return False
     return lexicon.TAKES.get(form[0]) == "with" and words[-2] in lexicon.MASS
-
-
-def _stands_for_one(words: list[str]) -> bool:
-    """Whether an article goes before words: the stand; not half, water, red, bags or 2."""
-    bare = lexicon.BARE | lexicon.MASS | ADJECTIVES | PARTICLES | {"a", "an", "the"}
-    return bare.isdisjoint((words[0], words[-1])) and not (
-        plural(words[-1]) or is_number(words[0]) or any(not each.isalpha() for each in words)
-    )
 
 
 def _hand(phrases: Phrases, words: list[str], first: Noun) -> Iterator[Clause]:

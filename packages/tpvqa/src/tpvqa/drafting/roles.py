@@ -1,7 +1,7 @@
 """What effects say of an action's parameters: what moves, where from and where to."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.forms import Form, verb_form
@@ -25,10 +25,12 @@ class End:
     Attributes:
         source: Whether it comes from there.
         preposition: How the domain says it: on, in.
+        fact: By which predicate what is there; empty where the name alone tells.
     """
 
     source: bool
     preposition: str | None = None
+    fact: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +65,9 @@ def roles_of(schema: ActionSchema, things: Things) -> Roles:
         *subject, place = arguments
         if place in names and place not in ends:
             kind = next(p.type for p in schema.parameters if p.name == place)
-            ends[place] = End(not positive, _preposition(predicate, things, kind))
+            ends[place] = End(
+                not positive, _preposition(predicate, things, kind), (predicate, *subject)
+            )
             moved = moved or (subject[0] if subject else "")
         elif place in names and ends[place].source == positive:
             del ends[place]  # it is both left and reached
@@ -74,8 +78,7 @@ def roles_of(schema: ActionSchema, things: Things) -> Roles:
     for name in names:
         plain = name.lstrip("?").split("-")[-1].split("_")[-1]
         if plain in _SOURCES or plain in _TARGETS:
-            before = ends.get(name)
-            ends[name] = End(plain in _SOURCES, before.preposition if before else None)
+            ends[name] = replace(ends.get(name, End(source=True)), source=plain in _SOURCES)
     return Roles(changing, ends, moved, _reversed(schema, things), counted)
 
 

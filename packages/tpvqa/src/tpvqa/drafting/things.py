@@ -9,13 +9,16 @@ from functools import cached_property
 from tpvqa.drafting.lexicon import (
     ADJECTIVES,
     AGENTS,
+    BARE,
     COLOURS,
     GENERIC,
     HANDS,
     INSIDE,
     MASS,
+    PARTICLES,
     PERSONS,
     PLACES,
+    PLACING,
     PLURAL_EXCEPTIONS,
     SEVERAL,
     SIDES,
@@ -257,3 +260,20 @@ def some(words: Sequence[str]) -> str:
         return noun
     many = words[-1] in MASS or plural(words[-1])
     return f"any {noun}" if many else f"{indefinite_article(noun)} {noun}"
+
+
+def behind(words: Sequence[str]) -> str:
+    """A preposition and what stands behind it: in the lift; but in half, in water."""
+    preposition, *named = words
+    the = ["the"] if named and preposition in PLACING and _stands_for_one(named) else []
+    return " ".join([preposition, *the, *named])
+
+
+def _stands_for_one(words: list[str]) -> bool:
+    """Whether an article goes before words: the stand; not half, water, red, bags or 2."""
+    bare = BARE | MASS | ADJECTIVES | PARTICLES | {"a", "an", "the"}
+    return bare.isdisjoint((words[0], words[-1])) and not (
+        plural(words[-1])
+        or is_number(words[0])
+        or any(not each.isalpha() or len(each) == 1 for each in words)
+    )

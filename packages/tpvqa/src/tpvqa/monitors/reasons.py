@@ -12,7 +12,7 @@ from tpvqa.monitors.inspection import Inspection, Noticed, Replies
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.saying_done import EVEN, REACHED
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated
-from tpvqa.pddl import Action, Atom, Literal, State
+from tpvqa.pddl import Action, Atom, Literal, State, literals
 from tpvqa.questions import FactWords
 from tpvqa.vlm import Reply
 
@@ -147,10 +147,20 @@ def _reason(
     if decision is Decision.REPLAN:
         return "; ".join((*facts, f"replanning{_since(grounds, there, ' from')}"))
     if place is not None and place > grounds.next:
-        able = f"{said}{number}, which can be done already"
-        return "; ".join((*facts, f"on to {able}{_since(grounds, there)}"))
+        since = f"{_already(grounds, place, there[:SAID])}{_since(grounds, there)}"
+        return "; ".join((*facts, f"on to {said}{number}, {since}"))
     undone = _undone(grounds, planned, state) or there
     return "; ".join((*facts, f"back to {said}{number}{_since(grounds, undone)}"))
+
+
+def _already(grounds: Grounds, place: int, told: Sequence[Literal]) -> str:
+    """What follows from facts for which a step is done before its turn: that what comes before it
+    would bring about no more than they say, where it needs none of them; else that it can be."""
+    actions = grounds.step.plan.actions
+    brought = {each.literal for a in actions[grounds.next : place] for each in a.effects}
+    needed = {*literals(actions[place].precondition)}
+    done = needed.isdisjoint(told) and not brought.isdisjoint(told)
+    return f"{'as what comes before it is' if done else 'which can be'} done already"
 
 
 def _needs(grounds: Grounds) -> list[Literal]:

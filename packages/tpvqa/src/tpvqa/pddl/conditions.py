@@ -43,6 +43,15 @@ def literals(condition: Condition) -> Iterator[Literal]:
             yield from literals(part)
 
 
+def required_of(condition: Condition) -> Iterator[Literal]:
+    """The literals that a condition cannot do without."""
+    if isinstance(condition, Literal):
+        yield condition
+    elif isinstance(condition, Conjunction):
+        for part in condition.parts:
+            yield from required_of(part)
+
+
 def said(condition: Condition) -> str:
     """A condition in a line: "a(), b()" for both, "(a(), b()) or c()" for one of them."""
     if isinstance(condition, Literal):
