@@ -367,8 +367,7 @@ class BeliefMonitor(Learning, PlainArguments):
         failing = self._ways.failing(step)
         same = self.belief.model.same_skill
         if action is None:
-            told = not (self._chooser.blind or failing)
-            done = says_done(self.goal_probability, self._risk, told=told)
+            done = says_done(self.goal_probability, self._risk)
             decision = Decision.DONE if done else Decision.GIVE_UP
         elif acted and same(action, step.action, state):
             decision = Decision.REPEAT

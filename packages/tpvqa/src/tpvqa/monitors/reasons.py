@@ -10,7 +10,7 @@ from tpvqa.belief.filtering.belief import Belief
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Inspection, Noticed, Replies
 from tpvqa.monitors.protocol import Step
-from tpvqa.monitors.saying_done import EVEN, REACHED
+from tpvqa.monitors.saying_done import EVEN
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated
 from tpvqa.pddl import Action, Atom, Literal, State, literals
 from tpvqa.questions import FactWords
@@ -268,8 +268,7 @@ def _end(grounds: Grounds, decision: Decision) -> str:
     if decision is Decision.DONE and grounds.risk is not None:
         return f"{why}{as_stated(probability, grounds.risk)}"
     if decision is Decision.DONE:
-        enough = f", and done is said from {REACHED} on" if probability < EVEN else ""
-        return f"{why}the goal holds with {goal}{enough}{_never_seen(grounds)}"
+        return f"{why}the goal holds with {goal}{_never_seen(grounds)}"
     if not why and grounds.step.replans_left == 0:
         why = "no change of plan is left, and "
     if not why and grounds.failing:

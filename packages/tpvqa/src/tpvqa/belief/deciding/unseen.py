@@ -7,8 +7,7 @@ backward from the end, in every joint state, in the belief's own model.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import compress, groupby
-from math import prod
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy as np
 from tpvqa.belief.answers.information import Floats
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.deciding.annotated import AnnotatedPlan
-from tpvqa.belief.deciding.needed import Needed
+from tpvqa.belief.deciding.long_rests import HORIZON, TIMES, LongRests
 from tpvqa.belief.deciding.one_thread import one_thread
 from tpvqa.belief.deciding.outlook import Outlook
 from tpvqa.belief.deciding.steps import Steps
@@ -35,8 +34,6 @@ Tails = dict[tuple[object, tuple[Action, ...]], _Costs]
 share them."""
 WAYS = 4
 """Ways that are compared, those of the most probable joint states, besides ending."""
-TIMES = (1, 2, 3, 4, 6)
-"""How often every step may be repeated."""
 ENDINGS = 3
 """What may come after a way: the end, or one of the two best ways."""
 BEST = 5
@@ -45,8 +42,6 @@ KEEPING = 1.0
 """By how many actions something else has to be better than what is being followed."""
 STAKES = 1.25
 """What is followed is decided anew where a failed task costs so many times as much as then."""
-HORIZON = 14
-"""Steps of a plan that are followed exactly; what comes after them is worked out roughly."""
 
 
 class _Sequence(NamedTuple):
@@ -78,11 +73,7 @@ class Unseen:
     def __init__(self, model: FaultModel, ahead: Outlook, costs: Costs):
         self._model, self._ahead, self._costs = model, ahead, costs
         self._steps = Steps(model)
-        self._needed: dict[AnnotatedPlan, Needed | None] = {}
-        self._walks: dict[AnnotatedPlan, dict[tuple[int, int], bytes | None]] = {}
-        self._repeats: dict[tuple[int, int], int] = {}
-        self._working: dict[tuple[int, int], list[float]] = {}
-        self._rests: dict[tuple[int, int], Floats] = {}
+        self._rests = LongRests(model, ahead, costs)
         self._known: dict[tuple[int, int, object], list[_Costs]] = {}
         self._worked_out_for: tuple[int, int] = (-1, -1)
         self.following: tuple[Action, ...] = ()
@@ -92,8 +83,8 @@ class Unseen:
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
         self._model, self._steps = model, Steps(model)
-        for by_number in (self._needed, self._walks, self._known, self._rests):
-            by_number.clear()
+        self._rests.renumbered(model)
+        self._known.clear()
 
     def acted(self, action: Action, state: State) -> None:
         """Note that an action is executed, where a state is most probable."""
@@ -188,11 +179,7 @@ class Unseen:
         if version != self._worked_out_for:
             self._worked_out_for = version
             self._known.clear()
-            for worked_out in (self._repeats, self._working, self._rests):
-                worked_out.clear()
-            for old in self._needed.keys() - {*self._ahead.plans}:
-                del self._needed[old]
-                self._walks.pop(old, None)
+            self._rests.forget(self._ahead.plans)
         return masses, ways
 
     def _ways(self, predicted: Iterable[tuple[int, float]], actions: Sequence[Action]) -> list[Way]:
@@ -231,7 +218,21 @@ class Unseen:
             for number, times in numbered:
                 told += [_Sequence(number, times, each) for each in then]
         begun, less = (np.concatenate([each[side] for each in parts], axis=1) for side in (0, 1))
+        if self._ahead.left is not None:
+            over = np.array([self._takes(ways, each) for each in told]) > self._ahead.left
+            begun[:, over] = less[:, over] = self._ahead.failure + self._costs.action
         return told, begun, less
+
+    def _takes(self, ways: Sequence[Way], each: _Sequence) -> int:
+        """How many actions are done in all."""
+        if each.way is None:
+            return 0
+        place, plan = ways[each.way]
+        stop = min(place + HORIZON, len(plan.actions))
+        done = (stop - place) * each.times
+        if stop < len(plan.actions):
+            return done + (len(plan.actions) - stop) * self._rests.repeated(plan, stop)
+        return done if each.then is None else done + self._takes(ways, each.then)
 
     def _followed(self, way: Way, after: Floats, then: object, tails: Tails) -> list[_Costs]:
         """What a way costs from every joint state, each step done each of `TIMES`, by what is left
@@ -244,7 +245,7 @@ class Unseen:
         steps, wide = plan.actions[place : place + HORIZON], after.shape[1]
         stop = place + len(steps)
         if stop < len(plan.actions):  # whatever follows, its rest comes first
-            after = self._rests_of(plan, stop)[:, None]
+            after = self._rests.of(plan, stop, self._steps.numbers)[:, None]
             then = id(plan), stop
         values, before = self._before(steps, after, then, tails)
         parts = np.hsplit(values, len(TIMES)), np.hsplit(before, len(TIMES))
@@ -313,64 +314,3 @@ class Unseen:
             found += [action for action in plan.actions[place:] for _ in range(part.times)]
             part = part.then
         return tuple(found[1:] if found[:1] == [done] else found)
-
-    def _rests_of(self, plan: AnnotatedPlan, place: int) -> Floats:
-        """What the rest of a long plan costs, roughly, from all joint states that are told apart,
-        and last from others."""
-        known = self._rests.get((id(plan), place))
-        if known is not None:
-            return known
-        times, walks = self._repeated(plan, place), self._walks.setdefault(plan, {})
-        working = self._all_work(plan, times)[place:]
-        paid = times * len(working) * self._costs.action
-        rests = list[float]()
-        for number in self._steps.numbers:
-            if (place, number) not in walks:
-                walks[place, number] = self._walk(plan, place, number)
-            needed = walks[place, number]
-            works = 0.0 if needed is None else prod(compress(working, needed))
-            rests.append(paid + (1 - works) * self._ahead.failure)
-        found = self._rests[id(plan), place] = np.array([*rests, self._ahead.failure])
-        return found
-
-    def _all_work(self, plan: AnnotatedPlan, times: int) -> list[float]:
-        """Of every step of a plan the probability that some tries do what is wanted."""
-        known = self._working.get((id(plan), times))
-        if known is None:
-            known = self._working[id(plan), times] = [self._works(a, times) for a in plan.actions]
-        return known
-
-    def _works(self, action: Action, times: int) -> float:
-        """Probability that some tries do what is wanted, and nothing else."""
-        failure = self._ahead.skill(action).failure
-        failed = sum(failure**each for each in range(1, times + 1))
-        return float((1 - failure**times) * (1 - self._ahead.rates.disturbance) ** failed)
-
-    def _repeated(self, plan: AnnotatedPlan, place: int) -> int:
-        """How often every step is best repeated where the way is the right one."""
-        known = self._repeats.get((id(plan), place))
-        if known is None:
-            steps = len(plan.actions) - place
-
-            def paid(times: int) -> float:
-                lost = 1 - prod(self._all_work(plan, times)[place:])
-                return times * steps * self._costs.action + lost * self._ahead.failure
-
-            known = self._repeats[id(plan), place] = min(TIMES, key=paid)
-        return known
-
-    def _walk(self, plan: AnnotatedPlan, place: int, number: int) -> bytes | None:
-        """Which steps of a plan change something on the way from a joint state to the goal; None
-        where it does not lead there."""
-        if plan not in self._needed:
-            self._needed[plan] = self._ahead.needed(plan)
-        quick = self._needed[plan]
-        if quick is not None and quick.fixed <= self._model.state(number):
-            needed, holding = quick.walk(place, self._model.holding(number))
-            return bytes(needed) if self._model.goal_within(holding) else None
-        needed = []
-        for action in plan.actions[place:]:
-            there = self._model.outcomes(action)[number].intended
-            needed.append(there is not None and there != number)
-            number = number if there is None else there
-        return bytes(needed) if self._ahead.is_goal(number) else None
