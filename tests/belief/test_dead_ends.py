@@ -6,7 +6,6 @@ from hypothesis import strategies as st
 from tests.listing import every_state
 from tests.pddl.conditional_domains import tasks
 from tpvqa.belief.states.dead_ends import DeadEnds
-from tpvqa.belief.states.hopeless import Hopeless
 from tpvqa.belief.states.undoing import BackToBefore
 from tpvqa.pddl import Atom, Task, task_from_text
 
@@ -80,14 +79,6 @@ def test_a_tug_is_not_torn_from_its_cart() -> None:
     assert after == task.init
     assert DeadEnds(task).holds(facts("tug-at t apron, cart-at c hall, hitched c t"))
     assert not DeadEnds(task).holds(HITCHED)
-
-
-def test_what_leads_into_a_dead_end_is_known_before_a_planner_was_asked_about_one() -> None:
-    hopeless = Hopeless(airport())
-    assert facts("tug-at t apron, cart-at c hall, hitched c t") in hopeless
-    assert HITCHED not in hopeless
-    hopeless.add(HITCHED)
-    assert HITCHED in hopeless
 
 
 def test_a_cable_is_not_back_where_the_robot_would_be_stuck_with_it() -> None:

@@ -20,7 +20,7 @@ def test_a_step_before_its_turn_is_told_from_what_it_needs_or_what_comes_before_
     told = re.compile(r"on to [^;]*, (which can be|as what comes before it is) done [^;]*")
     words = FactWords(QuestionBook.load(find_task("serve_breakfast").questions, TASK))
     seen = set[str]()
-    for n in (4, 5):
+    for n in range(4, 10):
         plan: tuple[ActionRecord, ...] = ()
         _, events, _ = run(planner, "belief", vlm="oracle:0.7:0:0.74", episode=n)
         for event in events:

@@ -7,9 +7,9 @@ from tpvqa.pddl import State, Task
 class Hopeless:
     """What a planner has found no plan from, and what surely is as hopeless.
 
-    States of which no planner was asked must not look better: to go on from there would seem to
-    save the whole task, and what leads there would look like any other step. So those from where
-    the goal is out of reach even if nothing were ever undone count, too.
+    Once there is such a state, others of which nothing was asked must not look better than it does:
+    to go on from there would seem to save the whole task. So those from where the goal is out of
+    reach even if nothing were ever undone count, too.
 
     Args:
         task: Says what the goal is.
@@ -24,4 +24,6 @@ class Hopeless:
         self._told.add(state)
 
     def __contains__(self, state: State) -> bool:
+        if not self._told:
+            return False
         return state in self._told or dead_ends_of(self._task).holds(state)
