@@ -131,9 +131,7 @@ class FaultModel:
     """
 
     def __init__(self, task: Task, rules: FaultRules | None = None):
-        from tpvqa.belief.states.surprise import (
-            Surprise,  # late, as all that it needs takes a while
-        )
+        from tpvqa.belief.states.surprise import Surprise  # late: its needs take a while
 
         self.task = task
         self.surprise = Surprise(task, rules.undo if rules is not None else ())

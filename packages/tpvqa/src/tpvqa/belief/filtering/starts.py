@@ -18,9 +18,7 @@ def opened(task: Task, priors: Priors) -> Task:
     """
     if priors.nothing_known or not (priors.facts or priors.elsewhere):
         return task
-    from tpvqa.belief.states.places import (
-        further_places,  # late, as all that it needs takes a while
-    )
+    from tpvqa.belief.states.places import further_places  # late: its needs take a while
 
     can_hold = task.atoms() | task.init
     everything = {atom for group in task.mutex_groups for atom in group.atoms} - can_hold
