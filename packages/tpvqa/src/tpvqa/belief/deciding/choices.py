@@ -55,7 +55,7 @@ class Chooser:
         seeking: From where plans are wanted.
         settles: How far answers settle what is in doubt.
         finding: What it costs to ask so much.
-        blind: Whether answers say nothing, so that what was decided is followed to its end.
+        blind: Whether answers say too little, so that what was decided is followed to its end.
     """
 
     def __init__(
@@ -210,8 +210,8 @@ class Chooser:
             self._unseen.following = ()
         weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
         state = self._model.state(ranked[0][0])
-        while self.following:
-            choice = Choice(self.following[0], state)
+        while following := self._unseen.following:
+            choice = Choice(following[0], state)
             allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
             if not allowed or not self._worth_a_try(choice):
                 self._unseen.following = ()
@@ -219,19 +219,19 @@ class Chooser:
                 break
             else:
                 self._unseen.skip()
-        if not self.blind or not self.following:
+        if not self.blind or not self._unseen.following:
             return None
         ones = np.ones((len(ranked), 1))
         return Table((choice,), numbers, weights, ones, ones[None])
 
     @property
     def following(self) -> tuple[Action, ...]:
-        """The actions that are followed unseen, where they are: those that are left."""
-        return self._unseen.following
+        """What is left of what is followed unseen, and is meant to come after it in a long plan."""
+        return (*self._unseen.following, *self._unseen.onward)
 
     def follows(self, action: Action, state: State) -> bool:
         """Whether an action is the next one of what is being followed."""
-        return bool(self.following) and self.same_skill(self.following[0], action, state)
+        return any(self.same_skill(e, action, state) for e in self._unseen.following[:1])
 
     def same_skill(self, action: Action, other: Action, state: State) -> bool:
         """Whether the robot does the same in two actions."""

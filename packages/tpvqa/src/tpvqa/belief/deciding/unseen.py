@@ -68,6 +68,7 @@ class Unseen:
 
     Attributes:
         following: The actions that were decided for and are not done yet.
+        onward: Those that are meant to come after them, where that is too long to be followed.
     """
 
     def __init__(self, model: FaultModel, ahead: Outlook, costs: Costs):
@@ -77,8 +78,10 @@ class Unseen:
         self._known: dict[tuple[int, int, object], list[_Costs]] = {}
         self._worked_out_for: tuple[int, int] = (-1, -1)
         self.following: tuple[Action, ...] = ()
+        self.onward: tuple[Action, ...] = ()
         self._stake = 0.0
         self._after: dict[Action, tuple[Action, ...]] = {}
+        self._onward: dict[Action, tuple[Action, ...]] = {}
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
@@ -94,6 +97,7 @@ class Unseen:
     def follow(self, action: Action) -> None:
         """Decide for an action, with what is best to come after it."""
         self.following = (action, *self._after.get(action, ()))
+        self.onward = self._onward.get(action, ())
         self._stake = self._ahead.failure
 
     def skip(self) -> None:
@@ -123,7 +127,7 @@ class Unseen:
         """
         masses, ways = self._prepared(actions, ranked)
         told, begun, less = self._worked_out(ways, masses)
-        self._after = {}
+        self._after, self._onward = {}, {}
         found: dict[Action, list[Floats]] = {}
         for action, led in actions:
             own = begun.copy()
@@ -134,7 +138,7 @@ class Unseen:
             weights = np.array([weight for weight, _ in led])
             best = np.argsort(np.round(weights @ paid, 9), kind="stable")[:BEST].tolist()
             found[action] = [self._whole(paid[:, n], ranked) for n in dict.fromkeys([0, *best])]
-            self._after[action] = self._actions(ways, told[best[0]], action)
+            self._keep(action, ways, told[best[0]])
         led_states = ranked[: len(actions[0][1])]
         here = begun[self._steps.places([number for number, _ in led_states])]
         expected = np.array([weight for _, weight in led_states]) @ here
@@ -144,8 +148,8 @@ class Unseen:
             first = self._first(ways, told[column])
             if first not in found:
                 found[first] = [self._whole(here[:, column], ranked)]
-                self._after[first] = self._actions(ways, told[column], first)
-        if self.following:
+                self._keep(first, ways, told[column])
+        if self.following and not self.onward:
             left = self._ended()[:, None]
             for action in reversed(self.following):
                 left = self._costs.action + self._back(action, left)
@@ -302,15 +306,19 @@ class Unseen:
         place, plan = ways[each.way]
         return plan.actions[place]
 
-    def _actions(self, ways: Sequence[Way], each: _Sequence, done: Action) -> tuple[Action, ...]:
-        """The actions of something that can be done, after the first, where that is one of them;
-        none where a plan is too long to be followed."""
+    def _keep(self, done: Action, ways: Sequence[Way], each: _Sequence) -> None:
+        """Know the actions of something that can be done, after the first, where that is one of
+        them: as what to follow, and from where a plan is too long for that as what is meant."""
         found: list[Action] = []
         part: _Sequence | None = each
+        cut: int | None = None
         while part is not None and part.way is not None:
             place, plan = ways[part.way]
-            if len(plan.actions) - place > HORIZON:
-                return ()
+            if cut is None and len(plan.actions) - place > HORIZON:
+                cut = len(found) + HORIZON * part.times
             found += [action for action in plan.actions[place:] for _ in range(part.times)]
             part = part.then
-        return tuple(found[1:] if found[:1] == [done] else found)
+        less = found[:1] == [done]
+        cut = len(found) if cut is None else cut
+        self._after[done] = tuple(found[less:cut])
+        self._onward[done] = tuple(found[cut:])
