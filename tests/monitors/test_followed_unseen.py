@@ -36,6 +36,7 @@ def test_a_long_way_is_handed_over_whole() -> None:
 
 
 def test_a_mind_is_changed_by_answers_that_settle_something_or_could() -> None:
-    assert says_little(Settling(0.6, new=0.6), LITTLE - 0.01)
-    assert not says_little(Settling(0.6, new=0.6), LITTLE)
-    assert not says_little(Settling(0.6, new=0.9), LITTLE - 0.01)
+    assert says_little(Settling(0.6, new=0.6), LITTLE - 0.01, redone=0.001)
+    assert not says_little(Settling(0.6, new=0.6), LITTLE, redone=0.001)
+    assert not says_little(Settling(0.6, new=0.9), LITTLE - 0.01, redone=0.001)
+    assert not says_little(Settling(0.6, new=0.6), LITTLE - 0.01, redone=0.06)

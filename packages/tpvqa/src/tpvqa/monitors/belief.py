@@ -316,7 +316,7 @@ class BeliefMonitor(Learning, PlainArguments):
         found = self.evidence.settling(questions) if sees else unseen
         self._telling = found.share
         self._chooser.settles = self._settlings.taken(found, self._task_ways.ahead(self.belief))
-        little = says_little(found, self._chooser.settles)
+        little = says_little(found, self._chooser.settles, self.chances.rates.redone)
         self._chooser.blind = little or self.evidence.worthless(found)
         self._chooser.finding = found.answers * self.costs.question + self.costs.look
 
