@@ -388,6 +388,7 @@ class BeliefMonitor(Learning, PlainArguments):
             actions_left=step.actions_left,
             failing=failing,
             settles=self._chooser.settles,
+            followed=self._chooser.blind,
             risk=self._risk,
         )
         errand = "" if self._errand is None else f"{self._errand.why}; "

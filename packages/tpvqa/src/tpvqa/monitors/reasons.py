@@ -42,6 +42,7 @@ class Grounds:
         actions_left: Actions that the trial still allows; None for any number.
         failing: That the step's skill seems never to work, in words; empty where it does.
         settles: How far answers are expected to settle what is in doubt.
+        followed: Whether that is so little that what was decided is followed to its end.
         risk: Where "done" may be reported; None for where the goal is likely.
     """
 
@@ -56,6 +57,7 @@ class Grounds:
     actions_left: int | None
     failing: str = ""
     settles: float = 1.0
+    followed: bool = False
     risk: RiskBound | None = None
 
     @property
@@ -140,7 +142,9 @@ def _reason(
     facts = [_fact(grounds, each) for each in missing[:SAID]]
     there = _instead(grounds, missing[:SAID], state) or _news(grounds, state)
     if decision is Decision.REPEAT:
-        if not facts and grounds.plan is not None:
+        if not facts and not there and grounds.followed:
+            facts = [_decided(grounds)]
+        elif not facts and grounds.plan is not None:
             facts = [f"{_listed(grounds, there)} would be mended by it"]
         facts = facts or _brought(grounds, action)
         return "; ".join((*facts, f"{said} again"))
@@ -379,7 +383,12 @@ def _listed(grounds: Grounds, told: Sequence[Literal]) -> str:
     figures = (
         f"{grounds.say(each)} ({_figure(grounds.probability(each))})" for each in told[:SAID]
     )
-    return " and ".join(figures) or "what was believed"
+    other = _decided(grounds) if grounds.followed else "what was believed"
+    return " and ".join(figures) or other
+
+
+def _decided(grounds: Grounds) -> str:
+    return f"what was decided, as answers settle {_figure(grounds.settles)} of what is in doubt"
 
 
 def _figure(probability: float) -> str:

@@ -207,14 +207,14 @@ class Chooser:
         need not, or may not, be followed any more."""
         sure = sum(weight for number, weight in ranked if self.ahead.is_goal(number)) > IDLE
         if self.settles >= SETTLED or sure or news > NEWS or self._unseen.more_at_stake:
-            self._unseen.following = ()
+            self._unseen.drop()
         weights, numbers = np.array([w for _, w in ranked]), tuple(n for n, _ in ranked)
         state = self._model.state(ranked[0][0])
         while following := self._unseen.following:
             choice = Choice(following[0], state)
             allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
             if not allowed or not self._worth_a_try(choice):
-                self._unseen.following = ()
+                self._unseen.drop()
             elif self._doing.of(choice, ranked, kinds, floor=BARELY)[1] @ weights >= 0:
                 break
             else:

@@ -80,8 +80,7 @@ class Unseen:
         self.following: tuple[Action, ...] = ()
         self.onward: tuple[Action, ...] = ()
         self._stake = 0.0
-        self._after: dict[Action, tuple[Action, ...]] = {}
-        self._onward: dict[Action, tuple[Action, ...]] = {}
+        self._after: dict[Action, tuple[tuple[Action, ...], tuple[Action, ...]]] = {}
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
@@ -96,9 +95,13 @@ class Unseen:
 
     def follow(self, action: Action) -> None:
         """Decide for an action, with what is best to come after it."""
-        self.following = (action, *self._after.get(action, ()))
-        self.onward = self._onward.get(action, ())
+        after, self.onward = self._after.get(action, ((), ()))
+        self.following = (action, *after)
         self._stake = self._ahead.failure
+
+    def drop(self) -> None:
+        """Follow nothing any more."""
+        self.following = self.onward = ()
 
     def skip(self) -> None:
         """Leave out the action that comes next: it cannot be done."""
@@ -127,7 +130,7 @@ class Unseen:
         """
         masses, ways = self._prepared(actions, ranked)
         told, begun, less = self._worked_out(ways, masses)
-        self._after, self._onward = {}, {}
+        self._after = {}
         found: dict[Action, list[Floats]] = {}
         for action, led in actions:
             own = begun.copy()
@@ -138,7 +141,7 @@ class Unseen:
             weights = np.array([weight for weight, _ in led])
             best = np.argsort(np.round(weights @ paid, 9), kind="stable")[:BEST].tolist()
             found[action] = [self._whole(paid[:, n], ranked) for n in dict.fromkeys([0, *best])]
-            self._keep(action, ways, told[best[0]])
+            self._after[action] = self._parted(ways, told[best[0]], action)
         led_states = ranked[: len(actions[0][1])]
         here = begun[self._steps.places([number for number, _ in led_states])]
         expected = np.array([weight for _, weight in led_states]) @ here
@@ -148,7 +151,7 @@ class Unseen:
             first = self._first(ways, told[column])
             if first not in found:
                 found[first] = [self._whole(here[:, column], ranked)]
-                self._keep(first, ways, told[column])
+                self._after[first] = self._parted(ways, told[column], first)
         if self.following and not self.onward:
             left = self._ended()[:, None]
             for action in reversed(self.following):
@@ -157,7 +160,7 @@ class Unseen:
             kept = kept - KEEPING * self._costs.action
             first, *rest = self.following
             found.setdefault(first, []).append(self._whole(np.maximum(kept, 0.0), ranked))
-            self._after[first] = tuple(rest)
+            self._after[first] = tuple(rest), ()
         return found
 
     def _prepared(
@@ -306,9 +309,11 @@ class Unseen:
         place, plan = ways[each.way]
         return plan.actions[place]
 
-    def _keep(self, done: Action, ways: Sequence[Way], each: _Sequence) -> None:
-        """Know the actions of something that can be done, after the first, where that is one of
-        them: as what to follow, and from where a plan is too long for that as what is meant."""
+    def _parted(
+        self, ways: Sequence[Way], each: _Sequence, done: Action
+    ) -> tuple[tuple[Action, ...], tuple[Action, ...]]:
+        """The actions of something that can be done, after the first, where that is one of them:
+        what is followed, and what comes where a plan is too long for that."""
         found: list[Action] = []
         part: _Sequence | None = each
         cut: int | None = None
@@ -318,7 +323,6 @@ class Unseen:
                 cut = len(found) + HORIZON * part.times
             found += [action for action in plan.actions[place:] for _ in range(part.times)]
             part = part.then
-        less = found[:1] == [done]
+        begun = found[:1] == [done]
         cut = len(found) if cut is None else cut
-        self._after[done] = tuple(found[less:cut])
-        self._onward[done] = tuple(found[cut:])
+        return tuple(found[begun:cut]), tuple(found[cut:])
