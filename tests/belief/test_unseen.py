@@ -1,5 +1,7 @@
 """Ways followed unseen: which is best, however the answers before have put the others in order."""
 
+from itertools import pairwise
+
 import pytest
 
 from tests.belief.test_belief import plan_of
@@ -149,6 +151,31 @@ def test_what_is_followed_is_decided_anew_where_a_failed_task_costs_more() -> No
     chooser.settles = 0.0
     chooser.table(belief, Rates(), plan)
     assert len(chooser.following) >= len(cheap)  # as thoroughly as what it is worth now
+
+
+def test_a_long_way_is_handed_over_whole() -> None:
+    """It was handed over a step at a time: each was a change of plan, and ten are allowed."""
+    stones = [f"s{each}" for each in range(21)]
+    task = task_from_text(
+        """(define (domain d) (:requirements :typing) (:types stone)
+        (:predicates (at ?s - stone) (next ?a ?b - stone))
+        (:action step :parameters (?a ?b - stone) :precondition (and (at ?a) (next ?a ?b))
+          :effect (and (not (at ?a)) (at ?b))))""",
+        f"""(define (problem p) (:domain d) (:objects {" ".join(stones)} - stone)
+        (:init (at s0) {" ".join(f"(next {a} {b})" for a, b in pairwise(stones))})
+        (:goal (at s20)))""",
+    )
+    model = FaultModel(task)
+    chooser, belief = Chooser(model, Costs()), Belief(model)
+    plan = tuple(task.action("step", pair) for pair in pairwise(stones))
+    chooser.ahead.add(AnnotatedPlan(task, plan, regress(task, plan, task.init)))
+    chooser.settles, chooser.blind = 0.0, True
+    for first in plan[:3]:
+        assert chooser.table(belief, Rates(), plan).best.action == first
+        assert tuple(dict.fromkeys(chooser.following)) == plan[plan.index(first) :]
+        while chooser.following[0] == first:
+            chooser.acted(belief, first)
+            belief.act(first, Rates())
 
 
 def test_a_thing_at_one_of_many_places_is_looked_for_at_each_of_them() -> None:

@@ -21,7 +21,7 @@ from tpvqa.belief.learning.experience import Experience
 from tpvqa.belief.learning.learned import Learned
 from tpvqa.belief.weighing.controls import Controls
 from tpvqa.belief.weighing.evidence import Evidence
-from tpvqa.belief.weighing.settling import Settling, Settlings, says_little
+from tpvqa.belief.weighing.settling import Settling, Settlings
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.asking import Asking
 from tpvqa.monitors.belief_settings import BeliefSettings
@@ -35,7 +35,7 @@ from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import Grounds, reason
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.saying_done import says_done
-from tpvqa.monitors.scrutiny import tells, unknown
+from tpvqa.monitors.scrutiny import unknown
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated, bound_for
 from tpvqa.monitors.telltales import Telltales
 from tpvqa.monitors.verdict import Verdict
@@ -44,6 +44,8 @@ from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
 
+TELLING = 0.8
+"""Where answers settle less, how an action came out is not looked at closely."""
 MOST_FACTS = 250_000
 """In all joint states that were met; those that are not possible any more are forgotten then."""
 
@@ -316,8 +318,7 @@ class BeliefMonitor(Learning, PlainArguments):
         found = self.evidence.settling(questions) if sees else unseen
         self._telling = found.share
         self._chooser.settles = self._settlings.taken(found, self._task_ways.ahead(self.belief))
-        little = says_little(found, self._chooser.settles, self.chances.rates.redone)
-        self._chooser.blind = little or self.evidence.worthless(found)
+        self._chooser.blind = self.evidence.worthless(found)
         self._chooser.finding = found.answers * self.costs.question + self.costs.look
 
     def _sets_out(self, step: Step) -> Generator[Request, Any, bool]:
@@ -347,8 +348,7 @@ class BeliefMonitor(Learning, PlainArguments):
             person=self._asking.person,
             dearer=self.evidence.dearer(self._chooser.ahead.dearer) * self._settlings.dearer,
         )
-        telling = tells(self._telling, unseen=self._chooser.blind)
-        if found is None and telling and self._ways.closely(self._now):
+        if found is None and self._telling >= TELLING and self._ways.closely(self._now):
             found = unknown(self._now, self.belief, step.book, budget, views)
         if found is None and self._past is not None:
             found = self._past.look(self._now, self.belief, step.book, budget, views)

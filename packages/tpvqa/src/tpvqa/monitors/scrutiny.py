@@ -10,21 +10,6 @@ from tpvqa.questions import FactQuestion, QuestionBook
 
 KNOWN = 0.01
 """How it came out is asked about until nothing of it is less sure than this."""
-TELLING = 0.8
-"""Where answers settle less of what is in doubt, that is not asked …"""
-STILL_TELLING = 0.4
-"""… or less than this, where a way is followed unseen: else a skill that never works would not be
-found out."""
-
-
-def tells(settled: float, *, unseen: bool) -> bool:
-    """Whether answers say enough for it to be looked at closely how an action came out.
-
-    Args:
-        settled: How much of what is in doubt they settle.
-        unseen: Whether a way is followed unseen, so that nothing else is asked.
-    """
-    return settled >= (STILL_TELLING if unseen else TELLING)
 
 
 def unknown(

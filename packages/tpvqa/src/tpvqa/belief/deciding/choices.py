@@ -55,7 +55,7 @@ class Chooser:
         seeking: From where plans are wanted.
         settles: How far answers settle what is in doubt.
         finding: What it costs to ask so much.
-        blind: Whether answers say too little, so that what was decided is followed to its end.
+        blind: Whether answers say nothing, so that what was decided is followed to its end.
     """
 
     def __init__(

@@ -20,13 +20,6 @@ WHOLE = 0.25
 """The variance of a fact of which nothing is known."""
 SETTLED = 0.97
 """Where answers settle so much, what follows an action is taken to be seen."""
-LITTLE = 0.25
-"""Where answers are expected to settle less of what is in doubt, nobody's mind should change by
-them, unless …"""
-GOOD = 0.72
-"""… they would settle so much of a doubt that was never asked about, or …"""
-RISKY = 0.01
-"""… to do again what is done undoes something so often."""
 
 Doubt = tuple[float, float]
 """The variance of a fact, and how far answers settle it."""
@@ -72,20 +65,6 @@ class Settling:
         answers = sum(answers_to_know(likely, DOUBTED, each) for likely, each in known.values())
         share = told / sum(variance for variance, _ in doubts.values())
         return Settling(share, answers, doubts, settled(new))
-
-
-def says_little(found: Settling, settles: float, redone: float) -> bool:
-    """Whether a way is better followed to its end, whatever is answered meanwhile.
-
-    Between good and worthless answers a plan that each of them changes leads nowhere. To repeat
-    steps unseen is harmless only where redoing is.
-
-    Args:
-        found: What looking may come to.
-        settles: How far that is expected to settle what is in doubt, by what has come of it.
-        redone: How often doing again what is done undoes something.
-    """
-    return settles < LITTLE and found.new < GOOD and redone < RISKY
 
 
 @dataclass(slots=True)
