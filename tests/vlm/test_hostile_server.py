@@ -165,6 +165,17 @@ def test_a_reply_of_three_megabytes_is_read_within_the_deadline(said: str) -> No
     assert time.monotonic() - began < 15
 
 
+@pytest.mark.parametrize("charset", ["punycode", "zlib", "rot13", "utf-7"])
+def test_a_refusal_is_read_as_json_is_written_whatever_the_server_says(charset: str) -> None:
+    """Punycode takes minutes for some hundred kilobytes, and meanwhile no deadline passes."""
+    words = json.dumps({"error": {"message": "abc-" + "a" * 300_000}})
+    act = Act(400, body=words, headers={"Content-Type": f"text/plain; charset={charset}"})
+    begun = time.monotonic()
+    with pytest.raises(AnswerError, match="refuses to be asked: abc-a"):
+        asked(act)
+    assert time.monotonic() - begun < 5
+
+
 def test_a_compressed_reply_is_not_unpacked() -> None:
     bomb = gzip.compress(b" " * 10_000_000)
     answer = asked(Act(body=bomb, headers={"Content-Encoding": "gzip"}))

@@ -278,12 +278,8 @@ def test_a_garbled_body_is_unknown(body: str | bytes) -> None:
     assert answer.text
 
 
-@pytest.mark.parametrize(
-    ("body", "kind"),
-    [("[" * 100_000, "application/json"), ("{}", "application/json; charset=zlib")],
-)
-def test_a_refusal_that_cannot_be_decoded_is_unknown(body: str, kind: str) -> None:
-    act = Act(400, body=body, headers={"Content-Type": kind})
+def test_a_refusal_that_cannot_be_decoded_is_unknown() -> None:
+    act = Act(400, body="[" * 100_000)
     with ChatServer(scripted, script=always(act)) as server:
         (answer,) = ask(server, "Is the plate clean?")
     assert answer.reply is Reply.UNKNOWN

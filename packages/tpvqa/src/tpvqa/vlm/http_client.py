@@ -19,7 +19,7 @@ class ReplyTooLargeError(Exception):
 
 
 def _bound(most: int) -> Callable[[Any], Awaitable[None]]:
-    """Let no more be read of a response than it may have.
+    """Let no more be read of a response than it may have, and as what JSON is written in.
 
     Its class is httpx's or that of httpx's successor, whichever openai uses.
     """
@@ -28,6 +28,7 @@ def _bound(most: int) -> Callable[[Any], Awaitable[None]]:
         encoding = response.headers.get("content-encoding", "").strip().lower()
         if encoding not in ("", "identity"):  # a few bytes can become gigabytes
             raise ReplyTooLargeError("it is compressed, which was not asked for")
+        response.encoding = "utf-8"  # JSON's; some a server may name take minutes to decode
         parts = response.aiter_raw
 
         async def bounded(chunk_size: int | None = None) -> AsyncIterator[bytes]:
