@@ -100,7 +100,12 @@ def test_a_file_is_read_as_it_was_written(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("{}", "trials"), ('{"trials": 3, "wrong": [2]}', "wrong.0"), ("[", "damaged")],
+    [
+        ("{}", "trials"),
+        ('{"trials": 3, "wrong": [2]}', "wrong.0"),
+        ('{"trials": 2, "wrong": [0.6], "right": [0.7, 0.9]}', "3 of 2 trials"),
+        ("[", "damaged"),
+    ],
 )
 def test_a_damaged_file_is_told(tmp_path: Path, text: str, said: str) -> None:
     path = tmp_path / "risk.json"

@@ -191,7 +191,7 @@ def test_a_worker_without_the_files_has_their_text(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_killed_in_the_middle_it_goes_on(tmp_path: Path) -> None:
-    # Two batches: the first is kept, the belief is killed in the second.
+    # Eight of tp, then eight of belief: killed among these, each that has ended is kept.
     words = ["bench", "run", *OWN, "--monitors", "tp,belief", "--episodes", 8, *QUICK, "--out"]
     start = [sys.executable, "-c", "from tpvqa.cli import main; main()", *map(str, words)]
     folder = tmp_path / "killed"
@@ -199,13 +199,13 @@ def test_killed_in_the_middle_it_goes_on(tmp_path: Path) -> None:
         [*start, str(folder)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
     while process.poll() is None and not (
-        (folder / ROWS).exists() and (folder / ROWS).read_bytes().count(b"\n") == 8
+        (folder / ROWS).exists() and (folder / ROWS).read_bytes().count(b"\n") > 8
     ):
         time.sleep(0.01)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     before = rows_of(folder)
-    assert len(before) == 8
+    assert 8 < len(before) < 16
     done = subprocess.run([*start, str(folder)], capture_output=True, text=True, check=True)
     after = rows_of(folder)
     assert before.items() <= after.items()

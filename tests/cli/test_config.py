@@ -33,7 +33,7 @@ CONFIGS = st.builds(
         seconds=st.none() | st.floats(0.5, 1e6),
     ),
     st.builds(SimulationConfig, failure=st.floats(0, 1), spontaneous=st.floats(0, 1)),
-    st.integers(0, 2**63),
+    st.integers(0, 2**63 - 1),
 )
 
 

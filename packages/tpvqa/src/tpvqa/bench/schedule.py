@@ -11,11 +11,11 @@ from tpvqa.bench.dask_workers import as_they_finish, dask_client
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.stage import run_batch
+from tpvqa.bench.stage import run_batch, run_each
 from tpvqa.config import TrialConfig
 
-BATCH: Mapping[str, int] = {"symbolic": 100, "images": 50}
-"""Episodes that a worker is sent at once, by world: about a second's work."""
+BATCH: Mapping[str, int] = {"symbolic": 20, "images": 10}
+"""Episodes that a worker is sent at once, by world: as many are lost where all is stopped."""
 SMALL_BATCH = 5
 """In other worlds."""
 SLOW = ("belief",)
@@ -65,7 +65,8 @@ def run_all(
     own: Mapping[str, OwnTask] = MappingProxyType({}),
     risks: Mapping[Cell, RiskBound] = MappingProxyType({}),
 ) -> None:
-    """Run every missing episode; each batch is on disk as soon as it is back.
+    """Run every missing episode; in this process each is on disk as soon as it has ended, and a
+    worker's as soon as its batch is back.
 
     What comes out does not depend on the workers: all chance is a function of seed and episode.
 
@@ -76,7 +77,7 @@ def run_all(
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
         distributed: Whether to use Dask; by default with more than one worker, or a scheduler.
-        done: Told how many episodes have come back, after each batch.
+        done: Told how many episodes have come back.
         calibrations: What the VLM's answers are worth, of cells whose monitor is told.
         own: Tasks of the user's own, by the names that cells have for them.
         risks: Where "done" may be reported, of cells that state a risk.
@@ -95,9 +96,9 @@ def run_all(
         return cell, common, batch.episodes, *told
 
     results = _on_dask(todo, given, workers, scheduler) if distributed else _here(todo, given)
-    for batch, rows in results:
+    for rows in results:
         ledger.add(rows)
-        done(len(batch.episodes))
+        done(len(rows))
 
 
 Given = tuple[
@@ -106,16 +107,18 @@ Given = tuple[
 """What `run_batch` is called with."""
 
 
-def _here(
-    todo: Sequence[Batch], given: Callable[[Batch], Given]
-) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
+def _here(todo: Sequence[Batch], given: Callable[[Batch], Given]) -> Iterator[list[EpisodeRow]]:
     for batch in todo:
-        yield batch, _rows(run_batch(*given(batch)))
+        rows = run_each(*given(batch))
+        if batch.cell.carried:
+            yield list(rows)
+        else:
+            yield from ([row] for row in rows)
 
 
 def _on_dask(
     todo: Sequence[Batch], given: Callable[[Batch], Given], workers: int, scheduler: str | None
-) -> Iterator[tuple[Batch, list[EpisodeRow]]]:
+) -> Iterator[list[EpisodeRow]]:
     if not todo:
         return
     with dask_client(min(workers, len(todo)), scheduler) as client:
@@ -125,14 +128,10 @@ def _on_dask(
         }
         for future, values, failed in as_they_finish(client, futures):
             batch = futures.pop(future)
-            yield (
-                batch,
-                _rows(values) if failed is None else _failed(batch, given(batch)[1], repr(failed)),
-            )
-
-
-def _rows(values: Sequence[dict[str, object]]) -> list[EpisodeRow]:
-    return [EpisodeRow.model_validate(value) for value in values]
+            if failed is None:
+                yield [EpisodeRow.model_validate(value) for value in values]
+            else:
+                yield _failed(batch, given(batch)[1], repr(failed))
 
 
 def _failed(batch: Batch, common: TrialConfig, error: str) -> list[EpisodeRow]:

@@ -258,6 +258,25 @@ def _shared_vlm(spec: str, options: str) -> VLM | None:
     return make_vlm(spec, {"remember": PICTURES, **json.loads(options)})[0]
 
 
+def run_each(
+    cell: Cell,
+    common: TrialConfig,
+    episodes: tuple[int, ...],
+    calibration: Calibration | None = None,
+    own: OwnTask | None = None,
+    risk: RiskBound | None = None,
+) -> Iterator[EpisodeRow]:
+    """Run some episodes of a cell, one after the other."""
+    here, carried = stage(cell.task, own), cell.carried
+    learned: Experience | None = None
+    for episode in episodes:
+        known = learned if carried and episode % carried else None
+        row, learned = here.run_learning(
+            cell, common, episode, calibration=calibration, experience=known, risk=risk
+        )
+        yield row
+
+
 def run_batch(
     cell: Cell,
     common: TrialConfig,
@@ -267,13 +286,5 @@ def run_batch(
     risk: RiskBound | None = None,
 ) -> list[dict[str, object]]:
     """Run some episodes of a cell: what a worker is sent. Their rows as plain values."""
-    here = stage(cell.task, own)
-    carried, rows = cell.carried, []
-    learned: Experience | None = None
-    for episode in episodes:
-        known = learned if carried and episode % carried else None
-        row, learned = here.run_learning(
-            cell, common, episode, calibration=calibration, experience=known, risk=risk
-        )
-        rows.append(row.model_dump())
-    return rows
+    rows = run_each(cell, common, episodes, calibration, own, risk)
+    return [row.model_dump() for row in rows]

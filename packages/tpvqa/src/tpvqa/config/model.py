@@ -13,8 +13,8 @@ from pydantic import BeforeValidator, Field, model_validator
 from tpvqa.config.parts import Part, VLMConfig, setting
 from tpvqa.errors import shown
 
-MOST = 2**63
-"""Of a seed and of an episode: what every reader of a log takes for a whole number."""
+MOST = 2**63 - 1
+"""Of a seed and of an episode: what readers of logs and of tables take for a whole number."""
 
 LEAST_ACTIONS = 60
 """The limit of actions where none is given, unless `PLANS` times the first plan is more."""

@@ -13,9 +13,9 @@ from collections.abc import Mapping
 from fractions import Fraction
 from math import ceil, floor
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from tpvqa.belief.calibrating.writing import read_json, write_json
 from tpvqa.errors import CalibrationError, PlacedError
@@ -83,6 +83,12 @@ class RiskCalibration(_Model):
     trials: Annotated[int, Field(gt=0)]
     wrong: tuple[Goal, ...] = ()
     right: tuple[Goal, ...] = ()
+
+    @model_validator(mode="after")
+    def _counts(self) -> Self:
+        if (done := len(self.wrong) + len(self.right)) > self.trials:
+            raise ValueError(f"{done} of {self.trials} trials ended in done")
+        return self
 
     def bound(self, risk: float) -> RiskBound:
         """Where "done" may be reported, so that it is wrong in at most this share of all trials.
