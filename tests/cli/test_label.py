@@ -9,6 +9,7 @@ import socket
 import struct
 import subprocess
 import sys
+import termios
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -209,8 +210,11 @@ def test_single_keys_in_a_terminal(
         monkeypatch.setattr(sys, "stdin", source)
 
         def press() -> None:
+            until = time.monotonic() + 20  # what is typed before it reads keys is no answer
+            while termios.tcgetattr(keyboard)[3] & termios.ICANON and time.monotonic() < until:
+                time.sleep(0.02)
             for key in "ynq":
-                time.sleep(0.15)
+                time.sleep(0.05)
                 os.write(keyboard, key.encode())
 
         fingers = Thread(target=press)
