@@ -1,14 +1,19 @@
-"""What a reason says that an action is done before its turn for, in whole trials."""
+"""What reasons say of facts and of actions, in whole trials."""
 
 import re
+from collections.abc import Iterable
+from pathlib import Path
 
+from tests.monitors import test_errands
 from tests.monitors.test_belief import TASK, planner, run
-from tpvqa.events.events import ActionRecord, Decided, PlanMade
+from tpvqa.events import Event
+from tpvqa.events.events import Acted, ActionRecord, Answered, Asked, Decided, PlanMade
 from tpvqa.pddl import Literal, literals
 from tpvqa.planning import Planner
 from tpvqa.questions import QuestionBook
 from tpvqa.questions.fact_words import FactWords
 from tpvqa.tasks import find_task
+from tpvqa.vlm import Reply
 
 __all__ = ["planner"]
 
@@ -38,6 +43,32 @@ def test_a_step_before_its_turn_is_told_from_what_it_needs_or_what_comes_before_
                 assert (done and not named) == (found[1] != "which can be"), event.reason
                 seen.add(found[1])
     assert len(seen) == 2
+
+
+def test_only_a_fact_whose_own_question_found_no_answer_is_out_of_view(tmp_path: Path) -> None:
+    """That what is asked of the lamp cannot be seen says nothing of where the robot is."""
+    told = [_out_of_view(test_errands.run(tmp_path, n)[1]) for n in range(2)]
+    assert any(told)
+    for hidden, unanswered in (pair for each in told for pair in each):
+        assert hidden in unanswered
+
+
+def _out_of_view(events: Iterable[Event]) -> list[tuple[str, set[str]]]:
+    """The facts that reasons call out of view, each with those whose questions had no answer."""
+    found: list[tuple[str, set[str]]] = []
+    asked, unanswered = "", set[str]()
+    for event in events:
+        match event:
+            case Acted():
+                unanswered = set()
+            case Asked(questions=questions):
+                asked = re.sub(r"^Is (it true: |the )?|\?$", "", questions[0].text)
+            case Answered(answers=answers) if answers[0].reply is Reply.CANNOT_SEE:
+                unanswered |= {asked}
+            case Decided():
+                told = re.findall(r"(?:^|; )([^;]*) \d\.\d\d \(out of view\)", event.reason)
+                found += [(each.removeprefix("not "), unanswered) for each in told]
+    return found
 
 
 def _said(words: FactWords, literal: Literal) -> str:

@@ -383,7 +383,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self._now,
             self._ways.annotated(step),
             acted,
-            unseen=self.evidence.unseen,
+            unseen=self.evidence.unanswered,
             questions_left=self._asking.may_ask,
             actions_left=step.actions_left,
             failing=self._ways.failing(step),

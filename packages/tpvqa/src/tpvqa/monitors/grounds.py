@@ -1,6 +1,6 @@
 """What a decision is made of, for saying why."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 
 from tpvqa.belief.calibrating.risk import RiskBound
@@ -23,7 +23,7 @@ class Grounds:
         now: What was seen, answered and noticed since the last action.
         plan: The plan that is followed, with its needs.
         acted: Whether the step's action was just executed.
-        unseen: Whether some question found no answer.
+        unseen: The questions that found no answer since the last action.
         questions_left: Whether anything more may be asked.
         actions_left: Actions that the trial still allows; None for any number.
         failing: That the step's skill seems never to work, in words; empty where it does.
@@ -38,7 +38,7 @@ class Grounds:
     now: Inspection
     plan: AnnotatedPlan | None
     acted: bool
-    unseen: bool
+    unseen: Set[str]
     questions_left: bool
     actions_left: int | None
     failing: str = ""
@@ -74,6 +74,11 @@ class Grounds:
     def answers(self, atom: Atom) -> Replies | None:
         """What was answered about a fact, or about those alike."""
         return next((told for told in self.told.values() if atom in told.atoms), None)
+
+    def out_of_view(self, atom: Atom) -> bool:
+        """Whether a question about this very fact found no answer."""
+        own = self.now.about(frozenset((atom,)), self.step.book)
+        return any(question.text in self.unseen for question in own)
 
     def known(self, atom: Atom) -> bool:
         """Whether anything was answered or noticed about a fact."""

@@ -243,7 +243,7 @@ def _fact(grounds: Grounds, need: Literal, *, needing: bool = True) -> str:
         pass  # bookkeeping that nothing shows
     elif not grounds.questions_left:
         text += " (no question left)"
-    elif grounds.unseen:
+    elif grounds.out_of_view(need.atom):
         text += " (out of view)"
     else:
         text += " (not worth asking)"
