@@ -4,12 +4,20 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+import pytest
+
 from tests.monitors import test_errands
 from tests.monitors.test_belief import TASK, planner, run
-from tpvqa.events import Event
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import FaultModel
+from tpvqa.events import Decision, Event
 from tpvqa.events.events import Acted, ActionRecord, Answered, Asked, Decided, PlanMade
-from tpvqa.pddl import Literal, literals
-from tpvqa.planning import Planner
+from tpvqa.monitors.grounds import Grounds
+from tpvqa.monitors.inspection import Inspection
+from tpvqa.monitors.protocol import Step
+from tpvqa.monitors.reasons import reason
+from tpvqa.pddl import Atom, Literal, literals, task_from_text
+from tpvqa.planning import Plan, Planner
 from tpvqa.questions import QuestionBook
 from tpvqa.questions.fact_words import FactWords
 from tpvqa.tasks import find_task
@@ -69,6 +77,40 @@ def _out_of_view(events: Iterable[Event]) -> list[tuple[str, set[str]]]:
                 told = re.findall(r"(?:^|; )([^;]*) \d\.\d\d \(out of view\)", event.reason)
                 found += [(each.removeprefix("not "), unanswered) for each in told]
     return found
+
+
+PUMP = """(define (domain pump) (:requirements :strips :conditional-effects)
+ (:predicates (running) (opened) (pressure))
+ (:action open :parameters () :effect (and (opened) (when (running) (pressure))))
+ (:action start :parameters () :effect (and (running) (when (opened) (pressure)))))"""
+PIPES = """(define (problem pipes) (:domain pump) (:init) (:goal (pressure)))"""
+
+
+@pytest.mark.parametrize(("running", "names"), [(False, "opened 0.70"), (True, "pressure 0.50")])
+def test_a_repetition_is_told_from_what_it_can_bring_about(running: bool, names: str) -> None:
+    """Where the pump is off, to open the valve once more gives no pressure."""
+    task = task_from_text(PUMP, PIPES)
+    pump, valve, pressure = (Atom.parse(f"({each})") for each in ("running", "opened", "pressure"))
+    shut = frozenset((pump,) if running else ())
+    opened = shut | {valve}
+    belief, book = Belief(FaultModel(task)), QuestionBook.load(None, task)
+    last = [(opened, 0.2), (opened | {pressure}, 0.5)] if running else [(opened, 0.7)]
+    belief.begin([(shut, 0.3), *last])
+    opening = task.action("open", [])
+    step = Step(task, book, Plan((opening,), 1, "", 0.0), 0, shut)
+    grounds = Grounds(
+        step,
+        FactWords(book),
+        belief,
+        Inspection(opening),
+        plan=None,
+        acted=True,
+        unseen=frozenset(),
+        questions_left=True,
+        actions_left=None,
+    )
+    said = reason(grounds, Decision.REPEAT, opening, shut, 0)
+    assert said == f"{names} (not worth asking); open again"
 
 
 def _said(words: FactWords, literal: Literal) -> str:

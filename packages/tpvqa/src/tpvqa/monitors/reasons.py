@@ -9,7 +9,7 @@ from tpvqa.monitors.grounds import Grounds
 from tpvqa.monitors.inspection import Replies
 from tpvqa.monitors.saying_done import EVEN
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated
-from tpvqa.pddl import Action, Literal, State, literals
+from tpvqa.pddl import Action, Literal, State, holds, literals
 from tpvqa.vlm import Reply
 
 SAID = 2
@@ -65,7 +65,7 @@ def _reason(
     if decision is Decision.GO_ON and place == grounds.next:
         return "; ".join((*_why_on(grounds, action, missing), f"{said}{number}"))
     if decision is Decision.REPEAT:
-        mended = {effect.literal for effect in action.effects}
+        mended = {*_effects(grounds, action, state)}
         missing = [each for each in missing if each in mended] or missing
     facts = [_fact(grounds, each) for each in missing[:SAID]]
     there = _instead(grounds, missing[:SAID], state) or _news(grounds, state)
@@ -74,7 +74,7 @@ def _reason(
             facts = [_decided(grounds)]
         elif not facts and grounds.plan is not None:
             facts = [f"{_listed(grounds, there)} would be mended by it"]
-        facts = facts or _brought(grounds, action)
+        facts = facts or _brought(grounds, action, state)
         return "; ".join((*facts, f"{said} again"))
     if decision is Decision.REPLAN:
         return "; ".join((*facts, f"replanning{_since(grounds, there, ' from')}"))
@@ -102,9 +102,16 @@ def _needs(grounds: Grounds) -> list[Literal]:
     return sorted(grounds.plan.needs[grounds.next], key=lambda n: (grounds.probability(n), n.atom))
 
 
-def _brought(grounds: Grounds, action: Action) -> list[str]:
+def _effects(grounds: Grounds, action: Action, state: State) -> list[Literal]:
+    """What an action can bring about in a state: what it does only on a condition, where that
+    holds."""
+    there = grounds.step.task.extend(state)
+    return [each.literal for each in action.effects if holds(each.condition, there)]
+
+
+def _brought(grounds: Grounds, action: Action, state: State) -> list[str]:
     """The least probable of what an action brings about, of what is needed where any of it is."""
-    brought, needed = {effect.literal for effect in action.effects}, {*_needs(grounds)}
+    brought, needed = {*_effects(grounds, action, state)}, {*_needs(grounds)}
     effects = sorted(brought, key=lambda n: (n not in needed, grounds.probability(n), n.atom))
     return [_fact(grounds, each, needing=False) for each in effects[:1]]
 
