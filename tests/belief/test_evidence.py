@@ -150,9 +150,9 @@ def test_unknown_answers_change_nothing(reply: Reply) -> None:
     assert evidence.take(QUESTION, told(reply), 0, None) == 1.0
     assert belief.weights == before
     assert evidence.silent(QUESTION.text, None)
-    assert evidence.unseen
+    assert evidence.unanswered == {QUESTION.text}
     evidence.acted()
-    assert not evidence.unseen
+    assert not evidence.unanswered
 
 
 def test_a_surprising_answer_opens_what_the_model_does_not_explain() -> None:

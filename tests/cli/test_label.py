@@ -75,7 +75,8 @@ def test_keys_label_and_what_was_labelled_comes_no_more(
     assert labels(folders[0]) == ["yes", "no", "cannot see"]
     assert "2 labels tell how often an answer is right to ±0.1" in out
     assert "not enough yet" in out
-    assert "next: tpvqa calibrate e/0" in out
+    assert "next: go on with tpvqa label e/0" in out
+    assert "calibrate" not in out
     assert "x is no key" in err
     first = next(line for line in err.splitlines() if line.startswith("[1]"))
     typed("y\n")
@@ -132,6 +133,15 @@ def test_labels_that_were_exchanged_are_told(tpvqa: Run, folders: list[str]) -> 
     assert code == 0, err
     assert "note: yes was said more often where no was right" in out
     assert "yes and no were not exchanged" in Calibration.load(Path("calibration.json")).notices[-1]
+
+
+def test_what_comes_next_is_calibrating_only_where_there_are_enough(
+    tpvqa: Run, folders: list[str], typed: Typed
+) -> None:
+    typed("y\nn\n" * 300)
+    code, out, _ = tpvqa("label", *folders)
+    assert code == 0
+    assert "; enough\nnext: tpvqa calibrate e/0 e/1\n" in out
 
 
 def test_it_says_when_there_are_enough(tpvqa: Run, folders: list[str], typed: Typed) -> None:

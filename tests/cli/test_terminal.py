@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 from io import StringIO
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -23,9 +24,12 @@ from tests.episodes.believing import (
 )
 from tpvqa.cli.brief import MORE, brief
 from tpvqa.cli.terminal import EpisodeView
+from tpvqa.config import TrialConfig
+from tpvqa.episodes import read_episode
 from tpvqa.episodes.agreement import Agreement
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.report import tell
+from tpvqa.episodes.true_start import MOST, true_start_said
 from tpvqa.events import Event, TrialState
 from tpvqa.events.events import (
     Acted,
@@ -41,6 +45,7 @@ from tpvqa.events.events import (
     OutcomeRecord,
     PlanMade,
     QuestionRecord,
+    Started,
 )
 from tpvqa.monitors import Decision
 from tpvqa.questions import Way
@@ -309,3 +314,33 @@ def test_a_scripted_failure_says_what_failed() -> None:
     truth = OutcomeRecord(failure=Failure.SCRIPT)
     events = [*picked()[:3], Acted(report=Report.DONE, seconds=0.0, truth=truth)]
     assert shown(events)[-1] == "  in truth: the action failed, as the script says"
+
+
+def test_what_was_elsewhere_from_the_start_is_told(tpvqa: Run) -> None:
+    given = ("--elsewhere", 1, "--failure", 0, "--monitor", "none", "--out", "e")
+    _, ran, _ = tpvqa("run", "serve_breakfast", *given)
+    _, told, _ = tpvqa("show", "e")
+    tpvqa("report", "e")
+    began = read_episode(Path("e"))[0]
+    assert isinstance(began, Started)
+    assert began.true_start is not None
+    (there,) = set(began.true_start) - set(began.initial)
+    (gone,) = set(began.initial) - set(began.true_start)
+    say = words_of(began).say
+    said = f"{say(there)}, not {say(gone)}"
+    assert f"\nin truth: {said}\n" in ran
+    assert f"\nin truth: {said}\n" in told
+    assert f"In truth, at the start: {said}<" in Path("e/report.html").read_text()
+
+
+@pytest.mark.parametrize("more", [0, 3])
+def test_of_many_facts_that_are_not_as_the_problem_says_some_are_told(more: int) -> None:
+    there = tuple(f"(near thing{number:02})" for number in range(MOST + more))
+    simulated = TrialConfig().but(simulation={"failure": 0.0})
+    began = started().model_copy(update={"initial": (), "true_start": there, "config": simulated})
+    said = true_start_said(began, str).split(", ")
+    assert said[:MOST] == list(there[:MOST])
+    assert said[MOST:] == ([f"and {more} more"] if more else [])
+    real = began.model_copy(update={"config": simulated.model_copy(update={"simulation": None})})
+    assert true_start_said(real, str) == ""
+    assert true_start_said(began.model_copy(update={"true_start": None}), str) == ""

@@ -23,7 +23,7 @@ from tests.episodes.believing import (
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.report import render_report, tell
 from tpvqa.episodes.report.belief_chart import BeliefChart, Run, chart
-from tpvqa.events import Event
+from tpvqa.events import Event, Started
 from tpvqa.events.events import Acted, Decided
 from tpvqa.monitors import Decision
 
@@ -94,6 +94,16 @@ def test_a_belief_on_the_wrong_side_is_marked_where_it_was() -> None:
     _, flipped, doubted = drawn(believing()).rows
     assert (flipped.wrong, flipped.true) == ([], [Run(1, 5)])
     assert (doubted.wrong, doubted.true) == ([Run(2, 4)], [Run(4, 5)])
+
+
+def test_what_was_elsewhere_from_the_start_is_true_there() -> None:
+    begun, *rest = believing()
+    assert isinstance(begun, Started)
+    elsewhere = begun.model_copy(update={"true_start": (*begun.initial, UNSURE)})
+    (row,) = (row for row in drawn([elsewhere, *rest]).rows if row.fact == UNSURE)
+    assert row.true == [Run(0, 5)]
+    (row,) = (row for row in drawn([begun, *rest]).rows if row.fact == UNSURE)
+    assert row.true == []
 
 
 def test_where_the_world_tells_no_truth_none_is_shown() -> None:

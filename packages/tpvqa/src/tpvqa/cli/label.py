@@ -168,7 +168,8 @@ def _summary(session: "Session") -> dict[str, object]:
 
 def _say_end(session: "Session", episodes: list[Path]) -> None:
     progress = session.progress
-    tell(f"{progress_line(progress)}; {'enough' if progress.standing.enough else 'not enough yet'}")
+    enough = progress.standing.enough
+    tell(f"{progress_line(progress)}; {'enough' if enough else 'not enough yet'}")
     named = " ".join(pasted(each) for each in episodes[:8])
     more = " …" if len(episodes) > 8 else ""
-    tell(f"next: tpvqa calibrate {named}{more}")
+    tell(f"next: {'tpvqa calibrate' if enough else 'go on with tpvqa label'} {named}{more}")

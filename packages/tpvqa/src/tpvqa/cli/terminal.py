@@ -16,6 +16,7 @@ from tpvqa.episodes.agreement import Agreement
 from tpvqa.episodes.answers_worth import AnswersWorth, calibration_used
 from tpvqa.episodes.fact_words import words_of
 from tpvqa.episodes.sensed_news import SensedNews
+from tpvqa.episodes.true_start import true_start_said
 from tpvqa.events import Decision, Ended, Event, Exchange, TrialState
 from tpvqa.events.events import (
     Acted,
@@ -59,7 +60,8 @@ class EpisodeView:
 
     Args:
         console: Where to print.
-        truth: Whether to print what a simulated world knows about an action's outcome.
+        truth: Whether to print what a simulated world knows: how it began, and about an action's
+            outcome.
         live: Whether to keep the plan in view; by default in a terminal only.
         verbose: Whether to give the reasons of decisions in full.
         book: The questions in whose words facts are said; by default those that the log keeps.
@@ -124,6 +126,8 @@ class EpisodeView:
                 )
                 if used := calibration_used(event):
                     self._line(f"[dim]calibration[/] {marked(used)}")
+                if self._truth and (differs := true_start_said(event, self._say)):
+                    self._line(f"[dim italic]in truth: {marked(differs)}[/]")
             case PlanMade():
                 if not event.considered:
                     self._show_plan(event, again=before.plan is not None)

@@ -29,10 +29,11 @@ from tpvqa.monitors.capabilities import Learning
 from tpvqa.monitors.errands import Errand, Errands
 from tpvqa.monitors.feeling import Feeling
 from tpvqa.monitors.first_look import first_look, first_verdict
+from tpvqa.monitors.grounds import Grounds
 from tpvqa.monitors.inspection import REPORTED, Inspection
 from tpvqa.monitors.lost import lost
 from tpvqa.monitors.protocol import Check, Step
-from tpvqa.monitors.reasons import Grounds, reason
+from tpvqa.monitors.reasons import reason
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.saying_done import says_done
 from tpvqa.monitors.scrutiny import unknown
@@ -364,7 +365,6 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _verdict(self, step: Step, choice: Choice, *, acted: bool) -> Verdict:
         state, action, place = choice.state, choice.action, None
-        failing = self._ways.failing(step)
         same = self.belief.model.same_skill
         if action is None:
             done = says_done(self.goal_probability, self._risk)
@@ -383,10 +383,10 @@ class BeliefMonitor(Learning, PlainArguments):
             self._now,
             self._ways.annotated(step),
             acted,
-            unseen=self.evidence.unseen,
+            unseen=self.evidence.unanswered,
             questions_left=self._asking.may_ask,
             actions_left=step.actions_left,
-            failing=failing,
+            failing=self._ways.failing(step),
             settles=self._chooser.settles,
             followed=self._chooser.blind,
             risk=self._risk,

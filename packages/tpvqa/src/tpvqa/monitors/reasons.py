@@ -1,19 +1,15 @@
 """A decision in one sentence, from the numbers that it was made of."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 
 from tpvqa.belief.calibrating.replies_in_words import words
-from tpvqa.belief.calibrating.risk import RiskBound
 from tpvqa.belief.deciding.annotated import AnnotatedPlan
-from tpvqa.belief.filtering.belief import Belief
 from tpvqa.events.decision import Decision
-from tpvqa.monitors.inspection import Inspection, Noticed, Replies
-from tpvqa.monitors.protocol import Step
+from tpvqa.monitors.grounds import Grounds
+from tpvqa.monitors.inspection import Replies
 from tpvqa.monitors.saying_done import EVEN
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated
-from tpvqa.pddl import Action, Atom, Literal, State, literals
-from tpvqa.questions import FactWords
+from tpvqa.pddl import Action, Literal, State, holds, literals
 from tpvqa.vlm import Reply
 
 SAID = 2
@@ -24,74 +20,6 @@ OPEN = 0.05
 """What is less probable than this, or its contrary, is in no doubt that anything has to settle."""
 LITTLE = 0.5
 """Where answers settle less than this, that is why no plan is worth trying."""
-
-
-@dataclass(frozen=True, slots=True)
-class Grounds:
-    """What a decision is made of.
-
-    Attributes:
-        step: Where the trial stands.
-        words: Says facts.
-        belief: What is believed.
-        now: What was seen, answered and noticed since the last action.
-        plan: The plan that is followed, with its needs.
-        acted: Whether the step's action was just executed.
-        unseen: Whether some question found no answer.
-        questions_left: Whether anything more may be asked.
-        actions_left: Actions that the trial still allows; None for any number.
-        failing: That the step's skill seems never to work, in words; empty where it does.
-        settles: How far answers are expected to settle what is in doubt.
-        followed: Whether they say nothing, so that what was decided is followed to its end.
-        risk: Where "done" may be reported; None for where the goal is likely.
-    """
-
-    step: Step
-    words: FactWords
-    belief: Belief
-    now: Inspection
-    plan: AnnotatedPlan | None
-    acted: bool
-    unseen: bool
-    questions_left: bool
-    actions_left: int | None
-    failing: str = ""
-    settles: float = 1.0
-    followed: bool = False
-    risk: RiskBound | None = None
-
-    @property
-    def told(self) -> Mapping[str, Replies]:
-        """What was answered since the last action, by question."""
-        return self.now.replies
-
-    @property
-    def noticed(self) -> Mapping[Atom, Noticed]:
-        """What the robot's own skill and sensors told since then, by fact."""
-        return self.now.noticed
-
-    @property
-    def next(self) -> int:
-        """The step of the plan that would be next if all had gone well; its length for the goal."""
-        return self.step.index + self.acted
-
-    def probability(self, literal: Literal) -> float:
-        """How probable a literal is."""
-        p = self.belief.probability(literal.atom)
-        return p if literal.positive else 1 - p
-
-    def say(self, literal: Literal) -> str:
-        """A literal in words."""
-        said = self.words.of(literal.atom)
-        return said if literal.positive else f"not {said}"
-
-    def answers(self, atom: Atom) -> Replies | None:
-        """What was answered about a fact, or about those alike."""
-        return next((told for told in self.told.values() if atom in told.atoms), None)
-
-    def known(self, atom: Atom) -> bool:
-        """Whether anything was answered or noticed about a fact."""
-        return self.answers(atom) is not None or atom in self.noticed
 
 
 def reason(
@@ -137,7 +65,7 @@ def _reason(
     if decision is Decision.GO_ON and place == grounds.next:
         return "; ".join((*_why_on(grounds, action, missing), f"{said}{number}"))
     if decision is Decision.REPEAT:
-        mended = {effect.literal for effect in action.effects}
+        mended = {*_effects(grounds, action, state)}
         missing = [each for each in missing if each in mended] or missing
     facts = [_fact(grounds, each) for each in missing[:SAID]]
     there = _instead(grounds, missing[:SAID], state) or _news(grounds, state)
@@ -146,7 +74,7 @@ def _reason(
             facts = [_decided(grounds)]
         elif not facts and grounds.plan is not None:
             facts = [f"{_listed(grounds, there)} would be mended by it"]
-        facts = facts or _brought(grounds, action)
+        facts = facts or _brought(grounds, action, state)
         return "; ".join((*facts, f"{said} again"))
     if decision is Decision.REPLAN:
         return "; ".join((*facts, f"replanning{_since(grounds, there, ' from')}"))
@@ -174,9 +102,16 @@ def _needs(grounds: Grounds) -> list[Literal]:
     return sorted(grounds.plan.needs[grounds.next], key=lambda n: (grounds.probability(n), n.atom))
 
 
-def _brought(grounds: Grounds, action: Action) -> list[str]:
+def _effects(grounds: Grounds, action: Action, state: State) -> list[Literal]:
+    """What an action can bring about in a state: what it does only on a condition, where that
+    holds."""
+    there = grounds.step.task.extend(state)
+    return [each.literal for each in action.effects if holds(each.condition, there)]
+
+
+def _brought(grounds: Grounds, action: Action, state: State) -> list[str]:
     """The least probable of what an action brings about, of what is needed where any of it is."""
-    brought, needed = {effect.literal for effect in action.effects}, {*_needs(grounds)}
+    brought, needed = {*_effects(grounds, action, state)}, {*_needs(grounds)}
     effects = sorted(brought, key=lambda n: (n not in needed, grounds.probability(n), n.atom))
     return [_fact(grounds, each, needing=False) for each in effects[:1]]
 
@@ -315,7 +250,7 @@ def _fact(grounds: Grounds, need: Literal, *, needing: bool = True) -> str:
         pass  # bookkeeping that nothing shows
     elif not grounds.questions_left:
         text += " (no question left)"
-    elif grounds.unseen:
+    elif grounds.out_of_view(need.atom):
         text += " (out of view)"
     else:
         text += " (not worth asking)"

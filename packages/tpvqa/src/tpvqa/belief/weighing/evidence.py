@@ -226,11 +226,6 @@ class Evidence(Expected):
         """Whether a yes has said all that there is to it in this scene, in whatever words."""
         return question.family in self._affirmed
 
-    @property
-    def unseen(self) -> bool:
-        """Whether any question found no answer since the last action."""
-        return bool(self._silent)
-
     def take(
         self, question: FactQuestion, answer: Answer, picture: Picture, view: str | None
     ) -> float:

@@ -13,6 +13,7 @@ from tpvqa.episodes.notable_facts import probability
 from tpvqa.episodes.own_files import belongs_to
 from tpvqa.episodes.report.belief_chart import chart
 from tpvqa.episodes.report.story import Story, tell
+from tpvqa.episodes.true_start import true_start_said
 from tpvqa.errors import EpisodeError, PictureError
 from tpvqa.events.events import Event, Started
 from tpvqa.files import opened_plain, write_whole
@@ -125,6 +126,7 @@ def render_report(events: list[Event], folder: Path) -> str:
             say=words.say,
             probability=probability,
             calibration=calibration_used(story.started),
+            begun=true_start_said(story.started, words.say),
             saves=worth.more_would_save(),
         )
     )

@@ -13,12 +13,14 @@ class TrueFacts:
     """Follows the true state from one action to the next.
 
     Args:
-        started: Gives the initial state; derived facts are not in it, so they are not known.
+        started: Gives the true state at first; derived facts are not in the problem's, so they are
+            not known.
         known: Whether the world tells what comes of actions at all.
     """
 
     def __init__(self, started: Started, *, known: bool):
-        self._state = set(started.initial)
+        begun = started.initial if started.true_start is None else started.true_start
+        self._state = set(begun)
         self._derived = {name.lower() for name in _DERIVED.findall(started.domain)}
         self._known = known
 
