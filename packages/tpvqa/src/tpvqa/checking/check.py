@@ -11,6 +11,7 @@ from tpvqa.checking.left_open import of_left_open
 from tpvqa.checking.opposites import of_opposites
 from tpvqa.checking.priors import of_priors
 from tpvqa.checking.seeing import Telling
+from tpvqa.checking.unused_objects import of_objects
 from tpvqa.drafting import words
 from tpvqa.errors import PDDLError, QuestionsError, WorldFileError
 from tpvqa.pddl import Task, load_task
@@ -91,6 +92,8 @@ def _findings(
     yield from possible.of_actions(task, undone)
     yield from of_idle_effects(task, undone)
     yield from possible.of_predicates(task)
+    if not (wrong or unread or told[0] or told[1] == "unknown"):  # these may speak of any object
+        yield from of_objects(task, given, world_file)
     yield from of_effects(task)
     yield from of_left_open(task)
     yield from wordings.in_vain(task, given, questions)
