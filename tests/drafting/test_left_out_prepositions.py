@@ -2,7 +2,7 @@
 
 import yaml
 
-from tpvqa.drafting import draft
+from tpvqa.drafting import LOOK, draft
 from tpvqa.pddl.loading import task_from_text
 
 DOMAIN = """(define (domain greenhouse) (:requirements :typing)
@@ -23,3 +23,9 @@ def _drafted() -> str:
 def test_who_stands_stands_at_a_place() -> None:
     asked = yaml.safe_load(_drafted())["predicates"]
     assert asked["standing"] == ["Is the {c} on the {b}?", "Is the {c} standing on the {b}?"]
+
+
+def test_a_question_that_lacks_a_word_is_marked() -> None:
+    marked = {line.split(":")[0].strip() for line in _drafted().splitlines() if LOOK in line}
+    assert {"grows", "filled-with"} <= marked
+    assert not {"standing", "visiting", "switched-on", "touching"} & marked
