@@ -169,6 +169,17 @@ def test_a_cost_without_a_value_is_told_before_there_seems_to_be_no_plan(tmp_pat
     assert {action.cost for action in load_task(domain, problem).ground_actions()} == {2}
 
 
+def test_a_type_misspelt_where_it_is_declared_is_told_in_the_file_whose_line_is_named(
+    tmp_path: Path,
+) -> None:
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    domain.write_text(DOMAIN.replace("(:types lamp)", "(:types lmap)"))
+    problem.write_text(PROBLEM.replace("(:objects", "\n\n\n(:objects"))
+    with pytest.raises(PDDLError, match="the type 'lamp' of 'a' is not declared") as caught:
+        load_task(domain, problem)
+    assert (caught.value.file, caught.value.line) == (problem, 6)
+
+
 @pytest.mark.parametrize(("old", "new", "line", "message"), BROKEN_PROBLEMS)
 def test_a_broken_problem(
     tmp_path: Path, old: str, new: str, line: int | None, message: str

@@ -60,6 +60,8 @@ def book(task: Task, folder: Path, text: str | bytes) -> QuestionBook:
         ("predicates:\n near: 'A?'\n  on: 'B?'", 3, "broken YAML"),
         ("predicates:\n\tnear: 'A?'", 2, "broken YAML"),
         ("a: 'never closed", 1, "broken YAML"),
+        ("predicates:\n  on: [Is the {x} there, no]", 2, "a text that has ? or { in quotes"),
+        ("never_asked: [{fact: (on ?x ?y)}]", 1, "a text that has ? or { in quotes"),
         ("a: *unknown", 1, "the alias *unknown is not read here"),
         ("a:\n  b: !!python/object/apply:os.system ['id']", 2, "is not read here; leave it out"),
         ("a: !mine 'B?'", 1, "the tag '!mine' is not read here"),

@@ -218,7 +218,7 @@ def read_yaml(path: Path, error: type[PlacedError]) -> Place | None:
         mark = broken.problem_mark or broken.context_mark
         line = None if mark is None else mark.line + 1
         what = broken.problem or broken.context or "it cannot be read"
-        raise error(f"broken YAML: {what}", file=path, line=line) from broken
+        raise error(f"broken YAML: {what}{_quotes(broken)}", file=path, line=line) from broken
     except yaml.reader.ReaderError as broken:
         line = text.count("\n", 0, broken.position) + 1
         letter = ascii(text[broken.position : broken.position + 1])
@@ -231,6 +231,14 @@ def read_yaml(path: Path, error: type[PlacedError]) -> Place | None:
     except (yaml.YAMLError, RecursionError, ValueError) as broken:
         raise error(f"broken YAML: {broken}", file=path) from broken
     return None if node is None or _is_empty(node) else Place(str(path), node, error)
+
+
+def _quotes(broken: yaml.MarkedYAMLError) -> str:
+    """The remedy where a variable or a placeholder stands in brackets without quotes."""
+    bare = (broken.problem or "").endswith(("'?'", "'{'"))
+    if not bare or "flow" not in (broken.context or ""):
+        return ""
+    return '; within [ ] and { } write a text that has ? or { in quotes, such as "(near ?x)"'
 
 
 def _is_empty(node: yaml.Node) -> bool:

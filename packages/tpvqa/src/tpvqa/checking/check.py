@@ -11,6 +11,7 @@ from tpvqa.checking.left_open import of_left_open
 from tpvqa.checking.opposites import of_opposites
 from tpvqa.checking.priors import of_priors
 from tpvqa.checking.seeing import Telling
+from tpvqa.checking.unused_objects import of_objects
 from tpvqa.drafting import words
 from tpvqa.errors import PDDLError, QuestionsError, WorldFileError
 from tpvqa.pddl import Task, load_task
@@ -78,17 +79,21 @@ def _findings(
     except QuestionsError as error:
         wrong.append(error)
     yield from (of_error("questions", error) for error in wrong)
-    rules = WorldRules()
+    rules, unread = WorldRules(), False
     try:
         rules = load_world_file(world_file, task)
     except WorldFileError as error:
+        unread = True
         yield of_error("world", error)
+    undone = frozenset(task.predicates) if unread else _undone(rules)
     rules_into = str(world_file or folder / WORLD)
     yield from possible.of_goal(task, planner, timeout)
     yield from possible.of_metric(task)
-    yield from possible.of_actions(task, _undone(rules))
-    yield from of_idle_effects(task, _undone(rules))
+    yield from possible.of_actions(task, undone)
+    yield from of_idle_effects(task, undone)
     yield from possible.of_predicates(task)
+    if not (wrong or unread or told[0] or told[1] == "unknown"):  # these may speak of any object
+        yield from of_objects(task, given, world_file)
     yield from of_effects(task)
     yield from of_left_open(task)
     yield from wordings.in_vain(task, given, questions)
@@ -113,10 +118,11 @@ def _findings(
         yield from wordings.without_words(task, given, words(task), into)
     book = QuestionBook(task, given)
     yield from wordings.alike(task, book, questions)
-    yield from Telling(task, book, rules, into=rules_into).findings()
     yield from of_opposites(task, book, into)
-    yield from world.of_rules(task, rules, world_file)
-    yield from world.not_taken(task, rules, rules_into)
+    if not unread:  # else what is missed may stand in it
+        yield from Telling(task, book, rules, into=rules_into).findings()
+        yield from world.of_rules(task, rules, world_file)
+        yield from world.not_taken(task, rules, rules_into)
     yield from of_priors(task, told[0], rules, told[1])
 
 

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import Clause, Noun
-from tpvqa.drafting.forms import Form, verb_form
+from tpvqa.drafting.forms import Form, is_ing, verb_form
 from tpvqa.drafting.lexicon import ADJECTIVES, PARTICLES, PREPOSITIONS
 from tpvqa.drafting.of_nothing import WEATHER
+from tpvqa.drafting.things import Things
 
 
 def open_to_doubt(words: list[str], nouns: Sequence[Noun], clause: Clause) -> bool:
@@ -47,6 +48,25 @@ def either_of(words: list[str], named: Sequence[frozenset[str]]) -> bool:
         return False
     begun = words[0] in PREPOSITIONS or verb_form(words[0]) is not None
     return not begun and words[-2] != "top" and not any(words[-2] in each for each in named)
+
+
+def lacks_a_word(clause: Clause, nouns: Sequence[Noun], things: Things) -> bool:
+    """Whether a question breaks off at a preposition, or joins a place to a verb without one:
+    filled-with(x), grows(plant, bed).
+
+    Args:
+        clause: What the name was put into.
+        nouns: Its arguments.
+        things: The task's things.
+    """
+    said = clause.rest.split()
+    verbal = len(said) > 1 and (is_done(said[-2]) or is_ing(said[-2]))
+    if verbal and said[-1] in PREPOSITIONS - PARTICLES:
+        return True
+    if len(nouns) < 2 or not clause.subject.objects or things.act(clause.subject.objects):
+        return False
+    verb, _, of = clause.rest.partition(" ")
+    return is_ing(verb) and of == nouns[1].said and things.are_places(nouns[1].objects)
 
 
 def seldom_shown(words: list[str]) -> bool:

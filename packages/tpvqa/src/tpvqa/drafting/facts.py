@@ -5,7 +5,14 @@ from dataclasses import dataclass
 
 from tpvqa.drafting import lexicon
 from tpvqa.drafting.clauses import ROBOT, Clause, Noun, Phrases, part, unknown
-from tpvqa.drafting.doubt import either_of, is_done, is_misread, open_to_doubt, seldom_shown
+from tpvqa.drafting.doubt import (
+    either_of,
+    is_done,
+    is_misread,
+    lacks_a_word,
+    open_to_doubt,
+    seldom_shown,
+)
 from tpvqa.drafting.facts_tables import PLAIN, ROADS, SAME
 from tpvqa.drafting.forms import (
     Form,
@@ -87,6 +94,7 @@ class Facts:
         missing = [n.said for n in nouns if f"{{{n.parameter}" not in wordings[0]]
         unsure = unsure or (bool(missing) and not self._leaves_out(nouns, wordings[0]))
         unsure = unsure or open_to_doubt(words, nouns, clauses[0])
+        unsure = unsure or lacks_a_word(clauses[0], nouns, self._things)
         unsure = unsure or either_of(words, [self._named(noun) for noun in nouns])
         opposite = self._opposite(predicate) if denied else None
         return Said(tuple(wordings[:3]), unsure, opposite, seldom_shown(words))

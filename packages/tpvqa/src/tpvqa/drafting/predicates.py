@@ -149,6 +149,9 @@ def _doing(
     things = phrases.things
     first, *rest = nouns
     said = f"{ing(base)} {extra}".strip()
+    if rest and base in lexicon.POSTURES and not extra:
+        yield from _does(phrases, base, extra, nouns, others)  # standing(crate, place)
+        return
     if rest:
         second, *more = rest
         if things.act(second.objects) and not things.act(first.objects):

@@ -283,7 +283,7 @@ def _check_types(task: Any, blocks: dict[str, Block]) -> None:
                     f"the type {str(name)!r} of {str(entry.name)!r} is not declared"
                     + suggestion_or_list(name, known),
                     part,
-                    line_of(name) or line,
+                    line,
                 )
 
 
@@ -300,7 +300,7 @@ def _check_order(parents: Mapping[str, str | None], blocks: dict[str, Block]) ->
                 f"the type {str(name)!r} is a kind of itself: it is a {told}; expected parents "
                 "that lead to 'object'"
             )
-            raise ReadingError(message, part, line_of(name) or line)
+            raise ReadingError(message, part, line)
 
 
 def _check_derived(task: Any) -> None:
@@ -370,15 +370,18 @@ def _check_unique(what: str, names: Iterable[str]) -> None:
 
 
 def _place_of(word: str, blocks: dict[str, Block]) -> tuple[str, int | None]:
-    """The part and the line in which a word first stands."""
+    """The part and the line in which a word stands: itself, where it was read, else the first one
+    that is spelt so."""
 
-    def search(item: object) -> int | None:
+    def search(item: object, *, itself: bool) -> int | None:
         if isinstance(item, list):
-            return next((line for line in map(search, item) if line is not None), None)
-        return line_of(item) if item == word else None
+            lines = (search(each, itself=itself) for each in item)
+            return next((line for line in lines if line is not None), None)
+        return line_of(item) if (item is word if itself else item == word) else None
 
-    for part, block in blocks.items():
-        line = search(block)
-        if line is not None:
-            return part, line
+    for itself in (True, False):
+        for part, block in blocks.items():
+            line = search(block, itself=itself)
+            if line is not None:
+                return part, line
     return "domain", None
