@@ -18,7 +18,7 @@ from tpvqa.bench.ledger import ROWS, Ledger
 from tpvqa.bench.published import write_published
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import batches
-from tpvqa.bench.stage import run_batch
+from tpvqa.bench.stage import run_each
 from tpvqa.config import SimulationConfig, TrialConfig
 from tpvqa.errors import BenchError, CalibrationError
 from tpvqa.questions import Way
@@ -216,10 +216,10 @@ def test_a_condition_sets_the_true_rates_and_is_kept(tmp_path: Path) -> None:
     cell = replace(CELL, monitor="tp", condition="failure=1,spontaneous=0.05")
     config = cell.config(TrialConfig(), 7)
     assert config.simulation == SimulationConfig(failure=1.0, spontaneous=0.05)
-    (row,) = run_batch(cell, TrialConfig(), (0,))
-    assert row["completed"] is False
+    (row,) = run_each(cell, TrialConfig(), (0,))
+    assert row.completed is False
     with_ledger = Ledger(tmp_path, {})
-    with_ledger.add([EpisodeRow.model_validate(row)])
+    with_ledger.add([row])
     with_ledger.close()
     ledger = Ledger(tmp_path, {})
     assert ledger.missing(cell, 1) == []
@@ -231,15 +231,15 @@ def test_what_is_learned_is_carried_through_a_run_of_episodes_and_no_further() -
     calibration = Calibration.default()
     common = TrialConfig()
     plain = replace(CELL, vlm="oracle:0.7")
-    alone = [row["trust"] for row in run_batch(plain, common, tuple(range(4)), calibration)]
+    alone = [row.trust for row in run_each(plain, common, tuple(range(4)), calibration)]
     cell = replace(plain, condition="carried=2")
-    carrying = run_batch(cell, common, tuple(range(4)), calibration)
-    carried = [row["trust"] for row in carrying]
+    carrying = run_each(cell, common, tuple(range(4)), calibration)
+    carried = [row.trust for row in carrying]
     assert (carried[0], carried[2]) == (alone[0], alone[2])
     assert carried[1] != alone[1]
     assert carried[3] != alone[3]
-    (row,) = run_batch(replace(CELL, monitor="tpvqa"), common, (0,))
-    assert row["trust"] is None
+    (row,) = run_each(replace(CELL, monitor="tpvqa"), common, (0,))
+    assert row.trust is None
 
 
 def test_a_run_of_episodes_is_one_batch_and_is_begun_anew(tmp_path: Path) -> None:
@@ -269,7 +269,7 @@ def test_a_condition_that_is_not_understood(condition: str) -> None:
 
 def test_a_number_of_episodes_that_is_not_understood() -> None:
     with pytest.raises(BenchError, match="carried=EPISODES"):
-        run_batch(replace(CELL, condition="carried=x"), TrialConfig(), (0,))
+        list(run_each(replace(CELL, condition="carried=x"), TrialConfig(), (0,)))
 
 
 def test_every_grid_cell_has_every_rival_and_the_curve() -> None:

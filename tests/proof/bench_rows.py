@@ -75,7 +75,7 @@ def run_again(
         cache: Where calibrations are kept.
     """
     from tpvqa.bench import cell as cells
-    from tpvqa.bench.stage import run_batch
+    from tpvqa.bench.stage import run_each
     from tpvqa.config import Limits, SimulationConfig, TrialConfig
     from tpvqa_experiments.belief.calibrations import by_replies, calibrations, source_of
     from tpvqa_experiments.belief.parts import believes
@@ -95,12 +95,13 @@ def run_again(
         ),
     )
     learnt_from = settings.get("trials of a calibration")  # the paper's bench learns none
+    told = None
     if learnt_from is not None and believes(which.monitor):
         source = source_of(which, settings["the embedded network is calibrated in"])
         known = calibrations(cache, [source], common, learnt_from)[source]
         told = by_replies(known) if which.believed else known
-        return list(run_batch(which, common, tuple(episodes), told))
-    return list(run_batch(which, common, tuple(episodes)))
+    rows = run_each(which, common, tuple(episodes), told)
+    return [row.model_dump() for row in rows]
 
 
 def paper_part() -> Part:

@@ -11,7 +11,7 @@ from tpvqa.bench.dask_workers import as_they_finish, dask_client
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
-from tpvqa.bench.stage import run_batch, run_each
+from tpvqa.bench.stage import run_each
 from tpvqa.config import TrialConfig
 
 BATCH: Mapping[str, int] = {"symbolic": 20, "images": 10}
@@ -104,7 +104,7 @@ def run_all(
 Given = tuple[
     Cell, TrialConfig, tuple[int, ...], Calibration | None, OwnTask | None, RiskBound | None
 ]
-"""What `run_batch` is called with."""
+"""What `run_each` is called with."""
 
 
 def _here(todo: Sequence[Batch], given: Callable[[Batch], Given]) -> Iterator[list[EpisodeRow]]:
@@ -123,7 +123,7 @@ def _on_dask(
         return
     with dask_client(min(workers, len(todo)), scheduler) as client:
         futures = {
-            client.submit(run_batch, *given(batch), pure=False, retries=RETRIES): batch
+            client.submit(_values, given(batch), pure=False, retries=RETRIES): batch
             for batch in todo
         }
         for future, values, failed in as_they_finish(client, futures):
@@ -132,6 +132,11 @@ def _on_dask(
                 yield [EpisodeRow.model_validate(value) for value in values]
             else:
                 yield _failed(batch, given(batch)[1], repr(failed))
+
+
+def _values(given: Given) -> list[dict[str, object]]:
+    """What a worker is sent: the rows of a batch as plain values."""
+    return [row.model_dump() for row in run_each(*given)]
 
 
 def _failed(batch: Batch, common: TrialConfig, error: str) -> list[EpisodeRow]:

@@ -275,16 +275,3 @@ def run_each(
             cell, common, episode, calibration=calibration, experience=known, risk=risk
         )
         yield row
-
-
-def run_batch(
-    cell: Cell,
-    common: TrialConfig,
-    episodes: tuple[int, ...],
-    calibration: Calibration | None = None,
-    own: OwnTask | None = None,
-    risk: RiskBound | None = None,
-) -> list[dict[str, object]]:
-    """Run some episodes of a cell: what a worker is sent. Their rows as plain values."""
-    rows = run_each(cell, common, episodes, calibration, own, risk)
-    return [row.model_dump() for row in rows]
