@@ -3,14 +3,11 @@
 from collections.abc import Iterable
 from functools import cached_property, lru_cache
 
+from tpvqa.belief.states.relaxation import Needs, Relaxation, Way
 from tpvqa.pddl import Atom, Condition, Conjunction, Disjunction, State, Task, literals
 
 KEPT = 20_000
 """States of which it is kept."""
-_Needs = tuple[int, int]
-"""What has to hold and what must not, as bits."""
-_Way = tuple[_Needs, int, int]
-"""What something needs, what it makes true and what false."""
 
 
 class DeadEnds:
@@ -52,7 +49,8 @@ class DeadEnds:
                 self._known.clear()
             true = self._numbered(atom for atom in state if atom.predicate in self._fluents)
             mended = bool(before) and self._mended(state, before, self._with_what_follows(true))
-            found = self._known[state, before] = not (mended or self._reaches(true, self._goal))
+            found = not (mended or self._relaxation.reaches(true, self._goal))
+            self._known[state, before] = found
         return found
 
     @cached_property
@@ -65,31 +63,21 @@ class DeadEnds:
         return self._task.reachable_atoms | self._task.init
 
     @cached_property
-    def _ways(self) -> dict[tuple[Atom, bool], list[_Needs]]:
-        """What it takes to make facts true, and to make them false."""
-        found: dict[tuple[Atom, bool], list[_Needs]] = {}
-        changes = self._changes  # they number their atoms
-        atoms = {bit: atom for atom, bit in self._bits.items() if isinstance(atom, Atom)}
-        for needs, *made in changes:
-            for positive, bits in zip((True, False), made, strict=True):
-                while bits:
-                    lowest = bits & -bits
-                    found.setdefault((atoms[lowest], positive), []).append(needs)
-                    bits ^= lowest
-        return found
+    def _relaxation(self) -> Relaxation:
+        return Relaxation([*self._rules, *self._changes])
 
     def _mended(self, state: State, before: State, true: int) -> bool:
-        missing = [(atom, True) for atom in before - state]
-        missing += [(atom, False) for atom in state - before]
+        missing = [(self._numbered([atom]), 0) for atom in before - state]
+        missing += [(0, self._numbered([atom])) for atom in state - before]
         return all(
-            any(not (need & ~true or bar & true) for need, bar in self._ways.get(each, ()))
+            any(not (need & ~true or bar & true) for need, bar in self._relaxation.leading(each))
             for each in missing
         )
 
     @cached_property
-    def _changes(self) -> list[_Way]:
+    def _changes(self) -> list[Way]:
         """What each action needs for some of its effects, what it makes true and what false."""
-        found: dict[_Needs, tuple[int, int]] = {}
+        found: dict[Needs, tuple[int, int]] = {}
         for action in self._task.ground_actions():
             needs = self._needs([action.precondition])
             for effect in action.effects:
@@ -103,9 +91,9 @@ class DeadEnds:
         return [(needs, *made) for needs, made in found.items()]
 
     @cached_property
-    def _rules(self) -> list[_Way]:
+    def _rules(self) -> list[Way]:
         """What the derived facts that are asked for follow from, and their parts."""
-        found: list[_Way] = []
+        found: list[Way] = []
         bodies: dict[Atom, list[Condition]] = {}
         _ = self._changes  # what they need is asked for, too
         if self._unruled and self._task.axioms:
@@ -117,7 +105,7 @@ class DeadEnds:
             found += [(self._needs([part], derived=True), self._bits[each], 0) for part in parts]
         return found
 
-    def _needs(self, conditions: Iterable[Condition], *, derived: bool = False) -> _Needs:
+    def _needs(self, conditions: Iterable[Condition], *, derived: bool = False) -> Needs:
         """The literals of conjunctions of what actions change, and what follows, as bits."""
         parts, need, bar = list(conditions), 0, 0
         while parts:
@@ -137,22 +125,6 @@ class DeadEnds:
         if what not in self._bits:
             self._unruled.append(what)
         return self._numbered([what])
-
-    def _reaches(self, true: int, goal: _Needs) -> bool:
-        waiting = [*self._rules, *self._changes]
-        false, before = ~true, (-1, -1)
-        while goal[0] & ~true or goal[1] & ~false:
-            if before == (true, false):
-                return False
-            before, left = (true, false), []
-            for each in waiting:
-                (need, bar), add, delete = each
-                if need & ~true or bar & ~false:
-                    left.append(each)
-                else:
-                    true, false = true | add, false | delete
-            waiting = left
-        return True
 
     def _with_what_follows(self, true: int) -> int:
         before = -1
