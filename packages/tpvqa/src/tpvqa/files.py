@@ -79,12 +79,18 @@ def read_plain(path: Path | str, *, most: int = 64 * 2**20) -> bytes:
     return data
 
 
-def make_folder(path: Path) -> None:
+def make_folder(path: Path, *, follow: bool = True) -> None:
     """Make a folder with those above it, where it is not there.
+
+    Args:
+        path: The folder.
+        follow: Whether it may be a link: where the user names it, and not one above it.
 
     Raises:
         OSError: It cannot be made, or a file lies in the place of one of them.
     """
+    if not follow and path.is_symlink():
+        raise NotADirectoryError(errno.ENOTDIR, f"{path} is a link, where a folder is expected")
     try:
         path.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
