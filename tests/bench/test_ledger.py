@@ -1,13 +1,15 @@
 """Finished episodes on disk: never run again, never lost, never mixed with others."""
 
 import json
+import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.bench.test_statistics import row
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.ledger import ROWS, Ledger
+from tpvqa.bench.ledger import ROWS, SETTINGS, Ledger
 from tpvqa.errors import BenchError
 
 CELL = Cell("t", "m", "v", "w")
@@ -53,6 +55,23 @@ def test_a_bench_with_other_settings_is_not_mixed_in(tmp_path: Path) -> None:
     Ledger(tmp_path, {"seed": 0, "failure": 0.25}).close()
     with pytest.raises(BenchError, match=r"seed 0 there, 1 here"):
         Ledger(tmp_path, {"seed": 1, "failure": 0.25})
+
+
+@pytest.mark.parametrize("text", ["", "[]", '"x"', "[" * 200_000, '{"seed": 0, "seed": 0}'])
+def test_settings_that_are_none_are_named(tmp_path: Path, text: str) -> None:
+    (tmp_path / SETTINGS).write_text(text)
+    with pytest.raises(BenchError, match=r"bench\.json: damaged .*Remove the folder"):
+        Ledger(tmp_path, {"seed": 0})
+
+
+@pytest.mark.parametrize("make", [Path.mkdir, os.mkfifo, lambda path: path.symlink_to("other")])
+def test_settings_that_are_no_plain_file_are_named(
+    tmp_path: Path, make: Callable[[Path], None]
+) -> None:
+    (tmp_path / "other").write_text('{"seed": 0}')
+    make(tmp_path / SETTINGS)
+    with pytest.raises(BenchError, match=r"bench\.json: damaged .*plain file is expected"):
+        Ledger(tmp_path, {"seed": 0})
 
 
 def test_two_benches_never_write_one_folder(tmp_path: Path) -> None:

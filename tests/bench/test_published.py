@@ -1,5 +1,6 @@
 """Rows for others: the same after reading, of the same bench only, and taken for finished."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,13 @@ from hypothesis import strategies as st
 from tests.bench.test_statistics import row
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
-from tpvqa.bench.published import LEFT_OUT, read_published, write_published
+from tpvqa.bench.published import (
+    LEFT_OUT,
+    read_published,
+    tasks_of,
+    version_of,
+    write_published,
+)
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError
 
@@ -85,6 +92,33 @@ def test_another_table_is_named(tmp_path: Path) -> None:
     parquet.write_table(pa.table({"a": [1]}), tmp_path / "a.parquet")
     with pytest.raises(BenchError, match="does not say which bench"):
         list(read_published(tmp_path / "a.parquet", SETTINGS))
+
+
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.parquet")
+    for path in (tmp_path, tmp_path / "a.parquet"):
+        with pytest.raises(BenchError, match=r"a\.parquet: cannot be read .*a plain file"):
+            list(read_published(path, SETTINGS))
+        with pytest.raises(BenchError, match=r"a\.parquet: cannot be read"):
+            version_of(path)
+
+
+@pytest.mark.parametrize("name", [b"tpvqa.bench", b"tpvqa.tasks"])
+@pytest.mark.parametrize("told", [b"{nope", b"[1, 2]", b"\xff\xfe{", b"[" * 100_000, b"zz"])
+def test_what_it_says_of_itself_is_read_before_anything_is_made(
+    tmp_path: Path, name: bytes, told: bytes
+) -> None:
+    from pyarrow import parquet
+
+    path = tmp_path / "a.parquet"
+    write_published([row(episode=0)], SETTINGS, path)
+    table = parquet.read_table(path)
+    changed = table.replace_schema_metadata({**table.schema.metadata, name: told})
+    parquet.write_table(changed, path)
+    for read in (version_of, tasks_of, lambda path: Ledger(tmp_path / "bench", SETTINGS, path)):
+        with pytest.raises(BenchError, match=r"a\.parquet: damaged"):
+            read(path)
+    assert not (tmp_path / "bench").exists()
 
 
 def test_a_failure_hides_no_finished_episode(tmp_path: Path) -> None:

@@ -376,6 +376,16 @@ class TestRunning:
             run_belief_bench(other, tmp_path / "b", rivals_from=tmp_path / "a")
         assert not (tmp_path / "b").exists()
 
+    @pytest.mark.parametrize("name", ["bench.json", "taken_over.json", "speed.json"])
+    @pytest.mark.parametrize("text", ["[]", "[" * 200_000])
+    def test_a_damaged_file_is_named(self, tmp_path: Path, name: str, text: str) -> None:
+        bench = self.bench("blind:1", vlms=["oracle:0.8"])
+        run_belief_bench(bench, tmp_path / "a", only_tables=True)
+        (tmp_path / "a" / name).write_text(text)
+        other = {"bench.json": {"rivals_from": tmp_path / "a"}}.get(name, {})
+        with pytest.raises(BenchError, match=rf"{name}: damaged"):
+            run_belief_bench(bench, tmp_path / ("b" if other else "a"), only_tables=True, **other)
+
     def test_a_monitor_that_no_part_has(self, tmp_path: Path) -> None:
         with pytest.raises(UnknownNameError, match="Did you mean 'lead:2'"):
             run_belief_bench(self.bench("laed:2"), tmp_path / "x")

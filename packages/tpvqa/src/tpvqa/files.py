@@ -66,13 +66,18 @@ def opened_plain(path: Path | str) -> Iterator[int]:
         os.close(descriptor)
 
 
-def read_plain(path: Path | str, *, most: int = 64 * 2**20) -> bytes:
-    """What a plain file that the user names holds; it may be a link to one.
+def read_plain(path: Path | str, *, most: int = 64 * 2**20, follow: bool = True) -> bytes:
+    """What a plain file holds.
+
+    Args:
+        path: The file.
+        most: So many bytes are read at most.
+        follow: Whether it may be a link: where the user names it.
 
     Raises:
         OSError: It cannot be read, is no plain file, or has more bytes than `most`.
     """
-    with os.fdopen(open_plain(path, os.O_RDONLY, follow=True), "rb") as file:
+    with os.fdopen(open_plain(path, os.O_RDONLY, follow=follow), "rb") as file:
         data = file.read(most + 1)
     if len(data) > most:
         raise OSError(errno.EFBIG, f"it has more than {most:,} bytes")

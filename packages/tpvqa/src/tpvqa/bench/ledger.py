@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.published import differences, read_published
 from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.told_object import read_object
 from tpvqa.episodes.log import LOG
 from tpvqa.episodes.own_files import BENCH
 from tpvqa.errors import BenchError, WriteError
@@ -59,11 +60,8 @@ class Ledger:
 
     def _agree(self, settings: dict[str, Any]) -> None:
         path = self.folder / SETTINGS
-        if path.exists():
-            try:
-                there = json.loads(path.read_text(encoding="utf-8"))
-            except ValueError:
-                raise BenchError(f"{path}: damaged. Remove the folder, or name another") from None
+        there = read_object(path)
+        if there is not None:
             changed = differences(there, settings)
             if changed:
                 raise BenchError(
