@@ -121,6 +121,48 @@ def test_what_it_says_of_itself_is_read_before_anything_is_made(
     assert not (tmp_path / "bench").exists()
 
 
+def test_rows_that_contradict_each_other_are_named_before_anything_is_made(tmp_path: Path) -> None:
+    data, cell = tmp_path / "data", Cell("t", "m", "v", "w")
+    rows = [row(episode=k, actions=5) for k in range(3)]
+    write_published(rows, SETTINGS, data / "a.parquet")
+    write_published([rows[1]], SETTINGS, data / "b.parquet")  # says the same
+    ledger = Ledger(tmp_path / "bench", SETTINGS, data)
+    assert ledger.missing(cell, 3) == []
+    ledger.add([row(episode=0, actions=5, seconds=2.0, answers={"effect|on|1|yes|": 3})])
+    ledger.close()
+    Ledger(tmp_path / "bench", SETTINGS, data).close()  # its own say more, and the same
+    write_published([rows[0], row(episode=1, actions=6)], SETTINGS, data / "b.parquet")
+    said = r"b\.parquet, row 2: says something else than .*a\.parquet, row 2 of the same episode"
+    with pytest.raises(BenchError, match=said):
+        Ledger(tmp_path / "other", SETTINGS, data)
+    assert not (tmp_path / "other").exists()
+    (data / "b.parquet").unlink()
+    write_published([row(episode=0, actions=7)], SETTINGS, data / "a.parquet")
+    with pytest.raises(BenchError, match=r"episodes\.jsonl:1: says .*a\.parquet, row 1 of"):
+        Ledger(tmp_path / "bench", SETTINGS, data)
+
+
+def test_rows_of_another_seed_than_they_say_are_named(tmp_path: Path) -> None:
+    write_published([row(episode=0), row(episode=1, seed=9)], SETTINGS, tmp_path / "a.parquet")
+    with pytest.raises(BenchError, match=r"a\.parquet, row 2: is of the seed 9, .* of 0"):
+        Ledger(tmp_path / "bench", SETTINGS, tmp_path / "a.parquet")
+    assert not (tmp_path / "bench").exists()
+
+
+def test_texts_that_are_none_are_named(tmp_path: Path) -> None:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    path = tmp_path / "a.parquet"
+    write_published([row(episode=0)], SETTINGS, path)
+    table = parquet.read_table(path)
+    broken = pa.Array.from_buffers(pa.string(), 1, pa.array([b"\xff"]).buffers())
+    place = table.schema.names.index("because")
+    parquet.write_table(table.set_column(place, "because", broken), path)
+    with pytest.raises(BenchError, match=r"a\.parquet: cannot be read"):
+        list(read_published(path, SETTINGS))
+
+
 def test_a_failure_hides_no_finished_episode(tmp_path: Path) -> None:
     write_published([row(episode=0, completed=True)], SETTINGS, tmp_path / "data" / "a.parquet")
     own = Ledger(tmp_path / "bench", SETTINGS)

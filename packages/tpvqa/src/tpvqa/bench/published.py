@@ -12,11 +12,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.agreeing import Place, Placed
+from tpvqa.bench.row import EpisodeRow, row_fault
 from tpvqa.bench.told_object import told_object, told_texts
 from tpvqa.errors import BenchError, MissingExtraError, cut
 from tpvqa.files import read_plain, write_whole
-from tpvqa.told import first_fault
 
 LEFT_OUT = ("seconds", "answers", "decisions")
 """Fields that are not kept."""
@@ -72,6 +72,11 @@ def write_published(
 
 
 def read_published(path: Path, settings: Mapping[str, Any]) -> Iterator[EpisodeRow]:
+    """The same as `placed_rows`, without their places."""
+    return (row for _, row in placed_rows(path, settings))
+
+
+def placed_rows(path: Path, settings: Mapping[str, Any]) -> Iterator[Placed]:
     """Read the rows of a file, or of all Parquet files in a folder.
 
     Args:
@@ -161,19 +166,23 @@ class _Opened:
                 f"{file}: damaged ({error}). Name another file of published rows"
             ) from None
 
-    def rows(self) -> Iterator[EpisodeRow]:
+    def rows(self) -> Iterator[Placed]:
         """The rows, as they stand in it."""
         try:
             table = self._table.read()
+            table.validate(full=True)  # texts are UTF-8
         except (OSError, self._pa.ArrowException) as error:
             raise self._unread(error) from error
-        try:
-            for batch in table.to_batches(10_000):
-                yield from map(EpisodeRow.model_validate, batch.to_pylist())
-        except ValidationError as error:
-            raise BenchError(
-                f"{self._file}: not rows of this version ({first_fault(error)['msg']})"
-            ) from None
+        values = (each for batch in table.to_batches(10_000) for each in batch.to_pylist())
+        for number, value in enumerate(values, 1):
+            place = Place(self._file, number, published=True)
+            try:
+                yield place, EpisodeRow.model_validate(value)
+            except ValidationError as error:
+                raise BenchError(
+                    f"{place}: not a row of this version ({row_fault(error)}). "
+                    "Name another file of published rows"
+                ) from None
 
     def _unread(self, error: Exception) -> BenchError:
         said = getattr(error, "strerror", None) or str(error) or type(error).__name__

@@ -2,11 +2,11 @@
 
 from typing import Annotated
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, ValidationError
 
 from tpvqa.bench.cell import Cell
 from tpvqa.events.events import BELIEVED
-from tpvqa.told import ToldModel
+from tpvqa.told import ToldModel, first_fault
 
 Count = Annotated[int, Field(ge=0)]
 
@@ -89,3 +89,9 @@ class EpisodeRow(ToldModel):
         if self.believed_goal:
             return BELIEVED
         return self.because
+
+
+def row_fault(error: ValidationError) -> str:
+    """What is wrong with something that is no row, and with which field of it."""
+    first = first_fault(error)
+    return ": ".join(filter(None, (".".join(map(str, first["loc"])), first["msg"])))
