@@ -104,3 +104,30 @@ def test_a_row_of_impossible_numbers_is_named(tmp_path: Path, name: str, value: 
         file.write(f"{json.dumps(told)}\n")
     with pytest.raises(BenchError, match=rf"episodes\.jsonl:2: .*{name}.*greater than or equal"):
         Ledger(tmp_path, {})
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"questions": 2**63},
+        {"prompt_tokens": 10**40},
+        {"answers": {"effect|on|1|yes|0.90": 3 * 10**9}},
+        {"answers": {"effect|on|1|perhaps|0.90": 1}},
+        {"answers": {"effect|on|1|yes|nan": 1}},
+        {"answers": {"effect|on|2|yes|0.90": 1}},
+        {"answers": {"garbage": 1}},
+        {"decisions": {"before|1|1": 10**25}},
+        {"decisions": {"before|1": 1}},
+        {"goal": 7.0},
+        {"goal": float("nan")},
+        {"trust": float("inf")},
+        {"completed": True, "believed_goal": False},
+        {"completed": False, "believed_goal": True, "reached": True},
+    ],
+)
+def test_a_row_of_what_cannot_be_is_named(tmp_path: Path, told: dict[str, object]) -> None:
+    Ledger(tmp_path, {}).close()
+    line = json.dumps(json.loads(row(episode=0).model_dump_json()) | told)
+    (tmp_path / ROWS).write_text(f"{line}\n")
+    with pytest.raises(BenchError, match=r"episodes\.jsonl:1: not a row of this version"):
+        Ledger(tmp_path, {})

@@ -79,6 +79,7 @@ def rows(
             seed=0,
             episode=number,
             completed=done,
+            believed_goal=done,
             because="goal" if done else "limit of actions",
             questions=questions,
             actions=actions,

@@ -382,9 +382,10 @@ class TestRunning:
         bench = self.bench("blind:1", vlms=["oracle:0.8"])
         run_belief_bench(bench, tmp_path / "a", only_tables=True)
         (tmp_path / "a" / name).write_text(text)
-        other = {"bench.json": {"rivals_from": tmp_path / "a"}}.get(name, {})
+        rivals = tmp_path / "a" if name == "bench.json" else None
+        folder = tmp_path / ("a" if rivals is None else "b")
         with pytest.raises(BenchError, match=rf"{name}: damaged"):
-            run_belief_bench(bench, tmp_path / ("b" if other else "a"), only_tables=True, **other)
+            run_belief_bench(bench, folder, only_tables=True, rivals_from=rivals)
 
     def test_a_monitor_that_no_part_has(self, tmp_path: Path) -> None:
         with pytest.raises(UnknownNameError, match="Did you mean 'lead:2'"):

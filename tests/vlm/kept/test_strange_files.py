@@ -139,7 +139,8 @@ def test_counting_refuses_it_in_a_sentence(statement: str, good: Path, tmp_path:
 def test_what_is_no_answer_is_neither_counted_nor_exported(
     statement: str, good: Path, tmp_path: Path
 ) -> None:
-    path, given = tmp_path / "answers.db", []
+    path = tmp_path / "answers.db"
+    given: list[object] = []
     shutil.copy(good, path)
     changed(f"UPDATE answers SET {statement} WHERE id = 40")(path)
     with pytest.raises(CacheError, match="damaged"):
