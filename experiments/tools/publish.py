@@ -10,7 +10,6 @@ those of any bench one file.
 """
 
 import argparse
-import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -21,6 +20,7 @@ from tpvqa.bench.engine import TASKS
 from tpvqa.bench.ledger import ROWS, SETTINGS, Ledger, merged
 from tpvqa.bench.published import read_published, tasks_of, write_published
 from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.told_object import read_object
 from tpvqa.errors import BenchError, TpvqaError
 from tpvqa_experiments.belief import Part
 from tpvqa_experiments.belief.parts import Extent
@@ -68,8 +68,7 @@ def _write(
 def _tasks(folders: Sequence[Path], published: Path) -> dict[str, str]:
     found = tasks_of(published) if published.exists() else {}
     for folder in folders:
-        path = folder / TASKS
-        here = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        here = read_object(folder / TASKS) or {}
         for name in found.keys() & here.keys():
             if found[name] != here[name]:
                 raise BenchError(
@@ -80,11 +79,11 @@ def _tasks(folders: Sequence[Path], published: Path) -> dict[str, str]:
 
 
 def _settings(folders: Sequence[Path]) -> dict[str, Any]:
-    for folder in folders:
-        if not (folder / SETTINGS).is_file() or not (folder / ROWS).is_file():
+    found = [read_object(folder / SETTINGS) for folder in folders]
+    for folder, settings in zip(folders, found, strict=True):
+        if settings is None or not (folder / ROWS).is_file():
             raise BenchError(f"{folder} holds no bench. Name one that a `tpvqa bench` has filled")
-    found: dict[str, Any] = json.loads((folders[0] / SETTINGS).read_text(encoding="utf-8"))
-    return found
+    return found[0] or {}
 
 
 def _all(folders: Sequence[Path], settings: Mapping[str, Any], out: Path) -> Iterator[EpisodeRow]:

@@ -17,6 +17,7 @@ from tpvqa.bench.statistics import wilson
 from tpvqa.bench.style import styles
 from tpvqa.bench.summary import summaries
 from tpvqa.cli.bench_tables import print_results
+from tpvqa.errors import WriteError
 
 MONITORS = ("tpvqa", "tpvqa:strict", "effectvqa", "palmevqa", "successvqa", "belief", "tp")
 EPISODES = 20
@@ -96,6 +97,17 @@ def test_no_figure_is_left_open_however_many_tables_there_are(
     write_bench_report(tmp_path, Results({}, cells))
     assert pyplot.get_fignums() == before
     assert not [each for each in recwarn if "figures" in str(each.message)]
+
+
+def test_a_link_in_the_place_of_the_figures_is_not_followed(tmp_path: Path) -> None:
+    elsewhere, folder = tmp_path / "elsewhere", tmp_path / "bench"
+    elsewhere.mkdir()
+    folder.mkdir()
+    (folder / "figures").symlink_to(elsewhere)
+    cells = {Cell("eat", "tp", "oracle:0.8", "symbolic"): [row(completed=True)]}
+    with pytest.raises(WriteError, match=r"figures is a link.*Remove what lies there"):
+        write_bench_report(folder, Results({}, cells))
+    assert not any(elsewhere.iterdir())
 
 
 def test_bars_have_intervals_and_figures() -> None:

@@ -1,13 +1,15 @@
 """Finished episodes on disk: never run again, never lost, never mixed with others."""
 
 import json
+import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.bench.test_statistics import row
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.ledger import ROWS, Ledger
+from tpvqa.bench.ledger import ROWS, SETTINGS, Ledger
 from tpvqa.errors import BenchError
 
 CELL = Cell("t", "m", "v", "w")
@@ -55,6 +57,23 @@ def test_a_bench_with_other_settings_is_not_mixed_in(tmp_path: Path) -> None:
         Ledger(tmp_path, {"seed": 1, "failure": 0.25})
 
 
+@pytest.mark.parametrize("text", ["", "[]", '"x"', "[" * 200_000, '{"seed": 0, "seed": 0}'])
+def test_settings_that_are_none_are_named(tmp_path: Path, text: str) -> None:
+    (tmp_path / SETTINGS).write_text(text)
+    with pytest.raises(BenchError, match=r"bench\.json: damaged .*Remove the folder"):
+        Ledger(tmp_path, {"seed": 0})
+
+
+@pytest.mark.parametrize("make", [Path.mkdir, os.mkfifo, lambda path: path.symlink_to("other")])
+def test_settings_that_are_no_plain_file_are_named(
+    tmp_path: Path, make: Callable[[Path], None]
+) -> None:
+    (tmp_path / "other").write_text('{"seed": 0}')
+    make(tmp_path / SETTINGS)
+    with pytest.raises(BenchError, match=r"bench\.json: damaged .*plain file is expected"):
+        Ledger(tmp_path, {"seed": 0})
+
+
 def test_two_benches_never_write_one_folder(tmp_path: Path) -> None:
     first = Ledger(tmp_path, {})
     with pytest.raises(BenchError, match="another bench is at work"):
@@ -84,4 +103,31 @@ def test_a_row_of_impossible_numbers_is_named(tmp_path: Path, name: str, value: 
     with (tmp_path / ROWS).open("a") as file:
         file.write(f"{json.dumps(told)}\n")
     with pytest.raises(BenchError, match=rf"episodes\.jsonl:2: .*{name}.*greater than or equal"):
+        Ledger(tmp_path, {})
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"questions": 2**63},
+        {"prompt_tokens": 10**40},
+        {"answers": {"effect|on|1|yes|0.90": 3 * 10**9}},
+        {"answers": {"effect|on|1|perhaps|0.90": 1}},
+        {"answers": {"effect|on|1|yes|nan": 1}},
+        {"answers": {"effect|on|2|yes|0.90": 1}},
+        {"answers": {"garbage": 1}},
+        {"decisions": {"before|1|1": 10**25}},
+        {"decisions": {"before|1": 1}},
+        {"goal": 7.0},
+        {"goal": float("nan")},
+        {"trust": float("inf")},
+        {"completed": True, "believed_goal": False},
+        {"completed": False, "believed_goal": True, "reached": True},
+    ],
+)
+def test_a_row_of_what_cannot_be_is_named(tmp_path: Path, told: dict[str, object]) -> None:
+    Ledger(tmp_path, {}).close()
+    line = json.dumps(json.loads(row(episode=0).model_dump_json()) | told)
+    (tmp_path / ROWS).write_text(f"{line}\n")
+    with pytest.raises(BenchError, match=r"episodes\.jsonl:1: not a row of this version"):
         Ledger(tmp_path, {})

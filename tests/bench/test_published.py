@@ -1,5 +1,6 @@
 """Rows for others: the same after reading, of the same bench only, and taken for finished."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,13 @@ from hypothesis import strategies as st
 from tests.bench.test_statistics import row
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.ledger import Ledger
-from tpvqa.bench.published import LEFT_OUT, read_published, write_published
+from tpvqa.bench.published import (
+    LEFT_OUT,
+    read_published,
+    tasks_of,
+    version_of,
+    write_published,
+)
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.errors import BenchError
 
@@ -28,7 +35,8 @@ def _rows(draw: st.DrawFn) -> list[EpisodeRow]:
             condition=draw(st.sampled_from(["", "failure=0.1"])),
             seed=0,
             episode=number,
-            completed=draw(st.booleans()),
+            completed=(completed := draw(st.booleans())),
+            believed_goal=completed or draw(st.booleans()),
             because=draw(st.text(max_size=9)),
             questions=draw(counts),
             actions=draw(counts),
@@ -85,6 +93,75 @@ def test_another_table_is_named(tmp_path: Path) -> None:
     parquet.write_table(pa.table({"a": [1]}), tmp_path / "a.parquet")
     with pytest.raises(BenchError, match="does not say which bench"):
         list(read_published(tmp_path / "a.parquet", SETTINGS))
+
+
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.parquet")
+    for path in (tmp_path, tmp_path / "a.parquet"):
+        with pytest.raises(BenchError, match=r"a\.parquet: cannot be read .*a plain file"):
+            list(read_published(path, SETTINGS))
+        with pytest.raises(BenchError, match=r"a\.parquet: cannot be read"):
+            version_of(path)
+
+
+@pytest.mark.parametrize("name", [b"tpvqa.bench", b"tpvqa.tasks"])
+@pytest.mark.parametrize("told", [b"{nope", b"[1, 2]", b"\xff\xfe{", b"[" * 100_000, b"zz"])
+def test_what_it_says_of_itself_is_read_before_anything_is_made(
+    tmp_path: Path, name: bytes, told: bytes
+) -> None:
+    from pyarrow import parquet
+
+    path = tmp_path / "a.parquet"
+    write_published([row(episode=0)], SETTINGS, path)
+    table = parquet.read_table(path)
+    changed = table.replace_schema_metadata({**table.schema.metadata, name: told})
+    parquet.write_table(changed, path)
+    for read in (version_of, tasks_of, lambda path: Ledger(tmp_path / "bench", SETTINGS, path)):
+        with pytest.raises(BenchError, match=r"a\.parquet: damaged"):
+            read(path)
+    assert not (tmp_path / "bench").exists()
+
+
+def test_rows_that_contradict_each_other_are_named_before_anything_is_made(tmp_path: Path) -> None:
+    data, cell = tmp_path / "data", Cell("t", "m", "v", "w")
+    rows = [row(episode=k, actions=5) for k in range(3)]
+    write_published(rows, SETTINGS, data / "a.parquet")
+    write_published([rows[1]], SETTINGS, data / "b.parquet")  # says the same
+    ledger = Ledger(tmp_path / "bench", SETTINGS, data)
+    assert ledger.missing(cell, 3) == []
+    ledger.add([row(episode=0, actions=5, seconds=2.0, answers={"effect|on|1|yes|": 3})])
+    ledger.close()
+    Ledger(tmp_path / "bench", SETTINGS, data).close()  # its own say more, and the same
+    write_published([rows[0], row(episode=1, actions=6)], SETTINGS, data / "b.parquet")
+    said = r"b\.parquet, row 2: says something else than .*a\.parquet, row 2 of the same episode"
+    with pytest.raises(BenchError, match=said):
+        Ledger(tmp_path / "other", SETTINGS, data)
+    assert not (tmp_path / "other").exists()
+    (data / "b.parquet").unlink()
+    write_published([row(episode=0, actions=7)], SETTINGS, data / "a.parquet")
+    with pytest.raises(BenchError, match=r"episodes\.jsonl:1: says .*a\.parquet, row 1 of"):
+        Ledger(tmp_path / "bench", SETTINGS, data)
+
+
+def test_rows_of_another_seed_than_they_say_are_named(tmp_path: Path) -> None:
+    write_published([row(episode=0), row(episode=1, seed=9)], SETTINGS, tmp_path / "a.parquet")
+    with pytest.raises(BenchError, match=r"a\.parquet, row 2: is of the seed 9, .* of 0"):
+        Ledger(tmp_path / "bench", SETTINGS, tmp_path / "a.parquet")
+    assert not (tmp_path / "bench").exists()
+
+
+def test_texts_that_are_none_are_named(tmp_path: Path) -> None:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    path = tmp_path / "a.parquet"
+    write_published([row(episode=0)], SETTINGS, path)
+    table = parquet.read_table(path)
+    broken = pa.Array.from_buffers(pa.string(), 1, pa.array([b"\xff"]).buffers())
+    place = table.schema.names.index("because")
+    parquet.write_table(table.set_column(place, "because", broken), path)
+    with pytest.raises(BenchError, match=r"a\.parquet: cannot be read"):
+        list(read_published(path, SETTINGS))
 
 
 def test_a_failure_hides_no_finished_episode(tmp_path: Path) -> None:

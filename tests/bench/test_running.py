@@ -203,6 +203,17 @@ def test_one_broken_episode_is_recorded_and_the_rest_go_on(
     assert (rows[2].completed, rows[2].ending) == (False, "error")
 
 
+def test_an_episode_that_no_row_can_tell_is_an_error_and_the_rest_go_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    told = iter([7.0, None])
+    monkeypatch.setattr("tpvqa.bench.stage.goal_probability_of", lambda monitor: next(told))
+    here = stage("clean_dishes")
+    broken, whole = (here.run(CELLS[1], TrialConfig(seed=3), number) for number in range(2))
+    assert "goal" in broken.error
+    assert not whole.error
+
+
 def test_cells_that_a_recording_cannot_fill_stay_empty() -> None:
     bench = PaperBench(tasks=["clean_dishes"], vlms=["recorded:internvl3-8b", "paper-table"])
     cells = [(cell.vlm, cell.monitor) for cell in bench.cells() if not cell.condition]

@@ -12,7 +12,7 @@ from tpvqa.bench.ledger import ROWS, SETTINGS, Ledger
 from tpvqa.bench.own_task import OwnTask, own_tasks
 from tpvqa.bench.stated_risk import FOLDER, OTHER_SEEDS, learnt
 from tpvqa.config import TrialConfig
-from tpvqa.errors import BenchError, PluginError
+from tpvqa.errors import BenchError, PluginError, WriteError
 
 DRAWER = Path(__file__).parents[1] / "fixtures" / "drawer"
 HASTY = "belief:failure=3:question=0.4"
@@ -102,6 +102,19 @@ def test_what_cannot_be_stated_is_told_before_anything_runs(
     with pytest.raises(BenchError, match=said):
         run_bench(bench, tmp_path / "bench")
     assert not (tmp_path / "bench").exists()
+
+
+def test_a_link_in_the_place_of_their_folder_is_not_followed(
+    own: dict[str, OwnTask], tmp_path: Path
+) -> None:
+    folder, elsewhere = tmp_path / "bench", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.mkdir()
+    (folder / FOLDER).symlink_to(elsewhere)
+    cells = {cell_of(own, "belief:risk=.05"): 1}
+    with pytest.raises(WriteError, match="risk is a link"):
+        run_bench(Bench(wanted=cells, own=own, risk_trials=RISK_TRIALS), folder)
+    assert not any(elsewhere.iterdir())
 
 
 @pytest.mark.parametrize("risk", ["2", "0", "much", ""])

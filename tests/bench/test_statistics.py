@@ -35,7 +35,8 @@ def test_mcnemars_test_counts_only_where_the_monitors_differ() -> None:
 
 def row(**figures: object) -> EpisodeRow:
     base = {"task": "t", "monitor": "m", "vlm": "v", "world": "w", "seed": 0, "episode": 0}
-    return EpisodeRow.model_validate({**base, **figures})
+    believed = {"believed_goal": figures.get("completed", False)}
+    return EpisodeRow.model_validate({**base, **believed, **figures})
 
 
 def test_tighter_limits_take_completions_away_one_by_one() -> None:

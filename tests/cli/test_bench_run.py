@@ -289,6 +289,16 @@ def test_a_file_in_the_place_of_the_folder_is_told_as_what_cannot_be_written(
     assert f"{out}: cannot be written (plain is no folder). Name another folder" in err
 
 
+@pytest.mark.parametrize("name", ["bench.json", "tasks.json"])
+@pytest.mark.parametrize("text", ["[]", "[" * 200_000])
+def test_a_damaged_folder_is_told_as_one(tpvqa: Run, name: str, text: str) -> None:
+    Path("b").mkdir()
+    Path("b", name).write_text(text)
+    code, _, err = tpvqa("bench", "run", *OWN, *QUICK, "--episodes", 1, "--out", "b")
+    assert code == 2
+    assert f"b/{name}: damaged" in err
+
+
 def test_the_core_alone_has_run_and_says_where_the_others_are(
     tpvqa: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

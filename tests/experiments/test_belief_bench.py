@@ -20,7 +20,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.schedule import batches
 from tpvqa.bench.stage import run_each
 from tpvqa.config import SimulationConfig, TrialConfig
-from tpvqa.errors import BenchError, CalibrationError
+from tpvqa.errors import BenchError, CalibrationError, WriteError
 from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 from tpvqa_experiments.belief import BeliefBench, BeliefResults, Part, run_belief_bench
@@ -79,6 +79,7 @@ def rows(
             seed=0,
             episode=number,
             completed=done,
+            believed_goal=done,
             because="goal" if done else "limit of actions",
             questions=questions,
             actions=actions,
@@ -225,6 +226,17 @@ def test_a_condition_sets_the_true_rates_and_is_kept(tmp_path: Path) -> None:
     assert ledger.missing(cell, 1) == []
     assert ledger.missing(replace(cell, condition=""), 1) == [0]
     ledger.close()
+
+
+@pytest.mark.parametrize("name", ["calibrations", "figures"])
+def test_links_in_the_places_of_its_folders_are_not_followed(tmp_path: Path, name: str) -> None:
+    folder, elsewhere = tmp_path / "bench", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.mkdir()
+    (folder / name).symlink_to(elsewhere)
+    with pytest.raises(WriteError, match=f"{name} is a link"):
+        run_belief_bench(bench(episodes=1), folder, only_tables=name == "figures")
+    assert not any(elsewhere.iterdir())
 
 
 def test_what_is_learned_is_carried_through_a_run_of_episodes_and_no_further() -> None:

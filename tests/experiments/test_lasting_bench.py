@@ -376,6 +376,17 @@ class TestRunning:
             run_belief_bench(other, tmp_path / "b", rivals_from=tmp_path / "a")
         assert not (tmp_path / "b").exists()
 
+    @pytest.mark.parametrize("name", ["bench.json", "taken_over.json", "speed.json"])
+    @pytest.mark.parametrize("text", ["[]", "[" * 200_000])
+    def test_a_damaged_file_is_named(self, tmp_path: Path, name: str, text: str) -> None:
+        bench = self.bench("blind:1", vlms=["oracle:0.8"])
+        run_belief_bench(bench, tmp_path / "a", only_tables=True)
+        (tmp_path / "a" / name).write_text(text)
+        rivals = tmp_path / "a" if name == "bench.json" else None
+        folder = tmp_path / ("a" if rivals is None else "b")
+        with pytest.raises(BenchError, match=rf"{name}: damaged"):
+            run_belief_bench(bench, folder, only_tables=True, rivals_from=rivals)
+
     def test_a_monitor_that_no_part_has(self, tmp_path: Path) -> None:
         with pytest.raises(UnknownNameError, match="Did you mean 'lead:2'"):
             run_belief_bench(self.bench("laed:2"), tmp_path / "x")

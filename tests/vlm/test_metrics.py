@@ -1,5 +1,7 @@
 """Figures over answers, against definitions written out."""
 
+from dataclasses import astuple, replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -41,6 +43,27 @@ def test_nothing_to_count_is_none_and_not_zero() -> None:
     assert found.accuracy is None
     assert found.auroc is None
     assert found.calibration_error is None
+
+
+_ROWS = st.builds(
+    Scored,
+    reply=st.sampled_from(Reply),
+    truth=st.booleans(),
+    p_yes=st.none() | st.sampled_from([0.0, 0.1, 0.5, 1.0]),
+    visible=st.booleans(),
+    hard=st.booleans(),
+    count=st.integers(1, 4),
+)
+
+
+@given(st.lists(_ROWS, max_size=8))
+def test_a_count_is_worth_so_many_rows(rows: list[Scored]) -> None:
+    each = [replace(row, count=1) for row in rows for _ in range(row.count)]
+    assert astuple(measure(rows)) == pytest.approx(astuple(measure(each)), nan_ok=True)
+
+
+def test_a_billion_answers_take_no_room() -> None:
+    assert measure([replace(row(Reply.YES, True), count=10**9)] * 2).visible == 2 * 10**9
 
 
 @given(st.lists(st.tuples(st.integers(0, 5), st.booleans()), min_size=1, max_size=30))

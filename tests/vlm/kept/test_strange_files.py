@@ -118,6 +118,7 @@ def test_it_is_refused_in_a_sentence(name: str, good: Path, tmp_path: Path) -> N
         f"UPDATE models SET parameters = '{'[' * 100_000}'",
         "UPDATE answers SET at = 9223372036854775807",
         "UPDATE answers SET at = -1",
+        "UPDATE answers SET seconds = 1e308",
     ],
 )
 def test_counting_refuses_it_in_a_sentence(statement: str, good: Path, tmp_path: Path) -> None:
@@ -129,6 +130,24 @@ def test_counting_refuses_it_in_a_sentence(statement: str, good: Path, tmp_path:
     if "models" in statement:
         with pytest.raises(CacheError, match="damaged"):
             list(exported(path))
+
+
+@pytest.mark.parametrize(
+    "statement",
+    ["p_yes = 9e999", "p_yes = 2", "leftover = -1", "reply = 'YES'", "seconds = 9e999"],
+)
+def test_what_is_no_answer_is_neither_counted_nor_exported(
+    statement: str, good: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "answers.db"
+    given: list[object] = []
+    shutil.copy(good, path)
+    changed(f"UPDATE answers SET {statement} WHERE id = 40")(path)
+    with pytest.raises(CacheError, match="damaged"):
+        given.extend(exported(path))
+    assert not given
+    with pytest.raises(CacheError, match="damaged"):
+        stats(path)
 
 
 @pytest.mark.parametrize("name", ["no database", "another program's", "a trigger", "a folder"])
@@ -177,6 +196,17 @@ def test_a_file_that_a_kill_left_empty_is_begun(tmp_path: Path) -> None:
     path.touch()
     keeping(path, Use.RECORD, Coin()).ask(seen(1), [FRIDGE])
     assert stats(path).answers == 1
+
+
+def test_a_link_to_nothing_is_refused_and_nothing_made(tmp_path: Path) -> None:
+    path, elsewhere = tmp_path / "answers.db", tmp_path / "elsewhere.db"
+    path.symlink_to(elsewhere)
+    with pytest.raises(CacheError, match="a link to a file that is not there"):
+        keeping(path, Use.CACHE, Coin())
+    assert not elsewhere.exists()
+    elsewhere.touch()
+    keeping(path, Use.CACHE, Coin()).ask(seen(1), [FRIDGE])
+    assert stats(elsewhere).answers == 1
 
 
 def test_a_name_with_signs_of_addresses_is_a_name(tmp_path: Path) -> None:

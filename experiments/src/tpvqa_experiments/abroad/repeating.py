@@ -77,7 +77,7 @@ def repeating(here: Stage, cell: Cell, common: TrialConfig, episode: int) -> Epi
         believed = known.task.goal_holds(known.state)
     return EpisodeRow(
         **row,
-        completed=completed,
+        completed=completed and believed,
         because="goal" if believed else "limit of actions" if plan else "no plan",
         believed_goal=believed,
         actions=actions,

@@ -1,6 +1,5 @@
 """Runs the belief bench: calibrations first, then every missing episode, then the tables."""
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +9,7 @@ from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.published import version_of
+from tpvqa.bench.told_object import read_object
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, UnknownNameError
 from tpvqa.tasks import find_task
@@ -196,10 +196,8 @@ def _told(cell: Cell, calibration: Calibration) -> Calibration:
 
 def _speed(path: Path) -> Mapping[str, float]:
     """What `benchmarks/belief.py --out` measured, where it was run for this bench."""
-    if not path.exists():
-        return {}
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-        return {str(name): float(value) for name, value in found.items()}
-    except (OSError, ValueError, TypeError, AttributeError) as error:
-        raise BenchError(f"{path}: damaged ({error}). Measure again, or remove it") from error
+    remedy = "Measure again, or remove it"
+    found = read_object(path, remedy=remedy) or {}
+    if not all(isinstance(value, int | float) for value in found.values()):
+        raise BenchError(f"{path}: damaged (it holds no names with numbers). {remedy}")
+    return found

@@ -11,6 +11,7 @@ from tpvqa.belief.calibrating.labelled_answer import LabelledAnswer
 from tpvqa.belief.calibrating.own_words import OwnWords
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.condition import RATES, settings_of
+from tpvqa.bench.folders import folder_within
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.labelled_recordings import label_recordings
 from tpvqa.bench.own_task import OwnTask
@@ -110,6 +111,7 @@ def calibrations(
         if path.exists():
             found[source] = Calibration.load(path)
             continue
+        folder_within(folder.parent, folder.name)  # which is seen before the trials, not after
         looking = looks(source.vlm)
         monitor = LOOKING if looking else SURVEY
         cell = Cell(source.task, monitor, source.vlm, source.world, source.faults)

@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from tpvqa.bench.figures import close, saved
+from tpvqa.bench.folders import folder_within
+from tpvqa.bench.ledger import REMEDY
 from tpvqa.bench.summary import summarise
 from tpvqa.bench.tables import write_table
-from tpvqa.errors import BenchError
+from tpvqa.files import write_whole
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.figures import draw
 from tpvqa_experiments.belief.lasting_tables import lasting_markdown, lasting_rows
@@ -30,7 +32,7 @@ def write_results(folder: Path, results: BeliefResults, extent: Extent) -> list[
 
     Raises:
         MissingExtraError: PyArrow or Matplotlib is not installed.
-        BenchError: The folder cannot be written to.
+        WriteError: The folder cannot be written to.
     """
     write_table(folder, "summary", summary_rows(results))
     write_table(folder, "episodes", list(_episodes(results)))
@@ -43,9 +45,10 @@ def write_results(folder: Path, results: BeliefResults, extent: Extent) -> list[
         _write(folder / LASTING, lasting_markdown(results, extent, lasting))
         _write(folder / "lasting.json", json.dumps(rows, indent=1) + "\n")
     _write(folder / "belief.md", results_markdown(results, extent))
+    beside = folder_within(folder, "figures")
     for name, figure in draw(results, extent).items():
         for kind in ("svg", "png"):
-            _write(folder / "figures" / f"{name}.{kind}", saved(figure, kind))
+            write_whole(beside / f"{name}.{kind}", saved(figure, kind), remedy=REMEDY)
         close(figure)
     return checks
 
@@ -67,11 +70,5 @@ def _episodes(results: BeliefResults) -> Iterator[dict[str, Any]]:
             yield values
 
 
-def _write(path: Path, content: str | bytes) -> None:
-    temporary = path.with_name(path.name + ".part")
-    try:
-        path.parent.mkdir(exist_ok=True)
-        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
-        temporary.replace(path)
-    except OSError as error:
-        raise BenchError(f"{path}: cannot be written ({error})") from error
+def _write(path: Path, text: str) -> None:
+    write_whole(path, text.encode(), remedy=REMEDY)

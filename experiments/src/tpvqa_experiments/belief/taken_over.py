@@ -11,6 +11,7 @@ from typing import Any
 
 from tpvqa.bench.ledger import REMEDY, ROWS, SETTINGS, Ledger
 from tpvqa.bench.published import differences
+from tpvqa.bench.told_object import read_object
 from tpvqa.errors import BenchError
 from tpvqa.files import write_whole
 from tpvqa_experiments.belief.parts import believes
@@ -40,12 +41,9 @@ def take_over(source: Path, folder: Path, settings: Mapping[str, Any]) -> int:
     Raises:
         BenchError: No bench lies there, or one with another seed, other rates of faults or limits.
     """
-    if not (source / SETTINGS).is_file() or not (source / ROWS).is_file():
+    there = read_object(source / SETTINGS, remedy="Name another folder")
+    if there is None or not (source / ROWS).is_file():
         raise BenchError(f"{source} holds no bench. Name a folder of `tpvqa bench belief`")
-    try:
-        there = json.loads((source / SETTINGS).read_text(encoding="utf-8"))
-    except ValueError:
-        raise BenchError(f"{source / SETTINGS}: damaged. Name another folder") from None
     changed = differences(_of_all(there), _of_all(settings))
     if changed:
         raise BenchError(
@@ -64,8 +62,9 @@ def take_over(source: Path, folder: Path, settings: Mapping[str, Any]) -> int:
         ours.add(new)
     finally:
         ours.close()
-    if new and there["version"] != settings["version"]:
-        told = {**taken_over(folder), "rivals of version": there["version"]}
+    version = there.get("version")
+    if new and version != settings["version"]:
+        told = {**taken_over(folder), "rivals of version": version}
         write_whole(folder / NOTE, f"{json.dumps(told)}\n".encode(), remedy=REMEDY)
     return len(new)
 
@@ -76,11 +75,7 @@ def taken_over(folder: Path) -> dict[str, Any]:
     Raises:
         BenchError: The note is damaged.
     """
-    path = folder / NOTE
-    try:
-        return dict(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else {}
-    except ValueError:
-        raise BenchError(f"{path}: damaged. Remove it, or name another folder") from None
+    return read_object(folder / NOTE, remedy="Remove it, or name another folder") or {}
 
 
 def _of_all(settings: Mapping[str, Any]) -> dict[str, Any]:

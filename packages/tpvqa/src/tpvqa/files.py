@@ -66,25 +66,36 @@ def opened_plain(path: Path | str) -> Iterator[int]:
         os.close(descriptor)
 
 
-def read_plain(path: Path | str, *, most: int = 64 * 2**20) -> bytes:
-    """What a plain file that the user names holds; it may be a link to one.
+def read_plain(path: Path | str, *, most: int = 64 * 2**20, follow: bool = True) -> bytes:
+    """What a plain file holds.
+
+    Args:
+        path: The file.
+        most: So many bytes are read at most.
+        follow: Whether it may be a link: where the user names it.
 
     Raises:
         OSError: It cannot be read, is no plain file, or has more bytes than `most`.
     """
-    with os.fdopen(open_plain(path, os.O_RDONLY, follow=True), "rb") as file:
+    with os.fdopen(open_plain(path, os.O_RDONLY, follow=follow), "rb") as file:
         data = file.read(most + 1)
     if len(data) > most:
         raise OSError(errno.EFBIG, f"it has more than {most:,} bytes")
     return data
 
 
-def make_folder(path: Path) -> None:
+def make_folder(path: Path, *, follow: bool = True) -> None:
     """Make a folder with those above it, where it is not there.
+
+    Args:
+        path: The folder.
+        follow: Whether it may be a link: where the user names it, and not one above it.
 
     Raises:
         OSError: It cannot be made, or a file lies in the place of one of them.
     """
+    if not follow and path.is_symlink():
+        raise NotADirectoryError(errno.ENOTDIR, f"{path} is a link, where a folder is expected")
     try:
         path.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):

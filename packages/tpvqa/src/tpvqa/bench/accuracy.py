@@ -4,9 +4,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.row import EpisodeRow, split_answers
 from tpvqa.questions import Way
-from tpvqa.vlm import Reply
 from tpvqa.vlm.metrics import Metrics, Scored, measure
 
 
@@ -33,15 +32,16 @@ def answers_of(rows: Iterable[EpisodeRow], way: Way) -> Metrics | None:
     """Figures over the answers that were given in one way of asking; None without any."""
     counts: Counter[str] = Counter()
     for row in rows:
-        counts.update({key: n for key, n in row.answers.items() if key.startswith(f"{way}|")})
+        given = {key: n for key, n in row.answers.items() if n and key.startswith(f"{way}|")}
+        counts.update(given)
     scored = list(_scored(counts))
     return measure(scored) if scored else None
 
 
 def _scored(counts: Mapping[str, int]) -> Iterator[Scored]:
     for key, count in counts.items():
-        _, _, truth, reply, p_yes = key.split("|")
-        yield from [Scored(Reply(reply), truth == "1", float(p_yes) if p_yes else None)] * count
+        _, _, truth, reply, p_yes = split_answers(key)
+        yield Scored(reply, truth, p_yes, count=count)
 
 
 def decisions_of(rows: Iterable[EpisodeRow], when: str) -> Decisions | None:

@@ -15,6 +15,7 @@ from tpvqa.bench.published import tasks_of
 from tpvqa.bench.schedule import run_all
 from tpvqa.bench.settings import common_settings
 from tpvqa.bench.stated_risk import TRIALS, bounds, check_risk
+from tpvqa.bench.told_object import read_object
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.files import write_whole
@@ -149,10 +150,7 @@ def _keep_tasks(folder: Path, bench: Bench, ran: set[str], published: Mapping[st
         BenchError: A task was run with other files.
     """
     path = folder / TASKS
-    try:
-        lie = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    except ValueError:
-        raise BenchError(f"{path}: damaged. Remove the folder, or name another") from None
+    lie = read_object(path) or {}
     there = {**published, **lie}
     here = {name: own.fingerprint for name, own in bench.own.items()}
     for task in {cell.task for cell in bench.wanted} & ({*there} | ran):

@@ -11,14 +11,15 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from tpvqa.bench.agreeing import Agreement, Place, Placed
 from tpvqa.bench.cell import Cell
-from tpvqa.bench.published import differences, read_published
-from tpvqa.bench.row import EpisodeRow
+from tpvqa.bench.published import differences, placed_rows
+from tpvqa.bench.row import EpisodeRow, row_fault
+from tpvqa.bench.told_object import read_object
 from tpvqa.episodes.log import LOG
 from tpvqa.episodes.own_files import BENCH
 from tpvqa.errors import BenchError, WriteError
 from tpvqa.files import make_folder, open_plain, write_all, write_whole
-from tpvqa.told import first_fault
 
 ROWS, SETTINGS = BENCH
 REMEDY = "Make room, and give the same command again: it goes on with what is finished"
@@ -34,12 +35,14 @@ class Ledger:
 
     Raises:
         BenchError: Another bench, or an episode, lies there, it is being written by another
-            process, or it is damaged.
+            process, or it is damaged; rows contradict each other.
         WriteError: The folder cannot be written to.
     """
 
     def __init__(self, folder: Path, settings: Mapping[str, Any], published: Path | None = None):
-        others = [] if published is None else list(read_published(published, settings))
+        agreement = Agreement(settings.get("seed"))
+        told = () if published is None else placed_rows(published, settings)
+        others = list(agreement.checked(told))  # before anything is made
         self.folder = Path(folder)
         if (self.folder / LOG).exists():
             raise BenchError(f"{folder} holds an episode; name another folder with --out")
@@ -55,15 +58,12 @@ class Ledger:
             self._file.close()
             raise BenchError(f"{folder}: another bench is at work there; wait for it") from None
         self._agree(dict(settings))
-        self.rows = merged(chain(others, self._read(settings.get("seed"))))
+        self.rows = merged(chain(others, agreement.checked(self._read())))
 
     def _agree(self, settings: dict[str, Any]) -> None:
         path = self.folder / SETTINGS
-        if path.exists():
-            try:
-                there = json.loads(path.read_text(encoding="utf-8"))
-            except ValueError:
-                raise BenchError(f"{path}: damaged. Remove the folder, or name another") from None
+        there = read_object(path)
+        if there is not None:
             changed = differences(there, settings)
             if changed:
                 raise BenchError(
@@ -73,37 +73,21 @@ class Ledger:
             return
         write_whole(path, f"{json.dumps(settings, indent=1)}\n".encode(), remedy=REMEDY)
 
-    def _read(self, seed: int | None) -> Iterator[EpisodeRow]:
+    def _read(self) -> Iterator[Placed]:
         self._file.seek(0)
         data = self._file.read()
         whole, _, torn = data.rpartition(b"\n")
         if torn:  # a kill in the middle of a line
             self._file.truncate(len(data) - len(torn))
-        finished: dict[tuple[Cell, int], tuple[int, EpisodeRow]] = {}
         for number, line in enumerate(whole.split(b"\n") if whole else [], 1):
+            place = Place(self.folder / ROWS, number)
             try:
-                row = EpisodeRow.model_validate_json(line)
+                yield place, EpisodeRow.model_validate_json(line)
             except ValidationError as error:
-                first = first_fault(error)
-                said = ": ".join(filter(None, (".".join(map(str, first["loc"])), first["msg"])))
                 raise BenchError(
-                    f"{self.folder / ROWS}:{number}: not a row of this version "
-                    f"({said}). Remove the folder, or name another"
+                    f"{place}: not a row of this version ({row_fault(error)}). "
+                    "Remove the folder, or name another"
                 ) from None
-            if seed is not None and row.seed != seed:
-                raise BenchError(
-                    f"{self.folder / ROWS}:{number}: is of the seed {row.seed}, and the bench of "
-                    f"{seed}. Remove the line, or name another folder"
-                )
-            if not row.error:
-                before, other = finished.setdefault((row.cell, row.episode), (number, row))
-                if not _agree_on(row, other):
-                    raise BenchError(
-                        f"{self.folder / ROWS}:{number}: says something else than line {before} "
-                        f"of the same episode ({row.task}, {row.monitor}, {row.vlm}, number "
-                        f"{row.episode}). Remove the line that is wrong, or name another folder"
-                    )
-            yield row
 
     def missing(self, cell: Cell, episodes: int) -> list[int]:
         """The numbers of a cell's episodes that are not finished; failed ones are tried again."""
@@ -140,11 +124,6 @@ class Ledger:
     def close(self) -> None:
         """Close the file. Can be called twice."""
         self._file.close()
-
-
-def _agree_on(one: EpisodeRow, other: EpisodeRow) -> bool:
-    """Whether two rows of an episode say the same of it; run twice, it takes other times."""
-    return one.model_copy(update={"seconds": other.seconds}) == other
 
 
 def merged(rows: Iterable[EpisodeRow]) -> dict[tuple[Cell, int], EpisodeRow]:

@@ -12,14 +12,17 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tpvqa.bench.row import EpisodeRow
-from tpvqa.errors import BenchError, MissingExtraError
-from tpvqa.files import write_whole
-from tpvqa.told import first_fault
+from tpvqa.bench.agreeing import Place, Placed
+from tpvqa.bench.row import EpisodeRow, row_fault
+from tpvqa.bench.told_object import told_object, told_texts
+from tpvqa.errors import BenchError, MissingExtraError, cut
+from tpvqa.files import read_plain, write_whole
 
 LEFT_OUT = ("seconds", "answers", "decisions")
 """Fields that are not kept."""
 _SETTINGS, _TASKS = b"tpvqa.bench", b"tpvqa.tasks"
+_LARGEST = 256 * 2**20
+"""Bytes of a file; half a million rows have five million."""
 
 
 def write_published(
@@ -69,6 +72,11 @@ def write_published(
 
 
 def read_published(path: Path, settings: Mapping[str, Any]) -> Iterator[EpisodeRow]:
+    """The same as `placed_rows`, without their places."""
+    return (row for _, row in placed_rows(path, settings))
+
+
+def placed_rows(path: Path, settings: Mapping[str, Any]) -> Iterator[Placed]:
     """Read the rows of a file, or of all Parquet files in a folder.
 
     Args:
@@ -79,31 +87,17 @@ def read_published(path: Path, settings: Mapping[str, Any]) -> Iterator[EpisodeR
         MissingExtraError: PyArrow is not installed.
         BenchError: There are none, they are of another bench, or a file is damaged.
     """
-    pa, parquet = _pyarrow()
-    files = sorted(path.glob("*.parquet")) if path.is_dir() else [path]
+    files = _files(path)
     if not files:
         raise BenchError(f"{path} holds no *.parquet. Name a file or a folder of published rows")
     for file in files:
-        try:
-            table = parquet.read_table(file)
-        except (OSError, pa.ArrowException) as error:
-            raise BenchError(
-                f"{file}: cannot be read ({str(error).splitlines()[0]}). Name a file of published "
-                "rows"
-            ) from error
-        told = (table.schema.metadata or {}).get(_SETTINGS)
-        if told is None:
+        opened = _Opened(file)
+        if opened.settings is None:
             raise BenchError(f"{file}: it does not say which bench its rows are of")
-        other = differences(json.loads(told), settings)
+        other = differences(opened.settings, settings)
         if other:
             raise BenchError(f"{file} holds rows of a bench with other settings ({other})")
-        try:
-            for batch in table.to_batches(10_000):
-                yield from map(EpisodeRow.model_validate, batch.to_pylist())
-        except ValidationError as error:
-            raise BenchError(
-                f"{file}: not rows of this version ({first_fault(error)['msg']})"
-            ) from None
+        yield from opened.rows()
 
 
 def tasks_of(path: Path) -> dict[str, str]:
@@ -117,8 +111,8 @@ def tasks_of(path: Path) -> dict[str, str]:
         BenchError: A file cannot be read.
     """
     found: dict[str, str] = {}
-    for file in sorted(path.glob("*.parquet")) if path.is_dir() else [path]:
-        found |= json.loads(_told(file).get(_TASKS, b"{}"))
+    for file in _files(path):
+        found |= _Opened(file).tasks
     return found
 
 
@@ -132,26 +126,76 @@ def version_of(path: Path) -> str:
         MissingExtraError: PyArrow is not installed.
         BenchError: There are none, or they do not say.
     """
-    file = next(iter(sorted(path.glob("*.parquet"))), None) if path.is_dir() else path
-    told = _told(file).get(_SETTINGS) if file else None
-    if told is None:
+    file = next(iter(_files(path)), None)
+    settings = None if file is None else _Opened(file).settings
+    if settings is None:
         raise BenchError(f"{path}: holds no published rows. Name a file or a folder of them")
-    return str(json.loads(told).get("version"))
+    return str(settings.get("version"))
 
 
-def _told(file: Path) -> Mapping[bytes, bytes]:
-    pa, parquet = _pyarrow()
-    try:
-        return parquet.read_schema(file).metadata or {}
-    except (OSError, pa.ArrowException) as error:
-        raise BenchError(f"{file}: cannot be read ({str(error).splitlines()[0]})") from error
+def _files(path: Path) -> list[Path]:
+    return sorted(path.glob("*.parquet")) if path.is_dir() else [path]
+
+
+class _Opened:
+    """A file of published rows, which may be a stranger's.
+
+    Attributes:
+        settings: Of their bench; None where the file does not say.
+        tasks: As of `write_published`.
+
+    Raises:
+        MissingExtraError: PyArrow is not installed.
+        BenchError: It cannot be read, or is damaged.
+    """
+
+    def __init__(self, file: Path):
+        self._file = file
+        self._pa, parquet = _pyarrow()
+        try:
+            data = self._pa.BufferReader(read_plain(file, most=_LARGEST))
+            self._table = parquet.ParquetFile(data)
+            told = self._table.schema_arrow.metadata or {}
+        except (OSError, self._pa.ArrowException) as error:
+            raise self._unread(error) from error
+        try:
+            self.settings = told_object(told[_SETTINGS]) if _SETTINGS in told else None
+            self.tasks = told_texts(told.get(_TASKS, b"{}"))
+        except ValueError as error:
+            raise BenchError(
+                f"{file}: damaged ({error}). Name another file of published rows"
+            ) from None
+
+    def rows(self) -> Iterator[Placed]:
+        """The rows, as they stand in it."""
+        try:
+            table = self._table.read()
+            table.validate(full=True)  # texts are UTF-8
+        except (OSError, self._pa.ArrowException) as error:
+            raise self._unread(error) from error
+        values = (each for batch in table.to_batches(10_000) for each in batch.to_pylist())
+        for number, value in enumerate(values, 1):
+            place = Place(self._file, number, published=True)
+            try:
+                yield place, EpisodeRow.model_validate(value)
+            except ValidationError as error:
+                raise BenchError(
+                    f"{place}: not a row of this version ({row_fault(error)}). "
+                    "Name another file of published rows"
+                ) from None
+
+    def _unread(self, error: Exception) -> BenchError:
+        said = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        return BenchError(
+            f"{self._file}: cannot be read ({said.splitlines()[0]}). Name a file of published rows"
+        )
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> str:
     """In which settings two benches differ, in words; empty where in none."""
     here = json.loads(json.dumps(dict(here)))
     return ", ".join(
-        f"{key} {there.get(key)!r} there, {here.get(key)!r} here"
+        f"{cut(key)} {cut(repr(there.get(key)))} there, {cut(repr(here.get(key)))} here"
         for key in sorted({*there, *here})
         if there.get(key) != here.get(key)
     )

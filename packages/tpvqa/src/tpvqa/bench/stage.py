@@ -123,12 +123,13 @@ class Stage:
         try:
             config = cell.config(common, episode)
             figures, learned = self._figures(config, calibration, experience, risk)
+            ended = EpisodeRow(**row, **figures)
         except TpvqaError as error:
-            figures, learned = {"error": str(error)}, experience
+            ended, learned = EpisodeRow(**row, error=str(error)), experience
         except Exception:  # noqa: BLE001 — one broken plug-in must not end a bench of thousands
-            figures, learned = {"error": traceback.format_exc(limit=-3)}, experience
+            ended, learned = EpisodeRow(**row, error=traceback.format_exc(limit=-3)), experience
         seconds = round(time.perf_counter() - began, 4)
-        return EpisodeRow(**row, **figures, seconds=seconds), learned
+        return ended.model_copy(update={"seconds": seconds}), learned
 
     def trial(
         self,

@@ -8,6 +8,7 @@ from typing import Any
 from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.belief.calibrating.risk import RiskBound, RiskCalibration, least_trials
 from tpvqa.bench.cell import Cell
+from tpvqa.bench.folders import folder_within
 from tpvqa.bench.ledger import Ledger
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.row import EpisodeRow
@@ -84,13 +85,14 @@ def bounds(
 
     Raises:
         BenchError: A trial failed, or the folder cannot be used.
+        WriteError: It cannot be written to.
     """
     risks = {cell: risk for cell in cells if (risk := split_risk(cell.monitor)[1]) is not None}
     if not risks:
         return {}
     away = common.but(seed=common.seed + OTHER_SEEDS)
     wanted = dict.fromkeys(map(unstated, risks), trials)
-    ledger = Ledger(folder / FOLDER, {**common_settings(away), **more_settings})
+    ledger = Ledger(folder_within(folder, FOLDER), {**common_settings(away), **more_settings})
     try:
         total = sum(wanted.values())
         done = total - sum(len(ledger.missing(cell, count)) for cell, count in wanted.items())

@@ -52,7 +52,7 @@ def stats(
 
     found = counted(file)
     if as_json:
-        print(json.dumps(asdict(found), indent=1))
+        print(json.dumps(asdict(found), indent=1, allow_nan=False))
         return
     tell(f"{file}: {found.answers:,} answers, {_size(found.bytes)}, schema {found.schema}")
     _print("VLM", found.vlms)
@@ -199,5 +199,5 @@ def _write(file: Path, form: str, stream: TextIO) -> int:
             writer.writerow(plain_row(entry))
         else:
             told = {**entry, "parameters": json.loads(entry["parameters"])}
-            stream.write(json.dumps(told) + "\n")
+            stream.write(json.dumps(told, allow_nan=False) + "\n")
     return count

@@ -1,6 +1,6 @@
 """How good yes/no answers are, from rows of answer and truth."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from tpvqa.vlm.answer import Reply
 
 @dataclass(frozen=True, slots=True)
 class Scored:
-    """One answer beside the truth.
+    """An answer beside the truth.
 
     Attributes:
         reply: What the VLM said.
@@ -19,6 +19,7 @@ class Scored:
         p_yes: Its P(yes); None where it gave none.
         visible: Whether the picture shows it.
         hard: Whether no is right although the thing asked about is in view.
+        count: How many such answers there are.
     """
 
     reply: Reply
@@ -26,6 +27,7 @@ class Scored:
     p_yes: float | None = None
     visible: bool = True
     hard: bool = False
+    count: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,7 @@ def measure(rows: Iterable[Scored]) -> Metrics:
     every = list(rows)
     shown = [row for row in every if row.visible]
     hidden = [row for row in every if not row.visible]
+    counts = _counts(shown)
     truth = np.array([row.truth for row in shown], bool)
     said_yes = np.array([row.reply is Reply.YES for row in shown], bool)
     said_no = np.array([row.reply is Reply.NO for row in shown], bool)
@@ -73,49 +76,85 @@ def measure(rows: Iterable[Scored]) -> Metrics:
     told = [row for row in shown if row.p_yes is not None]
     p_yes = np.array([row.p_yes for row in told], float)
     told_truth = np.array([row.truth for row in told], bool)
-    on_yes, on_no = _rate(right[truth]), _rate(right[~truth])
+    cannot_see = np.array([row.reply is Reply.CANNOT_SEE for row in hidden], bool)
+    on_yes = _rate(right[truth], counts[truth])
+    on_no = _rate(right[~truth], counts[~truth])
     return Metrics(
-        visible=len(shown),
-        accuracy=_rate(right),
+        visible=int(counts.sum()),
+        accuracy=_rate(right, counts),
         balanced_accuracy=None if on_yes is None or on_no is None else (on_yes + on_no) / 2,
-        false_positive_rate=_rate(said_yes[~truth]),
-        false_negative_rate=_rate(said_no[truth]),
-        auroc=auroc(p_yes, told_truth),
-        calibration_error=calibration_error(p_yes, told_truth),
-        abstained=_rate(~(said_yes | said_no)),
-        hard_no=_rate(right[hard]),
-        hidden=len(hidden),
-        cannot_see_rightly=_rate(np.array([row.reply is Reply.CANNOT_SEE for row in hidden], bool)),
+        false_positive_rate=_rate(said_yes[~truth], counts[~truth]),
+        false_negative_rate=_rate(said_no[truth], counts[truth]),
+        auroc=auroc(p_yes, told_truth, _counts(told)),
+        calibration_error=calibration_error(p_yes, told_truth, _counts(told)),
+        abstained=_rate(~(said_yes | said_no), counts),
+        hard_no=_rate(right[hard], counts[hard]),
+        hidden=int(_counts(hidden).sum()),
+        cannot_see_rightly=_rate(cannot_see, _counts(hidden)),
     )
 
 
-def _rate(hits: NDArray[np.bool_]) -> float | None:
-    return float(hits.mean()) if len(hits) else None
+def _counts(rows: Sequence[Scored]) -> NDArray[np.int64]:
+    return np.array([row.count for row in rows], np.int64)
 
 
-def auroc(scores: NDArray[np.float64], truth: NDArray[np.bool_]) -> float | None:
-    """Area under the ROC curve; ties count half. None where one class is missing."""
-    positive = int(truth.sum())
-    negative = len(truth) - positive
+def _rate(hits: NDArray[np.bool_], counts: NDArray[np.int64]) -> float | None:
+    total = int(counts.sum())
+    return int(counts[hits].sum()) / total if total else None
+
+
+def auroc(
+    scores: NDArray[np.float64],
+    truth: NDArray[np.bool_],
+    counts: NDArray[np.int64] | None = None,
+) -> float | None:
+    """Area under the ROC curve; ties count half. None where one class is missing.
+
+    Args:
+        scores: One for each answer, or for so many alike.
+        truth: Whether yes is right.
+        counts: How many answers each stands for; None for one.
+    """
+    counts = np.ones(len(truth), np.int64) if counts is None else counts
+    positive = int(counts[truth].sum())
+    negative = int(counts.sum()) - positive
     if not positive or not negative:
         return None
-    _, place, counts = np.unique(scores, return_inverse=True, return_counts=True)
-    ranks = (np.cumsum(counts) - (counts - 1) / 2)[place]
-    return float((ranks[truth].sum() - positive * (positive + 1) / 2) / (positive * negative))
+    _, place = np.unique(scores, return_inverse=True)
+    alike = np.bincount(place, weights=counts)
+    ranks = (np.cumsum(alike) - (alike - 1) / 2)[place]
+    above = (ranks[truth] * counts[truth]).sum() - positive * (positive + 1) / 2
+    return float(above / (positive * negative))
 
 
 def calibration_error(
-    p_yes: NDArray[np.float64], truth: NDArray[np.bool_], *, bins: int = 10
+    p_yes: NDArray[np.float64],
+    truth: NDArray[np.bool_],
+    counts: NDArray[np.int64] | None = None,
+    *,
+    bins: int = 10,
 ) -> float | None:
-    """Expected calibration error of P(yes): |mean P(yes) - share of yes|, over equal bins."""
-    if not len(truth):
+    """Expected calibration error of P(yes): |mean P(yes) - share of yes|, over equal bins.
+
+    Args:
+        p_yes: One for each answer, or for so many alike.
+        truth: Whether yes is right.
+        counts: How many answers each stands for; None for one.
+        bins: How many.
+    """
+    counts = np.ones(len(truth), np.int64) if counts is None else counts
+    if not counts.sum():
         return None
     bin_of = np.minimum((p_yes * bins).astype(int), bins - 1)
     total = 0.0
     for b in range(bins):
         inside = bin_of == b
-        if inside.any():
-            total += inside.mean() * abs(p_yes[inside].mean() - truth[inside].mean())
+        weight = counts[inside]
+        if weight.sum():
+            gap = np.average(p_yes[inside], weights=weight) - np.average(
+                truth[inside], weights=weight
+            )
+            total += weight.sum() / counts.sum() * abs(gap)
     return float(total)
 
 

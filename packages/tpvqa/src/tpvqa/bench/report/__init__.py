@@ -11,6 +11,7 @@ from tpvqa.bench import figures
 from tpvqa.bench.accuracy import Decisions, answers_of, decisions_of
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.curve import Curve, crossings
+from tpvqa.bench.folders import folder_within
 from tpvqa.bench.ledger import REMEDY
 from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.summary import REFERENCE, Summary, summaries
@@ -188,12 +189,12 @@ def write_bench_report(folder: Path, results: Results) -> Path:
         lstrip_blocks=True,
     )
     pictures = {}
+    beside = folder_within(folder, "figures")
     try:
-        (folder / "figures").mkdir(exist_ok=True)
         for name, figure in draw(results):
             for kind in ("svg", "png"):
                 data = figures.saved(figure, kind)
-                write_whole(folder / "figures" / f"{name}.{kind}", data, remedy=REMEDY)
+                write_whole(beside / f"{name}.{kind}", data, remedy=REMEDY)
                 if kind == "svg":
                     encoded = base64.b64encode(data).decode()
                     pictures[name] = f"data:image/svg+xml;base64,{encoded}"

@@ -24,6 +24,7 @@ _OF_ONE = (
     f"SELECT {_COLUMNS} FROM answers a JOIN questions q ON q.id = a.question "
     "WHERE a.model = ? AND a.picture = ? AND q.text = ?"
 )
+_OF_ALL = f"SELECT q.text, {_COLUMNS} FROM answers a JOIN questions q ON q.id = a.question"
 _DRAWN = f"{_OF_ONE} AND a.trial = ? AND a.draw = ?"
 _NTH = f"{_OF_ONE} ORDER BY a.reply = 'unknown', a.id LIMIT 1 OFFSET ?"
 
@@ -117,6 +118,15 @@ class AnswerFile:
         if row is not None and (unknown or row[0] != Reply.UNKNOWN):
             return self._answer(question, row)
         return None
+
+    def check(self, connection: sqlite3.Connection) -> None:
+        """See that every answer is one, as they are when they are given.
+
+        Raises:
+            CacheError: One is none.
+        """
+        for text, *row in connection.execute(_OF_ALL):
+            self._see_right(text, row)
 
     def keep(self, asking: Asking, answers: Sequence[Answer]) -> dict[str, Answer]:
         """Add answers where there are none, all or none of them.
@@ -213,7 +223,12 @@ class AnswerFile:
         return float(value)
 
     def _answer(self, question: Question, row: Sequence[Any]) -> Answer:
-        """A row as an answer; whoever made the file may have put anything there."""
+        self._see_right(question.text, row)
+        reply, p_yes, source, text, p_cannot_see, leftover, seconds = row
+        return Answer(question, Reply(reply), p_yes, source, text, p_cannot_see, leftover, seconds)
+
+    def _see_right(self, asked: str, row: Sequence[Any]) -> None:
+        """See that a row is an answer; whoever made the file may have put anything there."""
         reply, p_yes, source, text, p_cannot_see, leftover, seconds = row
         shares = (p_yes, p_cannot_see, leftover)
         right = (
@@ -226,8 +241,7 @@ class AnswerFile:
             and seconds >= 0
         )
         if not right:
-            raise self.damaged(f"the answer to {question.text[:80]!r} is none")
-        return Answer(question, Reply(reply), p_yes, source, text, p_cannot_see, leftover, seconds)
+            raise self.damaged(f"the answer to {asked[:80]!r} is none")
 
     def damaged(self, why: str) -> CacheError:
         """The error of a file that holds what was never written into it."""

@@ -68,6 +68,10 @@ def _is_there(path: Path, *, writing: bool) -> bool:
     try:
         descriptor = open_plain(path, os.O_RDONLY, follow=True)
     except FileNotFoundError:
+        if path.is_symlink():  # SQLite would make what it leads to
+            raise CacheError(
+                f"{path}: this is a link to a file that is not there. Remove it, or name another"
+            ) from None
         if writing and not path.parent.is_dir():
             raise CacheError(f"{path}: there is no folder {path.parent}. Make it first") from None
         return False

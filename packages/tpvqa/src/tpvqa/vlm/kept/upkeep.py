@@ -1,6 +1,7 @@
 """What a file of recorded answers holds, and taking from it."""
 
 import json
+import math
 import sqlite3
 import time
 from collections.abc import Iterator
@@ -107,12 +108,13 @@ def stats(path: Path) -> Stats:
     """Count what a file holds.
 
     Raises:
-        CacheError: It cannot be read.
+        CacheError: It cannot be read, or holds what is no answer.
     """
     file = AnswerFile(path, writing=False)
     try:
         file.models()  # which sees to their parameters: whoever shows them reads them again
         with file.reading() as connection:
+            file.check(connection)
             told = Stats(
                 file=str(path),
                 schema=SCHEMA,
@@ -123,6 +125,8 @@ def stats(path: Path) -> Stats:
             )
         if not all(_a_time(each.first) and _a_time(each.last) for each in told.vlms):
             raise file.damaged("an answer was recorded at no time that there is")
+        if not all(math.isfinite(each.seconds) for each in told.vlms):
+            raise file.damaged("the answers took longer than can be counted")
         return told
     finally:
         file.close()
@@ -157,7 +161,7 @@ def exported(path: Path) -> Iterator[dict[str, Any]]:
     """Every answer as plain values, in the order of recording, see `COLUMNS`.
 
     Raises:
-        CacheError: The file cannot be read.
+        CacheError: The file cannot be read, or holds what is no answer.
     """
     file = AnswerFile(path, writing=False)
     told = (
@@ -169,6 +173,7 @@ def exported(path: Path) -> Iterator[dict[str, Any]]:
     try:
         file.models()
         with file.reading() as connection:
+            file.check(connection)  # first of all: what was given cannot be taken back
             for row in connection.execute(told):
                 entry = dict(zip(COLUMNS, row, strict=True))
                 entry["picture"], entry["trial"] = row[2].lower(), row[6].lower()
