@@ -16,8 +16,8 @@ class Relaxation:
     """The delete relaxation, a literal and its contrary each by itself.
 
     To hold more of them never leads less far. So what was enough for a literal in one state is
-    kept, and is mostly enough in the next one. Where it is not, a proof is looked for backwards from the
-    literal; all ways are gone through only where that finds none.
+    kept, and is mostly enough in the next one. Where it is not, a proof is looked for backwards
+    from the literal; all ways are gone through only where that finds none.
 
     Args:
         ways: They, from the beginning.
