@@ -408,7 +408,8 @@ def test_what_cannot_be_seen_from_one_view_is_asked_from_another(planner: Planne
         made.append(trial)
     blind, seeing = (trial.run(MemoryWriter(resumable=False)) for trial in made)
     assert seeing.completed
-    assert 5 < seeing.questions < blind.questions
+    assert seeing.questions > 5
+    assert blind.because == "gave up"
 
 
 def test_the_limits_of_the_trial_are_known(planner: Planner) -> None:

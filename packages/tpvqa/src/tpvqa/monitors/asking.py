@@ -11,6 +11,7 @@ from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.monitors.feeling import Feeling
 from tpvqa.monitors.inspection import SENSED, Inspection, Replies
 from tpvqa.monitors.requests import Ask, AskPerson, Look, Request
+from tpvqa.monitors.silence import Silence
 from tpvqa.observation import Observation, SensedFact
 from tpvqa.pddl import Action, Atom
 from tpvqa.questions import FactQuestion
@@ -35,6 +36,7 @@ class Asking:
     Attributes:
         now: What happened since the last action.
         person: Whether a person can be asked.
+        silence: How long nothing was found out.
     """
 
     def __init__(
@@ -52,12 +54,13 @@ class Asking:
         self._feeling, self._felt = feeling, felt
         self._views, self._blind = tuple(views), blind
         self._before = Inspection()
-        self.person = costs.person is not None
+        self.person, self.silence = costs.person is not None, Silence()
         self.now = self._begun(None)
 
     def begin(self, action: Action | None = None) -> Inspection:
         """Note that an action was executed: what was seen before is past."""
         self._before = Inspection(looks=self.looks, questions=self.questions)
+        self.silence.acted()
         self.now = self._begun(action)
         return self.now
 
@@ -152,6 +155,7 @@ class Asking:
             now.questions += 1
             now.heard[question.text, answer.reply] += 1
             self._evidence.take(question, answer, now.picture, now.view)
+        self.silence.asked(answered=answer.reply in (Reply.YES, Reply.NO))
         if answer.reply in (Reply.YES, Reply.NO):
             told = Replies(question.atoms, before)
             now.replies.setdefault(question.family, told).replies.append(answer.reply)
@@ -178,6 +182,8 @@ class Asking:
         """Take in what the robot itself has measured."""
         if self._feeling.take(facts, self.now.effects):
             self._felt()
+        if facts:
+            self.silence.broken()
         for fact in facts:
             was = self._belief.probability(fact.atom)
             self._evidence.take_sensed(fact.atom, fact.probability)

@@ -234,8 +234,7 @@ class BeliefMonitor(Learning, PlainArguments):
         settled, self._settled = self._settled, None
         if settled is not None and self.belief.model.same_skill(settled, step.action, step.state):
             return Verdict(Decision.GO_ON, "as decided")  # by this very belief, a moment ago
-        choice = yield from self._choose(step)
-        return self._verdict(step, choice, acted=False)
+        return self._verdict(step, (yield from self._choose(step)), acted=False)
 
     def after(self, step: Step) -> Check:
         """Predict what the action led to, look where that is worth it, and decide what is next."""
@@ -306,10 +305,9 @@ class BeliefMonitor(Learning, PlainArguments):
                 yield from self._asking.inquire(inquiry)
                 continue
             best = table.best
-            looks = best.action is None and self._asking.sees
             if best.action is None and self._errand is not None:
                 self._errand, self._past = None, self._errand  # there; now it is looked
-            elif not looks or not (yield from self._sets_out(step)):
+            elif best.action or not self._asking.sees or not (yield from self._sets_out(step)):
                 return best
 
     def _settle(self, step: Step) -> None:
@@ -365,6 +363,8 @@ class BeliefMonitor(Learning, PlainArguments):
 
     def _verdict(self, step: Step, choice: Choice, *, acted: bool) -> Verdict:
         state, action, place = choice.state, choice.action, None
+        if silent := self._asking.silence.told:
+            return Verdict(Decision.GIVE_UP, silent, state)
         same = self.belief.model.same_skill
         if action is None:
             done = says_done(self.goal_probability, self._risk)
