@@ -55,6 +55,7 @@ class QuestionBook:
         self._given = frozenset(wordings.predicates)
         self._say, self._done = dict(wordings.say), dict(wordings.done)
         self.fallbacks: list[str] = []
+        self._commands: dict[Action, str] = {}
         self._texts: dict[tuple[Atom, int], tuple[str, tuple[Atom, ...]]] = {}
         self._why_not: dict[tuple[Literal, tuple[str, tuple[str, ...]] | None], str | None] = {}
         self._numbers = NumberWords(wordings.numbers, task)
@@ -244,7 +245,11 @@ class QuestionBook:
 
     def say(self, action: Action) -> str:
         """The action as a command: "place the bread on the plate"."""
-        return self._fill(self._say[action.name], self._values(action))
+        said = self._commands.get(action)
+        if said is None:  # a long plan is said whole whenever it changes
+            said = self._fill(self._say[action.name], self._values(action))
+            self._commands[action] = said
+        return said
 
     def done(self, action: Action) -> str:
         """The action once it is done: "placed the bread on the plate"."""
