@@ -86,6 +86,8 @@ def swapped(lines: list[Line]) -> None:
         (with_("started", config=None), "config"),
         (with_("started", initial=["()"]), "is no fact"),
         (with_("started", schema=9), "schema 9"),
+        (with_("started", schema=9), "It was edited, or written by a version under development"),
+        (with_("started", schema=9, version="9.9"), "tpvqa 9.9 reads it"),
         (with_("answered", answers=[{"reply": "perhaps"}]), "reply"),
         (with_("acted", seconds="1"), "seconds"),
         (with_("acted", unknown=1), "unknown"),

@@ -41,6 +41,13 @@ def test_an_article_before_a_placeholder_agrees_whatever_was_written() -> None:
     assert fill(Template.parse("A {x} or aa {x}, {x}?"), x="egg") == "An egg or aa egg, egg?"
 
 
+def test_a_name_that_ends_in_a_is_no_article() -> None:
+    assert fill(Template.parse("Is {x} {y}?"), x="bag A", y="under it") == "Is bag A under it?"
+    assert fill(Template.parse("{x} a {y}, {x}a {y}"), x="bag A", y="egg") == (
+        "bag A an egg, bag Aa egg"
+    )
+
+
 def test_braces_can_be_written_and_white_space_is_evened_out() -> None:
     template = Template.parse("  Is {{it}}\n  {?X.Place}? ")
     assert template.render(str) == "Is {it} {x.place}?"

@@ -155,7 +155,10 @@ def _check_schema(path: Path, line: bytes) -> None:
         return
     version = str(first.get("version", "another version"))[:40]
     schema = str(first.get("schema", 1))[:40]
+    remedy = f"tpvqa {version} reads it"
+    if version == __version__:
+        remedy = "It was edited, or written by a version under development"
     raise EpisodeError(
         f"{path}: written by tpvqa {version} in another format (schema {schema}; "
-        f"this is tpvqa {__version__}, which reads schema {SCHEMA}). tpvqa {version} reads it"
+        f"this is tpvqa {__version__}, which reads schema {SCHEMA}). {remedy}"
     )

@@ -64,19 +64,19 @@ class Template:
             word: Gives what stands for a placeholder; asked for the attribute "article" too,
                 where "" means the article that the name's sound wants.
         """
-        said = ""
+        said = words = ""  # an "A" at the end of what was filled in is a name's, and no article
         for part in self.parts:
             if isinstance(part, str):
-                said += part
+                said, words = said + part, part
                 continue
             filling = word(part)
-            before = _ARTICLE.search(said)
-            if before:
+            before = _ARTICLE.search(words)
+            if before and (before.start() or len(words) == len(said)):
                 own = word(Placeholder(part.parameter, "article"))
                 article = own or indefinite_article(filling)
                 article = article.capitalize() if before[1].isupper() else article
-                said = said[: before.start()] + article + before[2]
-            said += filling
+                said = said[: len(said) - len(before[0])] + article + before[2]
+            said, words = said + filling, ""
         return said
 
     def without_articles(self) -> "Template":

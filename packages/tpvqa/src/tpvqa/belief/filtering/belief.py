@@ -92,9 +92,10 @@ class Belief:
     def begin(self, states: Sequence[tuple[State, float]]) -> None:
         """Begin anew from several initial states, each with its weight.
 
-        What disturbances undo is what was not so in the most probable one.
+        What disturbances undo is what may not have been so: what is in one of them alone, be it the
+        most probable one, may have been brought about.
         """
-        self.model.begin(max(states, key=lambda each: each[1])[0])
+        self.model.begin(frozenset.intersection(*(state for state, _ in states)))
         self.suppose(self.noise)
         self.outcome_weights, self.led, self.predicted = None, None, {}
         self._earlier = (), np.zeros((0, 3, 0))

@@ -169,7 +169,7 @@ class FaultModel:
         self._undone: dict[int, tuple[tuple[float, int], ...]] = {}
 
     def begin(self, state: State) -> None:
-        """Note with what state a trial begins: a disturbance undoes only what was not so then."""
+        """Note what is so where a trial begins: a disturbance undoes only what was not so then."""
         if state != self._begun:
             self._begun = state
             self._undone.clear()
