@@ -92,8 +92,7 @@ class Belief:
     def begin(self, states: Sequence[tuple[State, float]]) -> None:
         """Begin anew from several initial states, each with its weight.
 
-        What disturbances undo is what may not have been so: what is in one of them alone, be it the
-        most probable one, may have been brought about.
+        What disturbances undo is what is not so in all of them: it may have been brought about.
         """
         self.model.begin(frozenset.intersection(*(state for state, _ in states)))
         self.suppose(self.noise)
