@@ -37,10 +37,15 @@ class FallsSilent:
 
 
 def tried(
-    task: str, *, after: int = 0, reply: Reply = Reply.UNKNOWN, every: int = 0
+    task: str,
+    *,
+    after: int = 0,
+    reply: Reply = Reply.UNKNOWN,
+    every: int = 0,
+    start: str = "known",
 ) -> tuple[Ended, str, int]:
     """How a trial ends, the reason of its last decision, and how much was asked."""
-    settings = {"task": task, "world": "symbolic", "vlm": "oracle:0.9", "monitor": "belief"}
+    settings = {"task": task, "world": "symbolic", "vlm": "oracle:0.9", "start": start}
     with Trial(configured(**settings, limits=Limits(actions=60), seed=1)) as trial:
         truth = known_truth(trial.world)
         vlm = FallsSilent(truth, after=after, reply=reply, every=every)
@@ -66,3 +71,10 @@ def test_one_answer_now_and_then_is_enough_to_go_on() -> None:
     ended, reason, _ = tried("eat_apple", every=10)
     assert "no answer to the last" not in reason
     assert ended.actions > ACTIONS
+
+
+def test_where_nothing_is_known_at_first_and_nothing_answered_nothing_is_done() -> None:
+    ended, reason, asked = tried("serve_breakfast", start="unknown")
+    assert ended.because == "gave up"
+    assert f"no answer to the last {asked} questions" in reason
+    assert ended.actions == 0

@@ -14,6 +14,7 @@ from tpvqa.events.decision import Decision
 from tpvqa.monitors.inspection import Inspection, Replies
 from tpvqa.monitors.protocol import Check
 from tpvqa.monitors.requests import Ask, Look, PlanFrom, Request
+from tpvqa.monitors.silence import nothing_answered
 from tpvqa.monitors.verdict import Verdict
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom, Literal, State
@@ -115,6 +116,7 @@ def first_verdict(belief: Belief, prior: Prior, words: FactWords, seen: Inspecti
     """With what a trial begins: the most probable initial state that there is a plan from.
 
     A plan that has nothing to do would end the trial; so the goal must be about sure for one.
+    Where nothing at all was answered it ends at once.
 
     Args:
         belief: What is believed.
@@ -125,6 +127,8 @@ def first_verdict(belief: Belief, prior: Prior, words: FactWords, seen: Inspecti
     done = belief.where(belief.model.task.goal_holds) >= 1 - LIKELY
     states = [state for state, _ in belief.states()]
     begun, plan = states[0], None
+    if not seen.replies and (silent := nothing_answered(seen.questions)):
+        return Verdict(Decision.GIVE_UP, silent, begun)
     if not done:
         states = [state for state in states if not belief.model.task.goal_holds(state)]
     for state in states[:PLANNED]:

@@ -29,9 +29,14 @@ class Silence:
     @property
     def told(self) -> str:
         """What is to be said of it; nothing while it may be an accident."""
-        if self._questions < QUESTIONS or self._actions < ACTIONS:
-            return ""
-        return (
-            f"no answer to the last {self._questions} questions: see whether the camera and the "
-            "VLM work; stopped safely"
-        )
+        return "" if self._actions < ACTIONS else nothing_answered(self._questions)
+
+
+def nothing_answered(questions: int) -> str:
+    """What is said where so many questions in a row found no answer; nothing of a few."""
+    if questions < QUESTIONS:
+        return ""
+    return (
+        f"no answer to the last {questions} questions: see whether the camera and the "
+        "VLM work; stopped safely"
+    )
