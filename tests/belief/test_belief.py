@@ -197,13 +197,13 @@ def test_what_is_lost_after_a_success_is_told_from_what_a_failure_undoes() -> No
     assert belief.outcome_shares()["fell"] > 0.9
 
 
-def test_what_is_so_in_the_likeliest_start_alone_may_come_undone() -> None:
-    """It may have been brought about; what is so in every start was not."""
+def test_what_is_so_in_half_of_the_starts_may_come_undone() -> None:
+    """It may have been brought about; what was probably so at first was not."""
     task = load_task("eat_apple")
     reached = task.apply(task.init, task.action("find", ["fridge", "tv"]))
     opened, find = task.action("open", ["fridge"]), task.action("find", ["apple", "fridge"])
     after, lid = task.apply(reached, opened), Atom("opened", ("fridge",))
-    for starts, was in (([(after, 0.6), (reached, 0.4)], 0.6), ([(after, 1.0)], 1.0)):
+    for starts, was in (([(after, 0.5), (reached, 0.5)], 0.5), ([(after, 1.0)], 1.0)):
         belief = Belief(FaultModel(task))
         belief.begin(starts)
         belief.act(find, Rates(0.25, 0.25, 0.2, 0.2))

@@ -17,6 +17,7 @@ from tpvqa.belief.answers.told_apart import ToldApart
 from tpvqa.belief.answers.weighed import Instead
 from tpvqa.belief.filtering.faults import FaultModel, JointState, Rates
 from tpvqa.belief.filtering.outcomes import Earlier, OutcomeWeights, Weights, aligned, carried
+from tpvqa.belief.filtering.probable_start import probably
 from tpvqa.belief.states.packed import Facts
 from tpvqa.pddl import Action, Atom, State
 
@@ -90,11 +91,8 @@ class Belief:
         return numbers
 
     def begin(self, states: Sequence[tuple[State, float]]) -> None:
-        """Begin anew from several initial states, each with its weight.
-
-        What disturbances undo is what is not so in all of them: it may have been brought about.
-        """
-        self.model.begin(frozenset.intersection(*(state for state, _ in states)))
+        """Begin anew from several initial states, each with its weight."""
+        self.model.begin(probably(states))
         self.suppose(self.noise)
         self.outcome_weights, self.led, self.predicted = None, None, {}
         self._earlier = (), np.zeros((0, 3, 0))
