@@ -5,12 +5,12 @@ from math import fsum
 
 from tpvqa.pddl import Atom, State
 
-HARDLY = 1e-6
-"""What sums of weights may be off by."""
+PROBABLY = 0.55
+"""How likely a fact has to be; of facts that nothing was seen of, half of the states have one."""
 
 
 def probably(states: Sequence[tuple[State, float]]) -> State:
-    """The facts that are more likely so than not; together they may be no state.
+    """The facts that are rather so than not; together they may be no state.
 
     What is as likely not to be so may have been, even where the likeliest state has it.
 
@@ -21,5 +21,5 @@ def probably(states: Sequence[tuple[State, float]]) -> State:
     for state, weight in states:
         for atom in state:
             shares[atom] = shares.get(atom, 0.0) + weight
-    half = (0.5 + HARDLY) * fsum(weight for _, weight in states)
-    return frozenset(atom for atom, share in shares.items() if share > half)
+    least = PROBABLY * fsum(weight for _, weight in states)
+    return frozenset(atom for atom, share in shares.items() if share > least)
