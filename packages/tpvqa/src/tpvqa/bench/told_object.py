@@ -54,5 +54,5 @@ def read_object(
     except FileNotFoundError:
         return None
     except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or error
+        why = (isinstance(error, OSError) and error.strerror) or error
         raise BenchError(f"{path}: damaged ({why}). {remedy}") from None

@@ -1,8 +1,8 @@
 """A VLM, or a camera, that has stopped answering."""
 
 QUESTIONS, ACTIONS = 20, 5
-"""So many questions in a row without an answer, over so many actions, are no accident: what is
-merely out of sight comes into sight as the robot goes on."""
+"""So many questions in a row without an answer, over so many actions, are taken for no accident:
+what is merely out of sight is expected to come into sight as the robot goes on. A choice."""
 
 
 class Silence:
