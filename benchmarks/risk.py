@@ -83,7 +83,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = given.out or Path(temporary)
         known = calibrations(
-            folder / "calibrations", {*map(source_of, cells)}, common, given.calibration_trials
+            folder / "calibrations",
+            {*map(source_of, cells)},
+            common,
+            given.calibration_trials,
+            workers=given.workers,
         )
         bench = Bench(
             wanted=dict.fromkeys(cells, given.trials),

@@ -22,6 +22,7 @@ from tpvqa_experiments.abroad.bench import blocks_in, sensed, tasks_in
 from tpvqa_experiments.abroad.parts import REPEATING, SEEING, Extent
 from tpvqa_experiments.abroad.seeing import seeing
 from tpvqa_experiments.abroad.tables import lines
+from tpvqa_experiments.belief.calibrations import Source, calibrations
 
 ROOT = Path(__file__).parents[2]
 DOMAIN = """(define (domain lift) (:requirements :typing) (:types block)
@@ -194,6 +195,13 @@ def test_every_part_has_its_cells() -> None:
         cell.condition.startswith("limits=none") for cells in told.values() for cell in cells
     )
     assert {count for _, count in extent.cells(Part.OTHERS)} == {100}
+
+
+def test_recorded_vlms_are_calibrated_on_ones_own_tasks(tmp_path: Path) -> None:
+    (name, task), *_ = tasks_in(ROOT / "examples").items()
+    source = Source(name, "recorded:gemma-3-12b:0:lasting", "symbolic")
+    told = calibrations(tmp_path, [source], TrialConfig(), 2, own={name: task})[source]
+    assert told.rows > 100
 
 
 def test_only_others_domains_are_run_uncalibrated(tmp_path: Path) -> None:

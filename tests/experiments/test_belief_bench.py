@@ -199,6 +199,27 @@ def test_calibrations_are_learnt_under_another_seed(
         calibrations(tmp_path, [source], TrialConfig(seed=5), 3)
 
 
+def test_workers_learn_the_same_calibrations(tmp_path: Path) -> None:
+    sources = [Source("build_tower", vlm, "symbolic") for vlm in ("oracle:0.7", "oracle:0.9")]
+    counts: list[tuple[int, int]] = []
+    alone, together = (
+        calibrations(
+            tmp_path / str(workers),
+            sources,
+            TrialConfig(seed=5),
+            2,
+            workers=workers,
+            done=lambda done, total: counts.append((done, total)),
+        )
+        for workers in (1, 2)
+    )
+    assert alone == together
+    assert counts == [(0, 2), (1, 2), (2, 2)] * 2
+    for source in sources:
+        files = [tmp_path / str(workers) / source.file for workers in (1, 2)]
+        assert files[0].read_bytes() == files[1].read_bytes()
+
+
 def test_recorded_vlms_are_calibrated_on_the_other_half() -> None:
     cell = Cell("eat_apple", "belief", "recorded:gemma-3-12b:1:fresh", "symbolic")
     assert source_of(cell).vlm == "recorded:gemma-3-12b:0:fresh"

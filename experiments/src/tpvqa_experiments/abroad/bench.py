@@ -62,13 +62,23 @@ class AbroadBench:
                     found[limit] = max(episodes, found.get(limit, 0))
         return found
 
-    def declared(self, folder: Path, calibrating: Progress, version: str | None = None) -> Bench:
+    def declared(
+        self,
+        folder: Path,
+        calibrating: Progress,
+        version: str | None = None,
+        *,
+        workers: int = 1,
+        scheduler: str | None = None,
+    ) -> Bench:
         """What the engine is given.
 
         Args:
             folder: Where calibrations are kept.
             calibrating: Told how many calibrations are there and how many there will be.
             version: That of rows of which only tables are made.
+            workers: Local processes, which learn calibrations, too.
+            scheduler: Address of a Dask scheduler to use instead.
         """
         extent = self.extent
 
@@ -85,6 +95,8 @@ class AbroadBench:
                 self.calibration_episodes,
                 done=calibrating,
                 own=extent.tasks_of_files,
+                workers=workers,
+                scheduler=scheduler,
             )
             return {cell: known[learnt.source_of(cell)] for cell in believing}
 
@@ -130,7 +142,7 @@ def run_abroad_bench(
         TpvqaError: Something is not there, or the folder cannot be used.
     """
     version = version_of(published) if only_tables and published is not None else None
-    declared = bench.declared(folder, calibrating, version)
+    declared = bench.declared(folder, calibrating, version, workers=workers, scheduler=scheduler)
     if not declared.wanted:
         unfelt = Part.SENSED in bench.parts and not bench.extent.sensed
         raise BenchError(

@@ -100,6 +100,9 @@ class BeliefBench:
         folder: Path = Path(),
         calibrating: Progress = lambda done, total: None,
         version: str | None = None,
+        *,
+        workers: int = 1,
+        scheduler: str | None = None,
     ) -> Bench:
         """What the engine is given.
 
@@ -108,6 +111,8 @@ class BeliefBench:
             folder: Where calibrations are kept.
             calibrating: Told how many calibrations are there and how many there will be.
             version: That of rows of which only tables are made.
+            workers: Local processes, which learn calibrations, too.
+            scheduler: Address of a Dask scheduler to use instead.
         """
 
         def told(missing: Sequence[Cell]) -> dict[Cell, Calibration]:
@@ -118,6 +123,8 @@ class BeliefBench:
                 self.common,
                 self.calibration_episodes,
                 done=calibrating,
+                workers=workers,
+                scheduler=scheduler,
             )
             return {cell: _told(cell, known[self.source_of(cell)]) for cell in believing}
 
@@ -168,7 +175,14 @@ def run_belief_bench(
     """
     bench.check()
     version = version_of(published) if only_tables and published is not None else None
-    declared = bench.declared({} if only_tables else bench.wanted(), folder, calibrating, version)
+    declared = bench.declared(
+        {} if only_tables else bench.wanted(),
+        folder,
+        calibrating,
+        version,
+        workers=workers,
+        scheduler=scheduler,
+    )
     if rivals_from is not None:
         take_over(rivals_from, folder, declared.settings)
     ledger = run_bench(

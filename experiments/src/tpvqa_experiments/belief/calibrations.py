@@ -1,6 +1,6 @@
 """What each VLM's answers are worth, learnt from trials that no cell of the bench runs."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -11,6 +11,7 @@ from tpvqa.belief.calibrating.labelled_answer import LabelledAnswer
 from tpvqa.belief.calibrating.own_words import OwnWords
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.condition import RATES, settings_of
+from tpvqa.bench.dask_workers import as_they_finish, dask_client
 from tpvqa.bench.folders import folder_within
 from tpvqa.bench.labelled import gather
 from tpvqa.bench.labelled_recordings import label_recordings
@@ -18,6 +19,7 @@ from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
 from tpvqa.defaults import looks
+from tpvqa.errors import BenchError, TpvqaError
 from tpvqa.vlm.flawed import SAME
 from tpvqa.vlm.recorded.spec import RecordedSpec
 from tpvqa.vlm.recorded.vlm import told_by
@@ -89,8 +91,10 @@ def calibrations(
     *,
     done: Callable[[int, int], None] = lambda done, total: None,
     own: Mapping[str, OwnTask] = MappingProxyType({}),
+    workers: int = 1,
+    scheduler: str | None = None,
 ) -> dict[Source, Calibration]:
-    """Load what lies in a folder already, and learn the rest.
+    """Load what lies in a folder already, and learn the rest; each is kept as soon as it is learnt.
 
     Args:
         folder: Where they are kept, a file each.
@@ -99,39 +103,86 @@ def calibrations(
         episodes: Trials that each is learnt from.
         done: Told how many there are, and of how many.
         own: Tasks of the user's own, by name.
+        workers: Local processes.
+        scheduler: Address of a Dask scheduler to use instead.
 
     Raises:
         TpvqaError: A trial cannot be run, a file is damaged or cannot be written.
     """
-    found: dict[Source, Calibration] = {}
+    files = {source: folder / source.file for source in sorted(sources)}
+    found = {source: Calibration.load(path) for source, path in files.items() if path.exists()}
     away = common.but(seed=common.seed + OTHER_SEEDS)
-    for source in sorted(sources):
-        path = folder / source.file
-        done(len(found), len(sources))
-        if path.exists():
-            found[source] = Calibration.load(path)
-            continue
+    todo = [(each, away, episodes, own.get(each.task)) for each in files if each not in found]
+    done(len(found), len(files))
+    if todo:
         folder_within(folder.parent, folder.name)  # which is seen before the trials, not after
-        looking = looks(source.vlm)
-        monitor = LOOKING if looking else SURVEY
-        cell = Cell(source.task, monitor, source.vlm, source.world, source.faults)
-        heard = OwnWords()
-        rows = gather(cell, away, range(episodes), own=own.get(source.task), heard=heard)
-        found[source] = fit(rows, source.vlm, chosen_looks=looking)
-        if source.vlm.startswith(RECORDED):
-            found[source] = _of_recordings(source, rows, found[source])
-        found[source] = found[source].hearing(heard)
-        found[source].save(path)
-    done(len(found), len(sources))
+    here = len(todo) < 2 or (workers < 2 and scheduler is None)
+    learning = (
+        ((given[0], learnt(*given)) for given in todo)
+        if here
+        else _on_dask(todo, workers, scheduler)
+    )
+    for source, calibration in learning:
+        calibration.save(files[source])
+        found[source] = calibration
+        done(len(found), len(files))
     return found
 
 
+Given = tuple[Source, TrialConfig, int, OwnTask | None]
+"""What `learnt` is called with."""
+
+
+def learnt(
+    source: Source, common: TrialConfig, episodes: int, own: OwnTask | None = None
+) -> Calibration:
+    """Learn one calibration.
+
+    Args:
+        source: Which.
+        common: Seed of these trials, rates of faults, limits.
+        episodes: So many trials.
+        own: The task, where it is the user's own.
+
+    Raises:
+        TpvqaError: A trial cannot be run.
+    """
+    looking = looks(source.vlm)
+    monitor = LOOKING if looking else SURVEY
+    cell = Cell(source.task, monitor, source.vlm, source.world, source.faults)
+    heard = OwnWords()
+    rows = gather(cell, common, range(episodes), own=own, heard=heard)
+    found = fit(rows, source.vlm, chosen_looks=looking)
+    if source.vlm.startswith(RECORDED):
+        found = _of_recordings(source, rows, found, own)
+    return found.hearing(heard)
+
+
+def _on_dask(
+    todo: Sequence[Given], workers: int, scheduler: str | None
+) -> Iterator[tuple[Source, Calibration]]:
+    with dask_client(min(workers, len(todo)), scheduler) as client:
+        futures = {client.submit(_text, given, pure=False): given[0] for given in todo}
+        for future, text, failed in as_they_finish(client, futures):
+            source = futures.pop(future)
+            if isinstance(failed, TpvqaError):
+                raise failed
+            if failed is not None:
+                raise BenchError(f"No calibration of {source} was learnt: {failed!r}") from failed
+            yield source, Calibration.model_validate_json(text)
+
+
+def _text(given: Given) -> str:
+    """What a worker is sent back: a calibration as it is written."""
+    return learnt(*given).model_dump_json()
+
+
 def _of_recordings(
-    source: Source, rows: Collection[LabelledAnswer], drawn: Calibration
+    source: Source, rows: Collection[LabelledAnswer], drawn: Calibration, own: OwnTask | None
 ) -> Calibration:
     """What recorded answers teach, each once in a group. Trials only tell how looks repeat
     and errors last."""
-    told = told_by(source.vlm.removeprefix(RECORDED), stage(source.task).task)
+    told = told_by(source.vlm.removeprefix(RECORDED), stage(source.task, own).task)
     recordings = label_recordings(told, {(row.way, row.predicate) for row in rows})
     kinds = {(way, truth) for way in ("precondition", "effect") for truth in (True, False)}
     distinct = sum(each.count for way, truth in kinds for each in told.of(way, "", truth=truth))
