@@ -6,7 +6,7 @@ python experiments/tools/publish.py bench-abroad --whole abroad --out experiment
 
 Several folders, of machines that ran different parts with the same settings, become one; what is
 published already stays. Those of the belief bench become a file for every part; with `--whole`
-those of any bench one file.
+those of any bench one file. Their calibrations are published beside them, for a bench that goes on.
 """
 
 import argparse
@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import TASKS
 from tpvqa.bench.ledger import ROWS, SETTINGS, Ledger, merged
@@ -23,6 +24,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.told_object import read_object
 from tpvqa.errors import BenchError, TpvqaError
 from tpvqa_experiments.belief import Part
+from tpvqa_experiments.belief.calibrations import CALIBRATIONS
 from tpvqa_experiments.belief.parts import Extent
 
 
@@ -37,6 +39,7 @@ def main() -> None:
     parts = [Part(name) for name in given.parts.split(",")] if given.parts else list(Part)
     settings = _settings(given.folders)
     rows = merged(_all(given.folders, settings, given.out))
+    _keep_calibrations(given.folders, given.out / CALIBRATIONS)
     if given.whole:
         if given.parts:
             parser.error("--whole packs all parts; leave --parts out")
@@ -93,6 +96,14 @@ def _all(folders: Sequence[Path], settings: Mapping[str, Any], out: Path) -> Ite
         ledger = Ledger(folder, settings)
         yield from ledger.rows.values()
         ledger.close()
+
+
+def _keep_calibrations(folders: Sequence[Path], out: Path) -> None:
+    for path in (each for folder in folders for each in (folder / CALIBRATIONS).glob("*.json")):
+        told, there = Calibration.load(path), out / path.name
+        if there.exists() and Calibration.load(there) != told:
+            raise BenchError(f"{path} says something else than {there}, which is published")
+        told.save(there)
 
 
 if __name__ == "__main__":

@@ -173,6 +173,25 @@ def test_published_trials_make_the_same_tables_and_are_not_run_again(
         assert (again / name).read_text() == (ran / name).read_text()
 
 
+def test_a_bench_goes_on_from_published_rows_with_the_calibrations_that_lie_beside_them(
+    ran: Path, tmp_path: Path
+) -> None:
+    script = Path(__file__).parents[2] / "experiments/tools/publish.py"
+    told = [sys.executable, str(script), str(ran), "--out", str(tmp_path / "data")]
+    subprocess.run(told, capture_output=True, check=True)
+    (kept,) = (tmp_path / "data" / "calibrations").iterdir()
+    assert kept.read_bytes() == (ran / "calibrations" / kept.name).read_bytes()
+    run_belief_bench(bench(4, monitors=("belief",)), tmp_path / "on", published=tmp_path / "data")
+    assert [row["episode"] for row in lines_of(tmp_path / "on")] == [3]
+    assert not (tmp_path / "on" / "calibrations").exists()
+    changed = Calibration.load(kept).model_copy(update={"rows": 1})
+    changed.save(kept)
+    said = subprocess.run(told, capture_output=True, text=True, check=False)
+    assert said.returncode == 1
+    assert "says something else" in said.stderr
+    assert Calibration.load(kept) == changed
+
+
 def test_other_settings_need_another_folder(ran: Path) -> None:
     with pytest.raises(BenchError, match=r"other settings \(seed 0 there, 1 here\)"):
         run_belief_bench(bench(common=PAPER.but(seed=1)), ran)

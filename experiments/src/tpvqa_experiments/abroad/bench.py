@@ -70,6 +70,7 @@ class AbroadBench:
         *,
         workers: int = 1,
         scheduler: str | None = None,
+        published: Path | None = None,
     ) -> Bench:
         """What the engine is given.
 
@@ -79,6 +80,7 @@ class AbroadBench:
             version: That of rows of which only tables are made.
             workers: Local processes, which learn calibrations, too.
             scheduler: Address of a Dask scheduler to use instead.
+            published: A folder of rows; calibrations may lie in it.
         """
         extent = self.extent
 
@@ -89,7 +91,7 @@ class AbroadBench:
                 if believes(cell.monitor) and cell.task not in extent.others
             ]
             known = learnt.calibrations(
-                folder / "calibrations",
+                folder / learnt.CALIBRATIONS,
                 {learnt.source_of(cell) for cell in believing},
                 self.common,
                 self.calibration_episodes,
@@ -97,6 +99,7 @@ class AbroadBench:
                 own=extent.tasks_of_files,
                 workers=workers,
                 scheduler=scheduler,
+                published=published,
             )
             return {cell: known[learnt.source_of(cell)] for cell in believing}
 
@@ -142,7 +145,9 @@ def run_abroad_bench(
         TpvqaError: Something is not there, or the folder cannot be used.
     """
     version = version_of(published) if only_tables and published is not None else None
-    declared = bench.declared(folder, calibrating, version, workers=workers, scheduler=scheduler)
+    declared = bench.declared(
+        folder, calibrating, version, workers=workers, scheduler=scheduler, published=published
+    )
     if not declared.wanted:
         unfelt = Part.SENSED in bench.parts and not bench.extent.sensed
         raise BenchError(

@@ -103,6 +103,7 @@ class BeliefBench:
         *,
         workers: int = 1,
         scheduler: str | None = None,
+        published: Path | None = None,
     ) -> Bench:
         """What the engine is given.
 
@@ -113,18 +114,20 @@ class BeliefBench:
             version: That of rows of which only tables are made.
             workers: Local processes, which learn calibrations, too.
             scheduler: Address of a Dask scheduler to use instead.
+            published: A folder of rows; calibrations may lie in it.
         """
 
         def told(missing: Sequence[Cell]) -> dict[Cell, Calibration]:
             believing = [cell for cell in missing if believes(cell.monitor)]
             known = learnt.calibrations(
-                folder / "calibrations",
+                folder / learnt.CALIBRATIONS,
                 {self.source_of(cell) for cell in believing},
                 self.common,
                 self.calibration_episodes,
                 done=calibrating,
                 workers=workers,
                 scheduler=scheduler,
+                published=published,
             )
             return {cell: _told(cell, known[self.source_of(cell)]) for cell in believing}
 
@@ -182,6 +185,7 @@ def run_belief_bench(
         version,
         workers=workers,
         scheduler=scheduler,
+        published=published,
     )
     if rivals_from is not None:
         take_over(rivals_from, folder, declared.settings)

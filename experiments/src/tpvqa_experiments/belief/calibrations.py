@@ -32,6 +32,8 @@ SURVEY = "survey:8:twice"
 """Who asks noise models: it asks regardless of the answers, so that all of them count."""
 LOOKING = "tpvqa:3"
 """Who asks VLMs that look: it also goes where things lie elsewhere. Its first answers count."""
+CALIBRATIONS = "calibrations"
+"""Where they are kept, in the folder of a bench and in one of published rows."""
 OTHER_SEEDS = 10_000
 """How far the seed of these trials lies from that of the bench."""
 
@@ -93,8 +95,10 @@ def calibrations(
     own: Mapping[str, OwnTask] = MappingProxyType({}),
     workers: int = 1,
     scheduler: str | None = None,
+    published: Path | None = None,
 ) -> dict[Source, Calibration]:
-    """Load what lies in a folder already, and learn the rest; each is kept as soon as it is learnt.
+    """Load what lies in a folder already, or beside published rows, and learn the rest; each is
+    kept as soon as it is learnt.
 
     Args:
         folder: Where they are kept, a file each.
@@ -105,12 +109,17 @@ def calibrations(
         own: Tasks of the user's own, by name.
         workers: Local processes.
         scheduler: Address of a Dask scheduler to use instead.
+        published: A folder of rows that were run with the same settings; in its folder
+            `CALIBRATIONS` are those that they were run with.
 
     Raises:
         TpvqaError: A trial cannot be run, a file is damaged or cannot be written.
     """
     files = {source: folder / source.file for source in sorted(sources)}
-    found = {source: Calibration.load(path) for source, path in files.items() if path.exists()}
+    found = dict[Source, Calibration]()
+    for lie in filter(None, (published and published / CALIBRATIONS, folder)):
+        kept = {source: lie / source.file for source in files}
+        found |= {each: Calibration.load(path) for each, path in kept.items() if path.exists()}
     away = common.but(seed=common.seed + OTHER_SEEDS)
     todo = [(each, away, episodes, own.get(each.task)) for each in files if each not in found]
     done(len(found), len(files))
