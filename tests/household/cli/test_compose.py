@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import stat
 import subprocess
 import sys
 import time
@@ -92,6 +93,15 @@ def test_killed_at_any_moment_nothing_is_lost_or_asked_for_twice(tmp_path: Path)
         # What was under way at a kill had no answer yet; nothing else is asked for again.
         assert REMOTE <= len(server.requests) <= REMOTE + kills
     assert len(load_pictures(tmp_path).manifest.pictures) == 8 * 5
+
+
+def test_a_page_does_not_wait_for_who_reads_a_pipe(tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    os.mkfifo(page)
+    shown = CliRunner().invoke(dataset, ["show", str(page)])
+    assert shown.exit_code == 1
+    assert "is no page with pictures" in str(shown.exception)
+    assert stat.S_ISFIFO(page.stat().st_mode)
 
 
 def test_photos_of_other_tasks_do_not_matter(tmp_path: Path) -> None:

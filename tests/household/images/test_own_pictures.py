@@ -79,3 +79,21 @@ def test_what_is_put_away_takes_the_place_of_nothing(tpvqa: Run, tmp_path: Path)
     assert tpvqa(*COMPOSE, "--out", out)[0] == 0
     assert not (out / unwanted).exists()
     assert (out / "unused" / unwanted).is_file()
+
+
+def test_no_picture_is_put_where_a_link_leads(tpvqa: Run, tmp_path: Path) -> None:
+    out, outside = tmp_path / "set", tmp_path / "outside"
+    assert tpvqa(*COMPOSE, "--out", out)[0] == 0
+    outside.mkdir()
+    listed = {picture.file for picture in load_pictures(out).manifest.pictures}
+    unwanted = sorted({*(path.name for path in shipped().glob("*.jpg"))} - listed)[0]
+    (out / unwanted).write_bytes((shipped() / unwanted).read_bytes())
+    (out / "unused").symlink_to(outside)
+    assert "unused: has to be a folder" in refused(tpvqa, out, *COMPOSE)
+    assert not list(outside.iterdir())
+    (out / "unused").unlink()
+    (out / "unused").write_text("a file")
+    assert "unused: has to be a folder" in refused(tpvqa, out, *COMPOSE)
+    (out / "unused").unlink()
+    assert tpvqa(*COMPOSE, "--out", out)[0] == 0
+    assert (out / "unused" / unwanted).is_file()

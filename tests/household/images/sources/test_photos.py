@@ -164,6 +164,13 @@ def test_an_action_of_several_tasks_needs_the_task(
         read_photos(folder, every)
 
 
+def test_a_pipe_among_photos_is_told(dish_labels: list[Label], add_photo: Add) -> None:
+    folder = add_photo("wash_plate_sink/success/a.png", 1).parent
+    os.mkfifo(folder / "b.png")
+    with pytest.raises(PhotosError, match=r"b\.png: is no regular file"):
+        read_photos(folder.parents[1], dish_labels)
+
+
 def test_no_folder(dish_labels: list[Label], tmp_path: Path) -> None:
     with pytest.raises(PhotosError, match="no such folder"):
         read_photos(tmp_path / "none", dish_labels)

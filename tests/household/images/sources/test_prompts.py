@@ -1,5 +1,6 @@
 """Prompts come with the package and can be replaced by the user's own."""
 
+import os
 import shutil
 from pathlib import Path
 
@@ -30,6 +31,12 @@ def test_own_prompts_go_before_the_shipped_ones(dish_labels: list[Label], tmp_pa
     own, shipped = read_prompts(dish_labels, tmp_path), read_prompts(dish_labels)
     assert any("muddy blue plate" in text for texts in own.by_label.values() for text in texts)
     assert own.camera == shipped.camera
+
+
+def test_a_pipe_in_place_of_prompts_is_told(dish_labels: list[Label], tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "clean_dishes.yaml")
+    with pytest.raises(PhotosError, match=r"clean_dishes.yaml: .*a pipe"):
+        read_prompts(dish_labels, tmp_path)
 
 
 def test_a_broken_file_is_named(dish_labels: list[Label], tmp_path: Path) -> None:

@@ -45,7 +45,8 @@ def compose(
         str, typer.Option(help="Percent photos, variations, from prompts.")
     ] = "20,60,20",
     count: Annotated[
-        int, typer.Option("--per-outcome", min=1, help="Pictures of each action's outcome.")
+        int,
+        typer.Option("--per-outcome", min=1, max=10_000, help="Pictures of each action's outcome."),
     ] = 10,
     task: Annotated[
         list[TaskName] | None, typer.Option(help="Only this task; may be repeated.")

@@ -1,6 +1,7 @@
 """`tpvqa dataset`: make, compose, check, show and score a set of pictures."""
 
 import json
+import os
 from collections.abc import Sequence
 from contextlib import suppress
 from enum import StrEnum
@@ -178,16 +179,16 @@ def _see_free(page: Path, pictures: Sequence[Path], *, force: bool) -> None:
         PictureSetError: It would.
     """
     from tpvqa.errors import PictureSetError
-    from tpvqa.files import resolved
+    from tpvqa.files import open_plain, resolved
     from tpvqa_household.images.sheet import HEAD
 
     if resolved(page) in map(resolved, pictures):
         raise PictureSetError(f"{page} is a part of the set, and would be lost; name another file")
-    if force or not page.exists():
+    if force or not os.path.lexists(page):
         return
     if page.is_dir():
         raise PictureSetError(f"{page} is a folder; name the file to write")
-    with suppress(OSError), page.open("rb") as file:
+    with suppress(OSError), os.fdopen(open_plain(page, os.O_RDONLY, follow=True), "rb") as file:
         if file.read(len(HEAD)) == HEAD.encode():
             return
     raise PictureSetError(

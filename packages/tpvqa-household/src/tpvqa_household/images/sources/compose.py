@@ -199,6 +199,12 @@ class _Composer:
 
 
 def _existing(wanted: Sequence[Wanted], folder: Path) -> dict[str, Picture]:
+    for own in (folder / UNUSED, folder / REJECTED):
+        if os.path.lexists(own) and (own.is_symlink() or not own.is_dir()):
+            raise PictureSetError(
+                f"{own}: has to be a folder, and is a link or a file. Move it away; the same "
+                "command then makes the folder where it needs one"
+            )
     found = {picture.file: picture for picture in existing(folder, was_composed, _COMMAND)}
     see_own(folder, {*found, *(one.file for one in wanted)}, _COMMAND)
     return found

@@ -142,7 +142,7 @@ def _by_folder(folder: Path) -> Iterator[_Claim]:
     for path in sorted(folder.rglob("*")):
         below = path.relative_to(folder)
         hidden = any(part.startswith(".") for part in below.parts)
-        if hidden or path.suffix.lower() not in SUFFIXES or not path.is_file():
+        if hidden or path.suffix.lower() not in SUFFIXES or path.is_dir():
             continue
         try:
             str(below).encode()  # as the manifest names it
@@ -217,7 +217,8 @@ def _photo(claim: _Claim, labels: Sequence[Label]) -> Photo:
         data = read_file(claim.name, inside=claim.folder)
         read_picture(data)
     except PictureError as error:
-        raise claim.wrong(str(error)) from error
+        named = "" if claim.table else f"{claim.path}: "
+        raise claim.wrong(str(error).removeprefix(named)) from error
     except ValueError as error:
         raise claim.wrong(f"{claim.name}: {error}") from error
     return Photo(claim.path, claim.name, label, state, digest(data))

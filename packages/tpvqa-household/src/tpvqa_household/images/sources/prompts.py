@@ -1,5 +1,6 @@
 """What generators are asked for in words: YAML files, one for each task, to read and to change."""
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
@@ -64,7 +65,7 @@ def read_prompts(labels: Sequence[Label], folder: Path | None = None) -> Prompts
         known = [STYLE, *(f"{task}.yaml" for task in tasks)]
         if not folder.is_dir():
             raise PhotosError("there is no such folder of prompts", file=folder)
-        if not any((folder / name).is_file() for name in known):
+        if not any(os.path.lexists(folder / name) for name in known):
             raise PhotosError(f"none of these files is there: {', '.join(known)}", file=folder)
     style = _open(STYLE, folder).sections("camera", "variation")
     for name in ("camera", "variation"):
@@ -79,7 +80,7 @@ def read_prompts(labels: Sequence[Label], folder: Path | None = None) -> Prompts
 
 def _path(name: str, folder: Path | None) -> Path:
     own = None if folder is None else folder / name
-    return own if own is not None and own.is_file() else shipped_prompts() / name
+    return own if own is not None and os.path.lexists(own) else shipped_prompts() / name
 
 
 def _open(name: str, folder: Path | None) -> Place:
