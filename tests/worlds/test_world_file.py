@@ -7,7 +7,7 @@ import pytest
 
 from tests.pddl.feature_domains import DERIVED
 from tpvqa.errors import WorldFileError
-from tpvqa.pddl import Task, load_task, task_from_text
+from tpvqa.pddl import Atom, Task, load_task, task_from_text
 from tpvqa.worlds.world_file import load_world_file
 
 UNDO = "undo:\n  - fact: (in_hand ?x ?h)\n    outcomes:\n      - "
@@ -122,3 +122,24 @@ def test_derived_facts_cannot_be_undone(tmp_path: Path) -> None:
 def test_a_missing_file(task: Task, tmp_path: Path) -> None:
     with pytest.raises(WorldFileError, match="cannot be read"):
         load_world_file(tmp_path / "gone.yaml", task)
+
+
+def test_a_skill_that_starts_elsewhere_needs_no_cost_from_there(tmp_path: Path) -> None:
+    task = task_from_text(
+        """(define (domain walks) (:requirements :typing :action-costs) (:types place)
+ (:predicates (at ?p - place) (joined ?a ?b - place))
+ (:functions (total-cost) - number (steps ?a ?b - place) - number)
+ (:action walk :parameters (?from ?to - place) :precondition (and (at ?from) (joined ?from ?to))
+  :effect (and (at ?to) (not (at ?from)) (increase (total-cost) (steps ?from ?to)))))""",
+        """(define (problem walk) (:domain walks) (:objects x y z - place)
+ (:init (at x) (joined x y) (joined y z) (= (steps x y) 1) (= (steps y z) 1) (= (total-cost) 0))
+ (:goal (at z)) (:metric minimize (total-cost)))""",
+    )
+    path = tmp_path / "world.yaml"
+    path.write_text("rebind:\n  - action: walk\n    argument: ?from\n    to: (at ?from)\n")
+    (rebind,) = load_world_file(path, task).rebind
+    named = task.action("walk", ["y", "z"])
+    assert rebind.apply(named, task.init, task) == named  # from x no way leads to z
+    assert not task.has_cost("walk", ["x", "z"])
+    moved = rebind.apply(task.action("walk", ["y", "z"]), frozenset({Atom("at", ("y",))}), task)
+    assert moved == named

@@ -396,5 +396,5 @@ class BeliefMonitor(Learning, PlainArguments):
         if action is not None and (acted or place != step.index):
             self._settled = action
         plan = self._ways.plan(state, action) if action and decision is Decision.REPLAN else None
-        marginals = self.belief.probabilities(sorted(self._ways.atoms))
+        marginals = self.belief.probabilities(sorted(self._ways.atoms | (state ^ step.state)))
         return Verdict(decision, why, state, step=place, belief=marginals, plan=plan)

@@ -1,6 +1,6 @@
 """Actions and conditions with variables, as their author wrote them, and how they become ground."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
 
@@ -117,6 +117,13 @@ class ActionSchema:
     effects: tuple[EffectSchema, ...]
     cost: int | tuple[str, ...] = 1
     changes: tuple[ChangeSchema, ...] = ()
+
+    def cost_of(self, arguments: Iterable[str]) -> int | tuple[str, ...]:
+        """The cost with objects for the parameters: a number, or a function of objects."""
+        if isinstance(self.cost, int):
+            return self.cost
+        binding = dict(zip((each.name for each in self.parameters), arguments, strict=True))
+        return tuple(binding.get(word, word) for word in self.cost)
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,9 +244,9 @@ def ground_action(
             if condition != FALSE:
                 literal = Literal(_atom(effect.literal, full), effect.literal.positive)
                 effects.append(Effect(condition, literal))
-    cost = schema.cost
+    cost = schema.cost_of(arguments)
     if not isinstance(cost, int):
-        cost = functions[tuple(binding.get(word, word) for word in cost)]
+        cost = functions[cost]
     precondition = ground_condition(schema.precondition, binding, objects)
     changes = tuple(_ground_changes(schema, binding, objects)) if schema.changes else ()
     numbers = schema.changes[0].numbers if schema.changes else None

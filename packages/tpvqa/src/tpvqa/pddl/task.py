@@ -1,6 +1,6 @@
 """The task: what the planner plans with and the monitor asks about."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -155,19 +155,19 @@ class Task:
                     f"action {name} must be {a(parameter.type)}",
                     file=self.domain_path,
                 )
-        cost = schema.cost
-        if not isinstance(cost, int):
-            binding = {
-                p.name: argument for p, argument in zip(schema.parameters, arguments, strict=True)
-            }
-            function = tuple(binding.get(word, word) for word in cost)
-            if function not in self.functions:
-                raise PDDLError(
-                    f"the cost of {name}({', '.join(arguments)}) is ({' '.join(function)}), "
-                    "to which the initial state gives no value",
-                    file=self.problem_path,
-                )
+        function = schema.cost_of(arguments)
+        if not isinstance(function, int) and function not in self.functions:
+            raise PDDLError(
+                f"the cost of {name}({', '.join(arguments)}) is ({' '.join(function)}), "
+                "to which the initial state gives no value",
+                file=self.problem_path,
+            )
         return schema
+
+    def has_cost(self, name: str, arguments: Sequence[str]) -> bool:
+        """Whether an action has a cost; one to which the initial state gives none is never done."""
+        function = self._schemas_by_name[name].cost_of(arguments)
+        return isinstance(function, int) or function in self.functions
 
     def ground_actions(self) -> tuple[Action, ...]:
         """All actions reachable from the initial state where nothing is ever undone."""

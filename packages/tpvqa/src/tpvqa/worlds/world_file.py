@@ -34,7 +34,10 @@ class Rebinding:
     to: Pattern
 
     def apply(self, action: Action, state: State, task: Task) -> Action:
-        """The action that the skill truly is, where the fact leaves no choice."""
+        """The action that the skill truly is, where the fact leaves no choice.
+
+        What has no cost there is no action: then it is the one that was named, which fails.
+        """
         if action.name != self.action:
             return action
         binding = dict(zip(self.parameters, action.arguments, strict=True))
@@ -44,7 +47,10 @@ class Rebinding:
         if len(matches) != 1:
             return action
         binding[self.argument] = matches[0][self.argument]
-        return task.action(action.name, [binding[name] for name in self.parameters])
+        arguments = [binding[name] for name in self.parameters]
+        return (
+            task.action(action.name, arguments) if task.has_cost(action.name, arguments) else action
+        )
 
 
 @dataclass(frozen=True, slots=True)
