@@ -217,3 +217,42 @@ def test_a_thing_at_one_of_many_places_is_looked_for_at_each_of_them() -> None:
     else:
         raise AssertionError("it goes round and round")
     assert belief.where(task.goal_holds) > 0.8
+
+
+def relay(runners: int) -> Task:
+    """A task of so many steps; who sleeps has to be woken first, and waved at before that."""
+    steps = "".join(
+        f"(:action run{n} :parameters () :precondition ({f'ran{n - 1}' if n else 'awake'})"
+        f" :effect (ran{n}))\n"
+        for n in range(runners)
+    )
+    ran = " ".join(f"(ran{n})" for n in range(runners))
+    return task_from_text(
+        f"""(define (domain relay) (:requirements :strips)
+ (:predicates (awake) (asleep) (waved) {ran})
+ (:action wave :parameters () :precondition () :effect (waved))
+ (:action wake :parameters () :precondition (and (waved) (asleep))
+  :effect (and (awake) (not (asleep))))
+ {steps})""",
+        f"(define (problem race) (:domain relay) (:init (awake)) (:goal (and {ran})))",
+    )
+
+
+def test_nothing_is_done_only_to_be_undone_in_the_place_of_what_is_needed() -> None:
+    """What is undone is drawn among all that is achieved, so that a useless fact takes blows."""
+    task = relay(14)
+    onward = tuple(task.action(f"run{n}") for n in range(14))
+    asleep = frozenset({Atom("asleep")})
+    ways = {task.init: onward, asleep: (task.action("wave"), task.action("wake"), *onward)}
+    model, rates = FaultModel(task), Rates(0.25, 0.25, 0.0, 0.0)
+    chooser, belief = Chooser(model, Costs()), Belief(model)
+    belief.begin([(task.init, 0.97), (asleep, 0.03)])
+    for state, way in ways.items():
+        chooser.ahead.add(AnnotatedPlan(task, way, regress(task, way, state)))
+    chooser.ahead.learned(Chances(rates).skill, rates)
+    chooser.settles = 0.1
+    chooser.acted(belief, onward[0])
+    belief.act(onward[0], Rates(0.0, 0.0, 0.0, 0.0))
+    table = chooser.table(belief, rates, onward)
+    assert {"wave", "run1"} <= {each.action.name for each in table.choices if each.action}
+    assert table.best.action == onward[1]
