@@ -138,7 +138,6 @@ class Unseen:
                 if each.way is not None and self._first(ways, each) == action:
                     own[:, column] = less[:, column]
             paid = self._costs.action + self._led_to(led, own)
-            self._no_better(paid, action, ranked, own)
             weights = np.array([weight for weight, _ in led])
             best = np.argsort(np.round(weights @ paid, 9), kind="stable")[:BEST].tolist()
             found[action] = [self._whole(paid[:, n], ranked) for n in dict.fromkeys([0, *best])]
@@ -151,9 +150,7 @@ class Unseen:
                 break
             first = self._first(ways, told[column])
             if first not in found:
-                own = here[:, [column]]
-                self._no_better(own, first, led_states, less[:, [column]])
-                found[first] = [self._whole(own[:, 0], ranked)]
+                found[first] = [self._whole(here[:, column], ranked)]
                 self._after[first] = self._parted(ways, told[column], first)
         if self.following and not self.onward:
             left = self._ended()[:, None]
@@ -165,32 +162,6 @@ class Unseen:
             found.setdefault(first, []).append(self._whole(np.maximum(kept, 0.0), ranked))
             self._after[first] = tuple(rest), ()
         return found
-
-    def _no_better(
-        self, paid: Floats, action: Action, ranked: Sequence[tuple[int, float]], rest: Floats
-    ) -> None:
-        """See that an action which leads no nearer to the goal makes nothing cheaper.
-
-        What is achieved for nothing would be undone in the place of what is needed, as anything
-        that is achieved may be: nobody does it for that.
-
-        Args:
-            paid: What the action costs in some joint states with all that comes after it.
-            action: It.
-            ranked: The joint states first of all, in the same order.
-            rest: What the same costs without it, in all joint states that are told apart.
-        """
-        numbers = [number for number, _ in ranked[: len(paid)]]
-        idle = [place for place, number in enumerate(numbers) if self._vain(action, number)]
-        if idle:
-            without = rest[self._steps.places([numbers[place] for place in idle])]
-            paid[idle] = np.maximum(paid[idle], self._costs.action + without)
-
-    def _vain(self, action: Action, number: int) -> bool:
-        there = self._model.outcomes(action)[number].intended
-        if there is None or there == number or self._ahead.best(number) is None:
-            return False
-        return self._ahead.to_go(there) >= self._ahead.to_go(number)
 
     def _prepared(
         self,
