@@ -99,10 +99,14 @@ def _all(folders: Sequence[Path], settings: Mapping[str, Any], out: Path) -> Ite
 
 
 def _keep_calibrations(folders: Sequence[Path], out: Path) -> None:
+    kept = dict[Path, Calibration]()
     for path in (each for folder in folders for each in (folder / CALIBRATIONS).glob("*.json")):
         told, there = Calibration.load(path), out / path.name
-        if there.exists() and Calibration.load(there) != told:
-            raise BenchError(f"{path} says something else than {there}, which is published")
+        if there not in kept and there.exists():
+            kept[there] = Calibration.load(there)
+        if kept.setdefault(there, told) != told:
+            raise BenchError(f"{path} says something else than another of this name, see {there}")
+    for there, told in kept.items():
         told.save(there)
 
 
