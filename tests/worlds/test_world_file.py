@@ -132,7 +132,8 @@ def test_a_skill_that_starts_elsewhere_needs_no_cost_from_there(tmp_path: Path) 
  (:action walk :parameters (?from ?to - place) :precondition (and (at ?from) (joined ?from ?to))
   :effect (and (at ?to) (not (at ?from)) (increase (total-cost) (steps ?from ?to)))))""",
         """(define (problem walk) (:domain walks) (:objects w x y z - place)
- (:init (at x) (joined x y) (joined y z) (= (steps x y) 1) (= (steps y z) 1) (= (steps w z) 2) (= (total-cost) 0))
+ (:init (at x) (joined x y) (joined y z) (= (steps x y) 1) (= (steps y z) 1)
+  (= (steps w z) 2) (= (total-cost) 0))
  (:goal (at z)) (:metric minimize (total-cost)))""",
     )
     path = tmp_path / "world.yaml"
