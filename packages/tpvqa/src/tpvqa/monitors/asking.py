@@ -8,6 +8,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.deciding.inquiry import DOUBT, Budget, Inquiry
 from tpvqa.belief.filtering.belief import Belief
 from tpvqa.belief.weighing.evidence import Evidence
+from tpvqa.belief.weighing.vantage import Vantage
 from tpvqa.monitors.feeling import Feeling
 from tpvqa.monitors.inspection import SENSED, Inspection, Replies
 from tpvqa.monitors.requests import Ask, AskPerson, Look, Request
@@ -27,6 +28,7 @@ class Asking:
     Args:
         belief: What is believed.
         evidence: Takes answers in.
+        vantage: Knows from where facts are shown.
         costs: What may be asked and looked at.
         feeling: Knows which facts the robot senses.
         views: The views that the world can be looked at from, the default one first.
@@ -43,6 +45,7 @@ class Asking:
         self,
         belief: Belief,
         evidence: Evidence,
+        vantage: Vantage,
         costs: Costs,
         feeling: Feeling,
         views: Sequence[str],
@@ -51,6 +54,7 @@ class Asking:
         felt: Callable[[], None],
     ):
         self._belief, self._evidence, self._costs = belief, evidence, costs
+        self._vantage = vantage
         self._feeling, self._felt = feeling, felt
         self._views, self._blind = tuple(views), blind
         self._before = Inspection()
@@ -61,6 +65,7 @@ class Asking:
         """Note that an action was executed: what was seen before is past."""
         self._before = Inspection(looks=self.looks, questions=self.questions)
         self.silence.acted()
+        self._vantage.moved()
         self.now = self._begun(action)
         return self.now
 
@@ -110,7 +115,12 @@ class Asking:
         return self._belief.probability(question.atom, question.alike)
 
     def open_views(self, question: FactQuestion) -> list[str | None]:
-        """From where a question may still find an answer, the next one first.
+        """From where a question may still find an answer, the next one first: `views` of it, and
+        none where what it is about is out of sight here."""
+        return self.views(question) if self._vantage.shows(question.atoms) else []
+
+    def views(self, question: FactQuestion) -> list[str | None]:
+        """From where a question may still find an answer, wherever the robot is.
 
         They go round: another view repeats the last answer less than the same one does. From none
         where it has said since the last action what it can (`Evidence.exhausted`, `affirmed`).
@@ -155,6 +165,7 @@ class Asking:
             now.questions += 1
             now.heard[question.text, answer.reply] += 1
             self._evidence.take(question, answer, now.picture, now.view)
+            self._vantage.take(question.atoms, answer.reply)
         self.silence.asked(answered=answer.reply in (Reply.YES, Reply.NO))
         if answer.reply in (Reply.YES, Reply.NO):
             told = Replies(question.atoms, before)

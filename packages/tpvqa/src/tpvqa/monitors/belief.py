@@ -22,6 +22,7 @@ from tpvqa.belief.learning.learned import Learned
 from tpvqa.belief.weighing.controls import Controls
 from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.belief.weighing.settling import Settling, Settlings
+from tpvqa.belief.weighing.vantage import Vantage
 from tpvqa.events.decision import Decision
 from tpvqa.monitors.asking import Asking
 from tpvqa.monitors.belief_settings import BeliefSettings
@@ -36,7 +37,7 @@ from tpvqa.monitors.protocol import Check, Step
 from tpvqa.monitors.reasons import reason
 from tpvqa.monitors.requests import Request
 from tpvqa.monitors.saying_done import says_done
-from tpvqa.monitors.scrutiny import unknown
+from tpvqa.monitors.scrutiny import TELLING, unknown
 from tpvqa.monitors.stated_risk import IN_DOUBT, as_stated, bound_for
 from tpvqa.monitors.telltales import Telltales
 from tpvqa.monitors.verdict import Verdict
@@ -45,8 +46,6 @@ from tpvqa.pddl import Action, Task
 from tpvqa.plugins import PlainArguments
 from tpvqa.questions import FactQuestion, FactWords, QuestionBook
 
-TELLING = 0.8
-"""Where answers settle less, how an action came out is not looked at closely."""
 MOST_FACTS = 250_000
 """In all joint states that were met; those that are not possible any more are forgotten then."""
 
@@ -111,22 +110,16 @@ class BeliefMonitor(Learning, PlainArguments):
         self._telltales = Telltales(self._sight)
         chooser = Chooser(self.belief.model, self.costs, self._sight)
         self._task_ways = Ways(task, chooser, self.chances, self.costs)
-        self._errands = Errands(task, () if rules is None else rules.shown, self.costs)
+        vantage = Vantage(self.belief, () if rules is None else rules.shown)
+        self._errands = Errands(task, vantage, self.costs)
         self._errand: Errand | None = None
         self._past: Errand | None = None
         self._learn(None)
         self._inquirer = Inquirer(self.belief.model, self.evidence, self.costs)
         self._controls = Controls(self.evidence, self.costs)
         self._feeling = Feeling(self._sight, senses, self.evidence.noticed(task))
-        self._asking = Asking(
-            self.belief,
-            self.evidence,
-            self.costs,
-            self._feeling,
-            views,
-            blind=noise_model,
-            felt=lambda: self._learn(None),
-        )
+        asked = self.belief, self.evidence, vantage, self.costs, self._feeling, views
+        self._asking = Asking(*asked, blind=noise_model, felt=lambda: self._learn(None))
         self._words: FactWords | None = None
         self._settled: Action | None = None
         self._settlings, self._telling = Settlings(), 1.0
@@ -215,7 +208,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self.evidence,
             book,
             now,
-            views=self._asking.open_views,
+            views=self._asking.views,
             budget=self._asking.budget,
             picture=self._asking.telling,
         )

@@ -9,10 +9,10 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.deciding.choices import Chooser
 from tpvqa.belief.deciding.inquiry import DOUBT, Budget, Inquiry
 from tpvqa.belief.filtering.belief import Belief
-from tpvqa.belief.filtering.faults import Showing
 from tpvqa.belief.filtering.sight import Sight
 from tpvqa.belief.learning.learned import Learned
 from tpvqa.belief.weighing.evidence import Evidence
+from tpvqa.belief.weighing.vantage import Vantage
 from tpvqa.monitors.inspection import Inspection
 from tpvqa.monitors.protocol import Step
 from tpvqa.monitors.requests import PlanFrom, Request
@@ -68,12 +68,12 @@ class Errands:
 
     Args:
         task: The task.
-        shown: What is shown only from where; everything else is shown everywhere.
+        vantage: Knows from where facts are shown.
         costs: What things cost.
     """
 
-    def __init__(self, task: Task, shown: Sequence[Showing], costs: Costs):
-        self._task, self._shown, self._costs = task, shown, costs
+    def __init__(self, task: Task, vantage: Vantage, costs: Costs):
+        self._task, self._vantage, self._costs = task, vantage, costs
         self._gone: Counter[frozenset[Atom]] = Counter()
         self._left: dict[frozenset[Atom], float] = {}
 
@@ -97,7 +97,7 @@ class Errands:
             chances: Of failures.
         """
         state, book = belief.most_probable()[0], step.book
-        if not self._shown or step.replans_left == 0:
+        if not self._vantage.limited or step.replans_left == 0:
             return None
         full = self._task.extend(state)
         savings = self._savings(belief, chooser, book)
@@ -130,7 +130,8 @@ class Errands:
             towards.ahead.learned(chances.skill, chances.rates)
             ways = Ways(task, towards, chances, self._costs, towards=needed)
             ways.take(there, state)
-            seen = [g for g in self._doubted(belief, book) if self._needed(g.atom) == needed]
+            there_shown = self._vantage.needed
+            seen = [g for g in self._doubted(belief, book) if there_shown(g.atom) == needed]
             why = " and ".join(self._said(goal, belief, book) for goal in seen)
             facts = frozenset(goal.atom for goal in seen)
             return Errand(ways, f"{why} cannot be seen from here", facts, needed)
@@ -143,7 +144,7 @@ class Errands:
         lost = chooser.ahead.failure
         doubted: dict[frozenset[Atom], list[Literal]] = {}
         for goal in self._doubted(belief, book):
-            needed = self._needed(goal.atom)
+            needed = self._vantage.needed(goal.atom)
             if needed:
                 doubted.setdefault(needed, []).append(goal)
         found = {}
@@ -173,10 +174,6 @@ class Errands:
         holds = belief.probability(goal.atom)
         words = FactWords(book).of(goal.atom)
         return f"{words} {holds:.2f}" if goal.positive else f"not {words} {1 - holds:.2f}"
-
-    def _needed(self, atom: Atom) -> frozenset[Atom]:
-        found = (rule.needed(atom, self._task) for rule in self._shown)
-        return next((each for each in found if each is not None), frozenset())
 
     def _back(self, state: State, there: Plan) -> Generator[Request, Any, int | None]:
         """Actions from where a plan leads to the goal; None where there is no way."""

@@ -8,6 +8,8 @@ from tpvqa.monitors.inspection import Inspection
 from tpvqa.pddl import Atom, literals
 from tpvqa.questions import FactQuestion, QuestionBook
 
+TELLING = 0.8
+"""Where answers settle less, how an action came out is not looked at closely."""
 KNOWN = 0.01
 """How it came out is asked about until nothing of it is less sure than this."""
 

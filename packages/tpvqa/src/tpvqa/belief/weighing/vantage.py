@@ -1,0 +1,94 @@
+"""From where facts are shown: what can be asked here, and what *cannot see* tells of the place."""
+
+from collections.abc import Sequence
+
+from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.faults import Showing
+from tpvqa.pddl import Atom
+from tpvqa.vlm import Reply
+
+OUT_OF_SIGHT = 0.1
+"""A fact that is shown here with less is not asked about."""
+SHOWN, ELSEWHERE = (9.0, 1.0), (3.0, 7.0)
+"""As how many questions with and without an answer it is known, before the first, how often one
+finds an answer where its fact is shown, and elsewhere."""
+
+
+class Vantage:
+    """Knows from where facts are shown, as a world file says.
+
+    A question finds an answer more often where its fact is shown than elsewhere. How often is
+    learned of every question that was answered with a word, or with *cannot see*.
+
+    Args:
+        belief: What is believed.
+        rules: What is shown only from where; everything else is shown everywhere.
+    """
+
+    def __init__(self, belief: Belief, rules: Sequence[Showing]):
+        self._belief, self._rules = belief, tuple(rules)
+        self._needs: dict[Atom, frozenset[Atom]] = {}
+        self._heard: set[tuple[frozenset[Atom], bool]] = set()
+        self._shown, self._elsewhere = SHOWN, ELSEWHERE
+
+    @property
+    def limited(self) -> bool:
+        """Whether anything is shown only from somewhere."""
+        return bool(self._rules)
+
+    def needed(self, atom: Atom) -> frozenset[Atom]:
+        """What has to hold so that a fact is shown."""
+        known = self._needs.get(atom)
+        if known is None:
+            task = self._belief.model.task
+            found = (rule.needed(atom, task) for rule in self._rules)
+            known = next((each for each in found if each is not None), frozenset())
+            self._needs[atom] = known
+        return known
+
+    def shows(self, atoms: Sequence[Atom]) -> bool:
+        """Whether any of some facts may be shown here, by what is believed of where the robot
+        is."""
+        return any(
+            not needed or self._probability(needed) >= OUT_OF_SIGHT
+            for needed in map(self.needed, atoms)
+        )
+
+    def _holds(self, needed: frozenset[Atom], number: int) -> bool:
+        return all(self._belief.model.truth((atom,))[number] for atom in needed)
+
+    def _probability(self, needed: frozenset[Atom]) -> float:
+        weights = self._belief.weights.items()
+        return sum(weight for number, weight in weights if self._holds(needed, number))
+
+    def moved(self) -> None:
+        """Note that an action was executed: what is seen may be something else."""
+        self._heard.clear()
+
+    def take(self, atoms: Sequence[Atom], reply: Reply) -> None:
+        """Weigh the belief by whether a question found an answer that is about a fact, or several
+        alike that are shown from the same place.
+
+        Once between two actions of each place and each kind: what a VLM does not see it does not
+        see at the next look. A reply that is missing, late or malformed says nothing.
+        """
+        needed, told = self.needed(atoms[0]), reply is not Reply.CANNOT_SEE
+        if any(self.needed(atom) != needed for atom in atoms[1:]):
+            return
+        if not needed or reply is Reply.UNKNOWN or (needed, told) in self._heard:
+            return
+        self._heard.add((needed, told))
+        here, there = (_rate(each, told=told) for each in (self._shown, self._elsewhere))
+        self._belief.weigh(lambda number: here if self._holds(needed, number) else there)
+        likely = self._probability(needed)
+        self._shown = _counted(self._shown, likely, told=told)
+        self._elsewhere = _counted(self._elsewhere, 1 - likely, told=told)
+
+
+def _rate(counts: tuple[float, float], *, told: bool) -> float:
+    return counts[0 if told else 1] / sum(counts)
+
+
+def _counted(counts: tuple[float, float], more: float, *, told: bool) -> tuple[float, float]:
+    answered, silent = counts
+    return (answered + more, silent) if told else (answered, silent + more)
