@@ -13,7 +13,8 @@ from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import PluginError, TpvqaError, UnknownNameError
 from tpvqa.events import Started
-from tpvqa.pddl import Atom, Literal
+from tpvqa.events.events import Acted
+from tpvqa.pddl import Atom, Literal, literals
 from tpvqa.planning import Planner
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.resuming import config_of, resume, trial_of
@@ -134,3 +135,20 @@ def test_a_resumed_trial_is_configured_as_it_began(tmp_path: Path, planner: Plan
         assert again.parts.planner.name == "fast-downward:optimal"
         assert again.calibration == Calibration.default("oracle:0.9")
         assert again.started() == started.model_copy(update={"number": -1, "time": 0.0})
+
+
+def test_a_wrong_done_says_what_of_the_goal_is_not_so(planner: Planner, tmp_path: Path) -> None:
+    told = []
+    for episode in range(12):
+        with Trial(symbolic(monitor="blind:1", episode=episode), planner=planner) as trial:
+            ended = trial.run(writer := MemoryWriter())
+            goal, true = trial.parts.task.goal, trial.parts.task.init
+        for event in writer.events:
+            if isinstance(event, Acted) and event.truth is not None:
+                added = {Atom.parse(fact) for fact in event.truth.added}
+                true = (true - {Atom.parse(fact) for fact in event.truth.removed}) | added
+        missing = tuple(each.pddl() for each in literals(goal) if not each.holds(true))
+        assert (ended.unmet or ()) == missing
+        told.append(missing)
+    assert () in told
+    assert any(told)

@@ -265,6 +265,11 @@ COUNTS = "(1 action, 1 question, 1 repeat, 2 replans)"
         (ended(believed_goal=True, completed=None), "goal reached, as is believed"),
         (ended(believed_goal=True), "goal not reached, though it was believed to be"),
         (
+            ended(believed_goal=True, unmet=("(on bread plate)", "(not (in_hand bread left))")),
+            "goal not reached, though it was believed to be. Not so: bread on the plate; "
+            "not bread in a robot's hand (left)",
+        ),
+        (
             ended(because="gave up", goal_holds=True),
             "goal reached, though it was not believed to be: gave up, at step 2 of 2, "
             "pick up the bread",

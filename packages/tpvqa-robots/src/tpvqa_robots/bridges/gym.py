@@ -143,7 +143,9 @@ class GroundedTask(gymnasium.Env[Observed, np.int64]):
         over = self._early is not None or self._stepping.pending is None
         info: dict[str, Any] = {"said": self._said, "commanded": str(commanded)}
         if over:
-            ended = self._stepping.end(self._early, goal_holds=self._performer.goal_holds())
+            ended = self._stepping.end(
+                self._early, goal_holds=self._performer.goal_holds(), unmet=self._performer.unmet()
+            )
             info |= {"because": ended.because, "completed": bool(ended.completed)}
             spent += 0.0 if ended.completed else FAILED
         truncated = not over and self._steps >= self._most
@@ -214,7 +216,9 @@ class GroundedTask(gymnasium.Env[Observed, np.int64]):
             self._stepping.journal.write(self._held.event)
             self._held = None
         if self._stepping.state.ended is None:
-            self._stepping.end(self._early, goal_holds=self._performer.goal_holds())
+            self._stepping.end(
+                self._early, goal_holds=self._performer.goal_holds(), unmet=self._performer.unmet()
+            )
         self._log.close()
         trial.close()
 

@@ -107,8 +107,8 @@ class PausableTrial:
         """
         if self.ended is None and self._stepping is not None:
             self._stepping.take_over()
-            holds = self._performer.goal_holds()
-            self.ended = self._stepping.end(conclusion, goal_holds=holds)
+            holds, unmet = self._performer.goal_holds(), self._performer.unmet()
+            self.ended = self._stepping.end(conclusion, goal_holds=holds, unmet=unmet)
 
     def _end_if_over(self, stepping: SteppingTrial) -> None:
         if stepping.pending is None:

@@ -371,6 +371,7 @@ def _finish(ended: "Ended", folder: Path, lost: "WriteError | None", *, as_json:
                     "completed": ended.completed,
                     "ended_because": ended.ending,
                     "message": ended.message,
+                    "unmet": ended.unmet or (),
                     "actions": ended.actions,
                     "questions": ended.questions,
                     "looks": ended.looks,

@@ -284,6 +284,8 @@ class EpisodeView:
             headline = "[bold green]goal reached[/], as is believed"
         elif event.because == "goal":
             headline = "[bold red]goal not reached[/], though it was believed to be"
+            if event.unmet:
+                headline += f". Not so: {marked('; '.join(map(self._say, event.unmet)))}"
         elif event.goal_holds:
             why = marked(self._why(event))
             headline = f"[bold yellow]goal reached[/], though it was not believed to be: {why}"

@@ -111,6 +111,6 @@ class AsynchronousTrial:
             async with self._seeing:  # a look that began while an action ran comes before its end
                 trial.send(performed)
         trial.take_over()
-        trial.end(conclusion, goal_holds=performer.goal_holds())
+        trial.end(conclusion, goal_holds=performer.goal_holds(), unmet=performer.unmet())
         if stopped:
             raise asyncio.CancelledError

@@ -49,7 +49,7 @@ def run(trial: SteppingTrial, performer: Performer) -> Ended:
             raise
         conclusion, interrupted = INTERRUPTED, True
     trial.take_over()
-    ended = trial.end(conclusion, goal_holds=performer.goal_holds())
+    ended = trial.end(conclusion, goal_holds=performer.goal_holds(), unmet=performer.unmet())
     if interrupted:
         raise Interrupted(ended)
     return ended

@@ -29,7 +29,7 @@ from tpvqa.events.records import (
 )
 from tpvqa.monitors import Ask, AskPerson, Look, PlanFrom
 from tpvqa.observation import Frame, Observation
-from tpvqa.pddl import Action, Task
+from tpvqa.pddl import Action, Literal, Task
 from tpvqa.planning import Crashed, Planner
 from tpvqa.planning.bounded import BoundedPlanner
 from tpvqa.planning.towards import plan_towards
@@ -43,7 +43,7 @@ from tpvqa.vlm.sight import cannot_see, seen_by
 from tpvqa.vlm.usage import Usage
 from tpvqa.worlds import Execution, Report, Restorable, World
 from tpvqa.worlds.capabilities import Bounded, Halting, Telling, has_pictures
-from tpvqa.worlds.goal import goal_holds
+from tpvqa.worlds.goal import goal_holds, unmet
 from tpvqa.worlds.outcome import Outcome
 
 
@@ -137,6 +137,10 @@ class Performer:
     def goal_holds(self) -> bool | None:
         """Whether the goal holds in truth; None in a world that does not know."""
         return goal_holds(self.parts.world, self.parts.task.goal)
+
+    def unmet(self) -> tuple[Literal, ...]:
+        """For want of what the goal does not hold in truth; empty in a world that does not know."""
+        return unmet(self.parts.world, self.parts.task.goal)
 
     def look(self, view: str | None, number: int, *, during: bool = False) -> Performed:
         """Look at the world.

@@ -1,6 +1,6 @@
 """A trial one request at a time: for environments, for debugging, and under the other drivers."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tpvqa.drivers.journal import Journal
@@ -8,6 +8,7 @@ from tpvqa.drivers.performing import Performed
 from tpvqa.drivers.replaying import Recording
 from tpvqa.errors import EpisodeError, TpvqaError
 from tpvqa.events import Ended, Event, Resumed, TrialState
+from tpvqa.pddl import Literal
 from tpvqa.protocols import short
 from tpvqa.trial import Conclusion, Pending, Result, Steps, Unwatched
 from tpvqa.vlm.usage import Usage
@@ -40,7 +41,7 @@ class SteppingTrial:
         ...     while trial.pending is not None:
         ...         trial.begun()
         ...         trial.send(performer.perform(trial.pending))
-        ...     return trial.end(goal_holds=performer.goal_holds())
+        ...     return trial.end(goal_holds=performer.goal_holds(), unmet=performer.unmet())
     """
 
     def __init__(
@@ -96,12 +97,19 @@ class SteppingTrial:
         self.journal.write(performed.event)
         self._advance(Result(performed.value, self.state))
 
-    def end(self, conclusion: Conclusion | None = None, *, goal_holds: bool | None = None) -> Ended:
+    def end(
+        self,
+        conclusion: Conclusion | None = None,
+        *,
+        goal_holds: bool | None = None,
+        unmet: Sequence[Literal] = (),
+    ) -> Ended:
         """Write the last event.
 
         Args:
             conclusion: How the trial was ended; by default as it ended itself, or "cancelled".
             goal_holds: Whether the goal holds in truth; None where nobody knows.
+            unmet: For want of what it does not; kept in the log where it is believed to hold.
 
         Raises:
             EpisodeError: The trial is gone on with, and ends before its log does.
@@ -125,6 +133,7 @@ class SteppingTrial:
             believed_goal=believes,
             goal_holds=goal_holds,
             completed=None if goal_holds is None else goal_holds and believes,
+            unmet=tuple(each.pddl() for each in unmet) if believes and unmet else None,
             actions=state.actions,
             questions=state.questions,
             looks=state.looks,

@@ -346,6 +346,7 @@ class Ended(_Event):
     believed_goal: bool
     goal_holds: bool | None = None
     completed: bool | None = None
+    unmet: tuple[str, ...] | None = None
     actions: int
     questions: int
     looks: int

@@ -61,6 +61,10 @@ class Literal(NamedTuple):
     def __str__(self) -> str:
         return str(self.atom) if self.positive else f"not {self.atom}"
 
+    def pddl(self) -> str:
+        """The literal as PDDL writes it, e.g. `(not (on apple table))`."""
+        return self.atom.pddl() if self.positive else f"(not {self.atom.pddl()})"
+
     def negate(self) -> "Literal":
         """The opposite literal."""
         return Literal(self.atom, not self.positive)

@@ -24,9 +24,12 @@ class FactWords:
         self._said: dict[Atom, str] = {}
 
     def say(self, fact: str) -> str:
-        """A fact, given as PDDL, in words; as it is, where it is none of the task's."""
+        """A fact, or that it does not hold, given as PDDL, in words; as it is, where it is none of
+        the task's."""
         if self.book is None:
             return fact
+        if fact.startswith("(not "):
+            return f"not {self.say(fact[len('(not ') : -1])}"
         atom = Atom.parse(fact)
         if atom not in self._said:
             try:

@@ -128,6 +128,7 @@ def render_report(events: list[Event], folder: Path) -> str:
             calibration=calibration_used(story.started),
             begun=true_start_said(story.started, words.say),
             saves=worth.more_would_save(),
+            unmet="; ".join(map(words.say, story.ended.unmet or ())) if story.ended else "",
         )
     )
 
