@@ -104,6 +104,37 @@ def test_an_own_domain_gives_what_the_papers_bench_gives(tpvqa: Run) -> None:
     assert rows_of("one") == rows
 
 
+@pytest.mark.parametrize("condition", [False, True])
+def test_a_file_that_says_something_else_since_needs_another_folder(
+    tpvqa: Run, condition: bool
+) -> None:
+    priors = Path("priors.yaml")
+    named = ["--conditions", "priors=priors.yaml"] if condition else ["--priors", priors]
+    words = ["bench", "run", "build_tower", "--monitors", "belief", "--vlm", "oracle", *named]
+    words += ["--workers", 1, "--out", "one"]
+    priors.write_text("(on red green): 0.9\n")
+    assert tpvqa(*words, "--episodes", 1)[0] == 0
+    rows = Path("one", ROWS).read_bytes()
+    priors.write_text("(on red green): 0.1\n")
+    code, _, err = tpvqa(*words, "--episodes", 2)
+    assert code == 2
+    assert ("say something else" if condition else "other settings (priors") in err
+    assert Path("one", ROWS).read_bytes() == rows
+    priors.write_text("(on red green): 0.9\n")
+    assert tpvqa(*words, "--episodes", 2)[0] == 0
+
+
+def test_rows_of_which_nobody_says_how_they_came_about_are_not_gone_on_with(tpvqa: Run) -> None:
+    words = ["bench", "run", "build_tower", "--monitors", "blind:1", "--episodes", 1]
+    words += ["--workers", 1, "--out", "one"]
+    assert tpvqa(*words)[0] == 0
+    Path("one/bench.json").unlink()
+    code, _, err = tpvqa(*words, "--max-actions", 9)
+    assert code == 2
+    assert "bench.json is missing" in err
+    assert not Path("one/bench.json").exists()
+
+
 def test_two_workers_and_a_folder_of_problems(tpvqa: Run, tmp_path: Path) -> None:
     folder = own_blocks(tmp_path / "blocks")
     words = ["bench", "run", folder, "--monitor", "tp,tpvqa", "--episodes", 2, "--json"]

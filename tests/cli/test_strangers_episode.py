@@ -59,6 +59,15 @@ def test_ones_own_episode_asks_for_nothing(forged: Forge) -> None:
     assert resume(forged()).because == "goal"
 
 
+def test_nobody_goes_on_with_another_vlm_than_the_log_tells(forged: Forge) -> None:
+    folder = forged()
+    before = (folder / LOG).read_bytes()
+    with pytest.raises(EpisodeError, match=r"begun with oracle:0\.9, .* leave --vlm out"):
+        resume(folder, named={"vlm": "oracle:0.5"})
+    assert (folder / LOG).read_bytes() == before
+    assert resume(folder, named={"vlm": "oracle:0.9"}).because == "goal"
+
+
 def test_the_key_is_not_sent_where_the_log_says(
     forged: Forge, tpvqa: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

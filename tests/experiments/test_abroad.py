@@ -216,3 +216,24 @@ def test_only_others_domains_are_run_uncalibrated(tmp_path: Path) -> None:
             [cell for cell, _ in cells]
         )
         assert len(told) == calibrated
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--vlms", ""], "--vlms names none"),
+        (["--tasks", "clean_dish"], "Did you mean 'clean_dishes'"),
+        (["--more", "failure=2", "--only-tables"], "rates of faults from 0 to 1"),
+        (["--seed", "99999999999999999999"], "--seed"),
+    ],
+)
+def test_what_makes_no_sense_is_said_before_anything_is_made(
+    words: list[str], says: str, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    program = [sys.executable, "-c", "from tpvqa.cli import main; main()", "bench", "abroad"]
+    command = [*program, "--parts", "shipped", *words, "--out", str(out)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (result.returncode, "Traceback" in result.stderr) == (2, False)
+    assert says in result.stderr.replace("\n", " ")
+    assert not out.exists()

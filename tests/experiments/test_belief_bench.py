@@ -519,7 +519,12 @@ class TestTargets:
     ("option", "message"),
     [
         (["--parts", "gird"], "Did you mean 'grid'"),
-        (["--accuracies", "0.8,x"], "write numbers with commas"),
+        (["--accuracies", "0.8,x"], "write numbers from 0 to 1 with commas"),
+        (["--accuracies", "1.5", "--only-tables"], "write numbers from 0 to 1 with commas"),
+        (["--prices", "nan", "--only-tables"], "write numbers not below 0 with commas"),
+        (["--rhos", ",", "--only-tables"], "write numbers from 0 to 1 with commas"),
+        (["--models", "bogus", "--only-tables"], "no recorded VLM 'bogus'"),
+        (["--seed", "99999999999999999999"], "--seed"),
         (["--tasks", "clean_dish"], "Did you mean 'clean_dishes'"),
     ],
 )

@@ -148,6 +148,8 @@ def run_abroad_bench(
     declared = bench.declared(
         folder, calibrating, version, workers=workers, scheduler=scheduler, published=published
     )
+    for cell in declared.wanted:
+        cell.config(bench.common, 0)  # says which of its settings cannot be
     if not declared.wanted:
         unfelt = Part.SENSED in bench.parts and not bench.extent.sensed
         raise BenchError(

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from tpvqa.cli.bench_running import EXIT, bench_bar, finish, listed
+from tpvqa.config.model import MOST
 from tpvqa_experiments.cli.bench_abroad import abroad
 from tpvqa_experiments.cli.bench_belief import belief
 from tpvqa_experiments.cli.bench_scenes import scenes
@@ -74,7 +75,9 @@ def paper(
             min=0,
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Decides every random number.", min=-MOST, max=MOST)
+    ] = 0,
     workers: Annotated[
         int | None, typer.Option(help="Local processes. Default: one a core.", min=1)
     ] = None,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tpvqa.cli.bench_running import bench_bar, listed
+from tpvqa.config.model import MOST
 
 if TYPE_CHECKING:
     from tpvqa.bench.own_task import OwnTask
@@ -44,7 +45,9 @@ def abroad(
         int, typer.Option(help="Trials that each calibration is learnt from.", min=1)
     ] = 120,
     limit: Annotated[bool, typer.Option(help="Measure who sees all, too.")] = True,
-    seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Decides every random number.", min=-MOST, max=MOST)
+    ] = 0,
     workers: Annotated[
         int | None, typer.Option(help="Local processes. Default: one a core.", min=1)
     ] = None,
@@ -68,23 +71,32 @@ def abroad(
 
     from tpvqa.bench.condition import normalised
     from tpvqa.config import TrialConfig
+    from tpvqa.errors import BenchError, UnknownNameError
     from tpvqa_experiments.abroad import AbroadBench, run_abroad_bench
     from tpvqa_experiments.abroad.bench import blocks_in, sensed
     from tpvqa_experiments.abroad.parts import MONITORS, SHIPPED, Extent
     from tpvqa_experiments.abroad.tables import lines
 
-    chosen = listed(tasks)
-    ours = _chosen(_ours(own), chosen)
+    chosen, noises = listed(tasks), listed(vlms)
+    if not noises:
+        raise BenchError("--vlms names none: name noise models with commas, e.g. oracle:0.8")
+    foreign, mine = _tasks(others), _ours(own)
+    blocks = blocks_in(PROBLEMS) if PROBLEMS.is_dir() else {}
+    known = {*foreign, *mine, *blocks, *SHIPPED}
+    for name in chosen:
+        if name not in known:
+            raise UnknownNameError("task of this bench", name, known)
+    ours = _chosen(mine, chosen)
     bench = AbroadBench(
         parts=[_part(name) for name in listed(parts)],
         extent=Extent(
-            others=_chosen(_tasks(others), chosen),
+            others=_chosen(foreign, chosen),
             own=ours,
             sensed=sensed(ours),
-            blocks=_chosen(blocks_in(PROBLEMS) if PROBLEMS.is_dir() else {}, chosen),
+            blocks=_chosen(blocks, chosen),
             tasks=[name for name in SHIPPED if not chosen or name in chosen],
             monitors=listed(monitors) or MONITORS,
-            vlms=listed(vlms),
+            vlms=noises,
             episodes=episodes,
             others_episodes=others_episodes,
             more=normalised(more),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tpvqa.cli.bench_running import bench_bar, listed
+from tpvqa.config.model import MOST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,7 +67,9 @@ def belief(
     embedded_calibration: Annotated[
         str, typer.Option(help="World where the embedded network is calibrated: images or kitchen.")
     ] = "images",
-    seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Decides every random number.", min=-MOST, max=MOST)
+    ] = 0,
     workers: Annotated[
         int | None, typer.Option(help="Local processes. Default: one a core.", min=1)
     ] = None,
@@ -105,8 +108,8 @@ def belief(
         parts=[_part(name) for name in listed(parts)],
         extent=Extent(
             tasks=listed(tasks),
-            accuracies=_numbers(accuracies, "--accuracies"),
-            rhos=_numbers(rhos, "--rhos"),
+            accuracies=_numbers(accuracies, "--accuracies", most=1),
+            rhos=_numbers(rhos, "--rhos", most=1),
             prices=_numbers(prices, "--prices"),
             models=listed(models),
             episodes=episodes,
@@ -186,13 +189,19 @@ def _print(checks: "Sequence[Check]") -> None:
         print(f"\n{missing} of {len(checks)} figures were not measured")
 
 
-def _numbers(text: str, option: str) -> tuple[float, ...]:
-    from tpvqa.errors import BenchError
+def _numbers(text: str, option: str, *, most: float | None = None) -> tuple[float, ...]:
+    from math import inf, isfinite
+
+    from tpvqa.errors import BenchError, shown
 
     try:
-        return tuple(float(part) for part in listed(text))
+        found = tuple(float(part) for part in listed(text))
     except ValueError:
-        raise BenchError(f"{option} {text}: write numbers with commas, e.g. 0.6,0.8") from None
+        found = ()
+    if not found or not all(isfinite(each) and 0 <= each <= (most or inf) for each in found):
+        of = f" from 0 to {most:g}" if most else " not below 0"
+        raise BenchError(f"{option} {shown(text)}: write numbers{of} with commas, e.g. 0.6,0.8")
+    return found
 
 
 def _part(name: str) -> "Part":

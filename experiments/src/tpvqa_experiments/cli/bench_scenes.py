@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from tpvqa.cli.bench_running import listed
+from tpvqa.config.model import MOST
 
 
 def scenes(
@@ -19,7 +20,10 @@ def scenes(
         ),
     ],
     models: Annotated[str, typer.Option(help="Recorded VLMs, with commas. Default: all.")] = "",
-    seed: Annotated[int, typer.Option(help="Decides which problems are learned from first.")] = 0,
+    seed: Annotated[
+        int,
+        typer.Option(help="Decides which problems are learned from first.", min=-MOST, max=MOST),
+    ] = 0,
     out: Annotated[Path, typer.Option(help="Folder for tables and figures.")] = Path(
         "bench-scenes"
     ),

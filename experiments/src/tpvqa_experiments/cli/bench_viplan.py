@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from tpvqa.cli.bench_running import bench_bar, listed
+from tpvqa.config.model import MOST
 
 
 def viplan(
@@ -48,7 +49,9 @@ def viplan(
         ),
     ] = "scenes",
     episodes: Annotated[int, typer.Option(help="Of every problem in every cell.", min=1)] = 1,
-    seed: Annotated[int, typer.Option(help="Decides every random number.")] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Decides every random number.", min=-MOST, max=MOST)
+    ] = 0,
     workers: Annotated[
         int | None, typer.Option(help="Local processes. Default: one a core.", min=1)
     ] = None,

@@ -1,7 +1,7 @@
 """The one engine of all benches: a declaration goes in, rows of finished episodes come out."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -9,11 +9,12 @@ from typing import Any
 from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.checking import check
+from tpvqa.bench.condition import settings_of
 from tpvqa.bench.ledger import REMEDY, Ledger
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.published import tasks_of
 from tpvqa.bench.schedule import run_all
-from tpvqa.bench.settings import common_settings
+from tpvqa.bench.settings import common_settings, fingerprint
 from tpvqa.bench.stated_risk import TRIALS, bounds, check_risk
 from tpvqa.bench.told_object import read_object
 from tpvqa.config import TrialConfig
@@ -23,7 +24,7 @@ from tpvqa.files import write_whole
 Progress = Callable[[int, int], None]
 """Told how many are done, and how many there are."""
 TASKS = "tasks.json"
-"""The fingerprints of the user's own tasks, by name."""
+"""The fingerprints of the user's own tasks, and of files that conditions name, by name."""
 
 
 def _nothing(cells: Sequence[Cell]) -> Mapping[Cell, Calibration]:
@@ -97,7 +98,7 @@ def run_bench(
     ledger = Ledger(folder, bench.settings, published)
     try:
         known = {} if published is None else tasks_of(published)
-        _keep_tasks(folder, bench, {cell.task for cell, _ in ledger.rows}, known)
+        _keep_files(folder, bench, [cell for cell, _ in ledger.rows], known)
         missing = {cell: len(ledger.missing(cell, n)) for cell, n in bench.wanted.items()}
         unfinished = [cell for cell, count in missing.items() if count]
         told = bench.calibrations(unfinished)
@@ -142,22 +143,36 @@ def run_bench(
     return ledger
 
 
-def _keep_tasks(folder: Path, bench: Bench, ran: set[str], published: Mapping[str, str]) -> None:
-    """Note what the files of own tasks say, those of published rows, too; other files need another
-    folder.
+def _keep_files(
+    folder: Path, bench: Bench, ran: Iterable[Cell], published: Mapping[str, str]
+) -> None:
+    """Note what the files of own tasks and of conditions say, those of published rows, too; other
+    files need another folder.
 
     Raises:
-        BenchError: A task was run with other files.
+        BenchError: A task or a condition was run with other files.
     """
     path = folder / TASKS
     lie = read_object(path) or {}
     there = {**published, **lie}
+    named = {each for cell in bench.wanted for each in _conditions_files(cell)}
     here = {name: own.fingerprint for name, own in bench.own.items()}
-    for task in {cell.task for cell in bench.wanted} & ({*there} | ran):
-        if there.get(task) != here.get(task):
+    here |= {name: fingerprint(file) for name, file in named}
+    before = {name for cell in ran for name in (cell.task, *dict(_conditions_files(cell)))}
+    wanted = {cell.task for cell in bench.wanted} | dict(named).keys()
+    for name in sorted(wanted & ({*there} | before)):
+        if there.get(name) != here.get(name):
+            what = "a task" if name not in dict(named) else "a condition"
             raise BenchError(
-                f"{folder} holds episodes of a task {task!r} whose files say something else. "
+                f"{folder} holds episodes of {what} {name!r} whose files say something else. "
                 "Name another folder with --out"
             )
     if here.keys() - lie.keys():
         write_whole(path, f"{json.dumps(there | here, indent=1)}\n".encode(), remedy=REMEDY)
+
+
+def _conditions_files(cell: Cell) -> Iterator[tuple[str, Path]]:
+    """The files that a cell's condition names, by what it says of them."""
+    file = settings_of(cell.condition).get("priors")
+    if file is not None:
+        yield f"priors={file}", Path(file)

@@ -71,6 +71,11 @@ class Ledger:
                     "Name another folder with --out"
                 )
             return
+        if os.fstat(self._file.fileno()).st_size:
+            raise BenchError(
+                f"{self.folder}: {ROWS} has rows, and {SETTINGS} is missing, which says how they "
+                "came about. Put it back, or name another folder with --out"
+            )
         write_whole(path, f"{json.dumps(settings, indent=1)}\n".encode(), remedy=REMEDY)
 
     def _read(self) -> Iterator[Placed]:

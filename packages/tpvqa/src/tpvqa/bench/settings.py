@@ -50,8 +50,7 @@ def _faults(simulation: SimulationConfig) -> dict[str, Any]:
         if told[name] == usual[name]:
             del told[name]
     if simulation.true_start is not None:
-        text = read_text(Path(simulation.true_start), PDDLError, what="state file")
-        told["true_start"] = sha256(text.encode()).hexdigest()[:12]
+        told["true_start"] = fingerprint(Path(simulation.true_start))
     return told
 
 
@@ -63,5 +62,17 @@ def _others(common: TrialConfig) -> Iterator[tuple[str, Any]]:
         value: Any = common
         for name in each.key:
             value = getattr(value, name)
-        if value != each.default:
-            yield each.option.lstrip("-"), json.loads(json.dumps(value, default=str))
+        if value == each.default:
+            continue
+        if each.file and Path(value).is_file():
+            value = fingerprint(Path(value))
+        yield each.option.lstrip("-"), json.loads(json.dumps(value, default=str))
+
+
+def fingerprint(file: Path) -> str:
+    """Tells a file from one that says something else.
+
+    Raises:
+        PDDLError: It cannot be read.
+    """
+    return sha256(read_text(file, PDDLError, what="file").encode()).hexdigest()[:12]

@@ -17,7 +17,7 @@ from tpvqa.config.layers import NAMEABLE, Key, Setting, settings
 from tpvqa.errors import EpisodeError, NotNamedError
 from tpvqa.events import Started
 from tpvqa.plugins import Kind, is_plain, split
-from tpvqa.vlm.making import as_logged
+from tpvqa.vlm.making import as_logged, in_full
 
 _KINDS = {
     ("world", "spec"): Kind.WORLD,
@@ -62,6 +62,7 @@ def config_of(
         elif key in given:
             chosen = given[key]
             _same_plugin(setting, value, chosen)
+            _same_words(setting, value, chosen)
         elif key not in NAMEABLE or value is None or _harmless(key, value):
             continue
         elif key == ("vlm", "base_url") and os.environ.get("OPENAI_BASE_URL"):
@@ -116,6 +117,20 @@ def _same_plugin(setting: Setting, value: str | None, chosen: str) -> None:
         raise EpisodeError(
             f"{setting.option} {chosen}: the episode was begun with {value}, and is gone on with "
             "that; only what follows the colon may be another"
+        )
+
+
+def _same_words(setting: Setting, value: str | None, chosen: str) -> None:
+    """See that nobody names another than the log, where the log may be taken at its word."""
+    if value is None or setting.key not in _KINDS or not is_plain(_KINDS[setting.key], value):
+        return
+    said = {chosen}
+    if setting.key == ("vlm", "spec"):
+        said |= {in_full(chosen), as_logged(chosen)}
+    if value not in said:
+        raise EpisodeError(
+            f"{setting.option} {chosen}: the episode was begun with {value}, and is gone on with "
+            f"that; leave {setting.option} out"
         )
 
 
