@@ -13,6 +13,7 @@ from tpvqa.pddl.worker.blocks import sections
 from tpvqa.pddl.worker.costs import check_costs
 from tpvqa.pddl.worker.durative import taken_apart
 from tpvqa.pddl.worker.effects import check_equality, misplaced_forall
+from tpvqa.pddl.worker.keywords import mistyped
 from tpvqa.pddl.worker.lisp import Block, LispError, line_of, read_block
 from tpvqa.pddl.worker.metric import passed_over
 from tpvqa.pddl.worker.numeric import taken_out as numbers_taken_out
@@ -193,9 +194,11 @@ def _explained(error: _LocatedError, blocks: dict[str, Block]) -> ReadingError:
         remedy = (
             "; declare a type above these in (:types …), such as 'truck van - vehicle', and name it"
         )
-    if error.item is not None and not isinstance(error.item, ParseError):
+    if typed := mistyped(message, error.item):
+        message = typed
+    elif error.item is not None and not isinstance(error.item, ParseError):
         message += f": got {_shown(error.item)}"
-    if error.syntax:
+    if error.syntax and not typed:
         message += f"; expected {error.syntax}"
     message += remedy + _in(error.layers) + _names_that_exist(error)
     part, line = _innermost(error.__traceback__)
