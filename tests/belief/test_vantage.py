@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from tests.ward import DOMAIN
 from tpvqa.belief.filtering.belief import Belief
 from tpvqa.belief.filtering.faults import FaultModel
+from tpvqa.belief.filtering.first import Prior
 from tpvqa.belief.weighing.vantage import Vantage
 from tpvqa.pddl import Atom, State, task_from_text
 from tpvqa.vlm import Reply
@@ -94,7 +95,27 @@ def test_asked_is_what_may_be_shown_here(
     tmp_path_factory: pytest.TempPathFactory, store: float
 ) -> None:
     belief, vantage = believed(tmp_path_factory, store)
-    assert vantage.shows((LAMP,)) == (belief.probability(STORE) >= 0.1)
     assert vantage.shows((LAMP, PUMP))
+    hall, there = belief.probability(HALL), belief.probability(STORE)
+    assert vantage.shows((LAMP,)) == (there >= 0.1 * max(hall, there))
+    assert vantage.shows((PUMP,)) == (hall >= 0.1 * max(hall, there))
     assert vantage.shows((STORE,))
     assert not vantage.shows((Atom.parse("(in lamp theatre)"),))
+
+
+def test_who_is_anywhere_asks_about_everything(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Each of many places has less than a tenth, and nothing else would tell where it is."""
+    rooms = [f"room{number}" for number in range(30)]
+    task = task_from_text(
+        DOMAIN,
+        f"""(define (problem anywhere) (:domain ward)
+ (:objects {" ".join(rooms)} - room lamp - tool anna - patient)
+ (:init (free) (in lamp room3) (oneof {" ".join(f"(at {room})" for room in rooms)})
+   (lies anna room1) (needs anna lamp))
+ (:goal (treated anna)))""",
+    )
+    file = tmp_path_factory.mktemp("ward") / "world.yaml"
+    file.write_text("shown: [{fact: '(in ?t ?r)', where: '(at ?r)'}]")
+    rules = load_world_file(file, task)
+    vantage, prior = Vantage(Belief(FaultModel(task, rules)), rules.shown), Prior(task)
+    assert all(vantage.shows((Atom("in", ("lamp", room)),), prior) for room in rooms)

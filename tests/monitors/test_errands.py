@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import ward
 from tests.ward import DOMAIN
 from tpvqa.assembly import Trial
 from tpvqa.config import TrialConfig
@@ -139,3 +140,14 @@ def test_what_is_out_of_sight_is_hardly_asked_about(tmp_path: Path) -> None:
     ]
     assert Reply.CANNOT_SEE in replies  # going fails, and is believed to have worked
     assert replies.count(Reply.CANNOT_SEE) <= 0.1 * len(replies)
+
+
+def test_at_first_only_what_is_shown_here_is_asked_about(tmp_path: Path) -> None:
+    _, events = run(tmp_path, 0, problem=ward.PROBLEM)
+    first = next(number for number, event in enumerate(events) if isinstance(event, Acted))
+    asked = {q.atom for e in events[:first] if isinstance(e, Asked) for q in e.questions}
+    assert {fact for fact in asked if fact.startswith("(in ")} <= {
+        "(in lamp hall)",
+        "(in pump hall)",
+    }
+    assert asked & {"(in lamp hall)", "(in pump hall)"}

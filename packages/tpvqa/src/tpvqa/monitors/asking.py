@@ -7,6 +7,7 @@ from tpvqa.belief.answers.last_answer import Picture
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.deciding.inquiry import DOUBT, Budget, Inquiry
 from tpvqa.belief.filtering.belief import Belief
+from tpvqa.belief.filtering.first import Prior
 from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.belief.weighing.vantage import Vantage
 from tpvqa.monitors.feeling import Feeling
@@ -115,11 +116,15 @@ class Asking:
         return self._belief.probability(question.atom, question.alike)
 
     def open_views(self, question: FactQuestion) -> list[str | None]:
-        """From where a question may still find an answer, the next one first: `views` of it, and
-        none where what it is about is out of sight here."""
-        return self.views(question) if self._vantage.shows(question.atoms) else []
+        """From where a question may still find an answer, the next one first, and none
+        where what it is about is out of sight here."""
+        return self._views_of(question) if self._vantage.shows(question.atoms) else []
 
-    def views(self, question: FactQuestion) -> list[str | None]:
+    def views_at_first(self, question: FactQuestion, prior: Prior) -> list[str | None]:
+        """The same where initial states are looked for: by what they say of the place."""
+        return self._views_of(question) if self._vantage.shows(question.atoms, prior) else []
+
+    def _views_of(self, question: FactQuestion) -> list[str | None]:
         """From where a question may still find an answer, wherever the robot is.
 
         They go round: another view repeats the last answer less than the same one does. From none

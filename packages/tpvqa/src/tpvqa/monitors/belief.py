@@ -208,7 +208,7 @@ class BeliefMonitor(Learning, PlainArguments):
             self.evidence,
             book,
             now,
-            views=self._asking.views,
+            views=lambda question: self._asking.views_at_first(question, prior),
             budget=self._asking.budget,
             picture=self._asking.telling,
         )

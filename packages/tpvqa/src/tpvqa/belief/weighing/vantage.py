@@ -1,14 +1,16 @@
 """From where facts are shown: what can be asked here, and what *cannot see* tells of the place."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from math import prod
 
 from tpvqa.belief.filtering.belief import Belief
 from tpvqa.belief.filtering.faults import Showing
+from tpvqa.belief.filtering.first import Prior
 from tpvqa.pddl import Atom
 from tpvqa.vlm import Reply
 
 OUT_OF_SIGHT = 0.1
-"""A fact that is shown here with less is not asked about."""
+"""A fact that is shown here with less, of where the robot most probably is, is not asked about."""
 SHOWN, ELSEWHERE = (9.0, 1.0), (3.0, 7.0)
 """As how many questions with and without an answer it is known, before the first, how often one
 finds an answer where its fact is shown, and elsewhere."""
@@ -30,6 +32,8 @@ class Vantage:
         self._needs: dict[Atom, frozenset[Atom]] = {}
         self._heard: set[tuple[frozenset[Atom], bool]] = set()
         self._shown, self._elsewhere = SHOWN, ELSEWHERE
+        self._of: Mapping[int, float] | None = None  # the weights of what was found
+        self._found: dict[frozenset[Atom], float] = {}
 
     @property
     def limited(self) -> bool:
@@ -46,20 +50,36 @@ class Vantage:
             self._needs[atom] = known
         return known
 
-    def shows(self, atoms: Sequence[Atom]) -> bool:
-        """Whether any of some facts may be shown here, by what is believed of where the robot
-        is."""
-        return any(
-            not needed or self._probability(needed) >= OUT_OF_SIGHT
-            for needed in map(self.needed, atoms)
-        )
+    def shows(self, atoms: Sequence[Atom], prior: Prior | None = None) -> bool:
+        """Whether any of some facts may be shown here, by what is believed of where the robot is:
+        with less than a tenth of where it most probably is they are not.
+
+        Args:
+            atoms: The facts.
+            prior: What is believed; by default the belief.
+        """
+        places = [self.needed(atom) for atom in atoms]
+        if not all(places):
+            return True
+
+        def likely(needed: frozenset[Atom]) -> float:
+            return self._probability(needed) if prior is None else _in_prior(needed, prior)
+
+        most = max(map(likely, filter(None, set(self._needs.values()))))
+        return max(map(likely, places)) >= OUT_OF_SIGHT * most
 
     def _holds(self, needed: frozenset[Atom], number: int) -> bool:
         return all(self._belief.model.truth((atom,))[number] for atom in needed)
 
     def _probability(self, needed: frozenset[Atom]) -> float:
-        weights = self._belief.weights.items()
-        return sum(weight for number, weight in weights if self._holds(needed, number))
+        weights = self._belief.weights
+        if weights is not self._of:
+            self._of = weights
+            self._found.clear()
+        if needed not in self._found:
+            held = (weight for each, weight in weights.items() if self._holds(needed, each))
+            self._found[needed] = sum(held)
+        return self._found[needed]
 
     def moved(self) -> None:
         """Note that an action was executed: what is seen may be something else."""
@@ -83,6 +103,10 @@ class Vantage:
         likely = self._probability(needed)
         self._shown = _counted(self._shown, likely, told=told)
         self._elsewhere = _counted(self._elsewhere, 1 - likely, told=told)
+
+
+def _in_prior(needed: frozenset[Atom], prior: Prior) -> float:
+    return prod(prior.probability(atom) for atom in needed)
 
 
 def _rate(counts: tuple[float, float], *, told: bool) -> float:
