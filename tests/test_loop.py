@@ -22,7 +22,8 @@ from tpvqa.episodes import EpisodeWriter, MemoryWriter, read_episode
 from tpvqa.episodes.log import LOG
 from tpvqa.errors import EpisodeError
 from tpvqa.events import Ended, Event, Limits
-from tpvqa.events.events import Acted, Acting
+from tpvqa.events.events import Acted, Acting, PlanMade
+from tpvqa.events.state import STUCK
 from tpvqa.planning import Crashed, Planner, TimedOut
 from tpvqa.planning.fast_downward import FastDownward
 from tpvqa.resuming import resume
@@ -124,6 +125,24 @@ def test_an_always_no_to_preconditions_ends_at_the_limit_of_replans(planner: Pla
         trial.parts.vlm = ScriptedVLM(contrary)
         ended = trial.run(MemoryWriter())
     assert (ended.because, ended.replans, ended.completed) == ("limit of replans", 10, False)
+
+
+def test_a_trial_that_never_acts_ends_where_its_changes_of_plan_have_no_limit(
+    planner: Planner,
+) -> None:
+    """Under errors that last every plan is denied, from the same pictures, for ever."""
+    config = configured(
+        task="build_tower",
+        world="symbolic",
+        vlm="recorded:gemma-3-12b",
+        monitor="lead:2",
+        seed=8800,
+        limits={"repeats": "none", "replans": "none"},
+    )
+    ended, events = run(config, planner)
+    last = max(number for number, event in enumerate(events) if isinstance(event, Acted))
+    since = sum(isinstance(event, PlanMade) for event in events[last:])
+    assert (ended.because, since) == ("limit of replans", STUCK)
 
 
 def test_a_vlm_that_never_answers_stops_the_robot_safely(planner: Planner) -> None:

@@ -194,7 +194,13 @@ class Limits(Part):
     repeats: Limit = setting(
         "--max-repeats", "Repeats of an action in a row, or none.", 10, text=True, ge=0
     )
-    replans: Limit = setting("--max-replans", "Replans in the trial, or none.", 10, text=True, ge=0)
+    replans: Limit = setting(
+        "--max-replans",
+        "Replans in the trial, or none (then 300 without an action end it).",
+        10,
+        text=True,
+        ge=0,
+    )
     actions: Annotated[_Actions, BeforeValidator(_times)] = setting(
         "--max-actions",
         "Actions in the trial, repeats included: a number, or 50x for fifty times the first plan. "

@@ -30,6 +30,9 @@ from tpvqa.questions import Way
 from tpvqa.vlm import Reply
 
 _atom = lru_cache(maxsize=65536)(Atom.parse)
+STUCK = 300
+"""Changes of plan without an action, after which a trial ends that sets them no limit: where errors
+last it would be denied the same for ever."""
 
 
 class Exchange(NamedTuple):
@@ -116,6 +119,7 @@ class TrialState:
     ended: Ended | None = None
     usage: UsageRecord | None = None
     _checked: bool = False
+    _idle: int = 0  # changes of plan since the last action
     _deadline: float | None = None
 
     @property
@@ -176,7 +180,7 @@ class TrialState:
                 change = {"acting": event, "actions": self.actions + 1, "attempt": event.attempt}
                 change["index"] = event.step
             case Acted():
-                change = {"acting": None, "acted": event, "when": "after"}
+                change = {"acting": None, "acted": event, "when": "after", "_idle": 0}
             case PlanMade(considered=False, result="plan"):
                 first = len(event.plan) if self.first_plan is None else self.first_plan
                 change = {"plan": event, "first_plan": first, "index": 0, "attempt": 0}
@@ -230,8 +234,10 @@ class TrialState:
                 change |= {"attempt": self.attempt + 1, "repeats": self.repeats + 1}
             case Decision.REPLAN if self.replans_left is not None and self.replans_left <= 0:
                 change["over"] = "limit of replans"
+            case Decision.REPLAN if self._idle >= STUCK:
+                change["over"] = "limit of replans"
             case Decision.REPLAN:
-                change["replans"] = self.replans + 1
+                change |= {"replans": self.replans + 1, "_idle": self._idle + 1}
         return change
 
     def _but(self, change: dict[str, Any], time: float) -> Self:
