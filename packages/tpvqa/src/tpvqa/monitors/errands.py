@@ -76,7 +76,6 @@ class Errands:
         self._task, self._vantage, self._costs = task, vantage, costs
         self._gone: Counter[frozenset[Atom]] = Counter()
         self._left: dict[frozenset[Atom], float] = {}
-        self._been: frozenset[Atom] | None = None
 
     def seek(
         self,
@@ -103,9 +102,6 @@ class Errands:
         full = self._task.extend(state)
         savings = self._savings(belief, chooser, book)
         self._left |= {here: saving for here, saving in savings.items() if here <= full}
-        if self._been is not None:
-            self._left[self._been] = savings.get(self._been, 0.0)
-            self._been = None
         asking = evidence.answers_to_be_sure() * (self._costs.question + self._costs.look)
         told = evidence.settling().share
         unseen = (1 - told) * chances.rates.undone * chooser.ahead.failure
@@ -127,7 +123,6 @@ class Errands:
             if too_many or worth <= steps * going:
                 continue
             self._gone[needed] += 1
-            self._been = needed
             task = replace(self._task, goal=Conjunction(tuple(map(Literal, sorted(needed)))))
             # At its end nothing is reported.
             costs = self._costs.model_copy(update={"misreport": 0.0})
