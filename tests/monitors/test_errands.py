@@ -145,7 +145,7 @@ def test_what_is_out_of_sight_is_hardly_asked_about(tmp_path: Path) -> None:
 def test_at_first_only_what_is_shown_here_is_asked_about(tmp_path: Path) -> None:
     _, events = run(tmp_path, 0, problem=ward.PROBLEM)
     first = next(number for number, event in enumerate(events) if isinstance(event, Acted))
-    asked = {q.atom for e in events[:first] if isinstance(e, Asked) for q in e.questions}
+    asked = {str(q.atom) for e in events[:first] if isinstance(e, Asked) for q in e.questions}
     assert {fact for fact in asked if fact.startswith("(in ")} <= {
         "(in lamp hall)",
         "(in pump hall)",
