@@ -30,6 +30,7 @@ class Vantage:
     def __init__(self, belief: Belief, rules: Sequence[Showing]):
         self._belief, self._rules = belief, tuple(rules)
         self._needs: dict[Atom, frozenset[Atom]] = {}
+        self._places: list[frozenset[Atom]] = []
         self._heard: set[tuple[frozenset[Atom], bool]] = set()
         self._shown, self._elsewhere = SHOWN, ELSEWHERE
         self._of: Mapping[int, float] | None = None  # the weights of what was found
@@ -48,6 +49,8 @@ class Vantage:
             found = (rule.needed(atom, task) for rule in self._rules)
             known = next((each for each in found if each is not None), frozenset())
             self._needs[atom] = known
+            if known and known not in self._places:
+                self._places.append(known)
         return known
 
     def shows(self, atoms: Sequence[Atom], prior: Prior | None = None) -> bool:
@@ -65,7 +68,7 @@ class Vantage:
         def likely(needed: frozenset[Atom]) -> float:
             return self._probability(needed) if prior is None else _in_prior(needed, prior)
 
-        most = max(map(likely, filter(None, set(self._needs.values()))))
+        most = max(map(likely, self._places))
         return max(map(likely, places)) >= OUT_OF_SIGHT * most
 
     def _holds(self, needed: frozenset[Atom], number: int) -> bool:
