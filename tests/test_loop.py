@@ -143,6 +143,8 @@ def test_a_trial_that_never_acts_ends_where_its_changes_of_plan_have_no_limit(
     last = max(number for number, event in enumerate(events) if isinstance(event, Acted))
     since = sum(isinstance(event, PlanMade) for event in events[last:])
     assert (ended.because, since) == ("limit of replans", STUCK)
+    longer = config.but(limits={"replans": STUCK + 20})
+    assert run(longer, planner)[0].replans == STUCK + 20
 
 
 def test_a_vlm_that_never_answers_stops_the_robot_safely(planner: Planner) -> None:

@@ -95,10 +95,10 @@ def test_asked_is_what_may_be_shown_here(
     tmp_path_factory: pytest.TempPathFactory, store: float
 ) -> None:
     belief, vantage = believed(tmp_path_factory, store)
-    assert vantage.shows((LAMP, PUMP))
     hall, there = belief.probability(HALL), belief.probability(STORE)
     assert vantage.shows((LAMP,)) == (there >= 0.1 * max(hall, there))
     assert vantage.shows((PUMP,)) == (hall >= 0.1 * max(hall, there))
+    assert vantage.shows((LAMP, PUMP))
     assert vantage.shows((STORE,))
     assert not vantage.shows((Atom.parse("(in lamp theatre)"),))
 
@@ -119,3 +119,16 @@ def test_who_is_anywhere_asks_about_everything(tmp_path_factory: pytest.TempPath
     rules = load_world_file(file, task)
     vantage, prior = Vantage(Belief(FaultModel(task, rules)), rules.shown), Prior(task)
     assert all(vantage.shows((Atom("in", ("lamp", room)),), prior) for room in rooms)
+
+
+def test_places_of_other_rules_are_no_measure(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """That a hand is certainly free says nothing of the room in which the robot is."""
+    file = tmp_path_factory.mktemp("ward") / "world.yaml"
+    file.write_text(
+        "shown: [{fact: '(in ?t ?r)', where: '(at ?r)'}, {fact: '(treated ?p)', where: '(free)'}]"
+    )
+    rules = load_world_file(file, TASK)
+    belief = Belief(FaultModel(TASK, rules))
+    others = [(there() - {STORE} | {THEATRE}, 0.08), (there(), 0.07)]
+    belief.begin([(TASK.init - {HALL}, 0.85), *others])  # between two rooms
+    assert Vantage(belief, rules.shown).shows((LAMP,))

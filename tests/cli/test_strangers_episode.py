@@ -68,6 +68,13 @@ def test_nobody_goes_on_with_another_vlm_than_the_log_tells(forged: Forge) -> No
     assert resume(folder, named={"vlm": "oracle:0.9"}).because == "goal"
 
 
+def test_what_a_log_of_before_called_otherwise_is_no_other_vlm(forged: Forge) -> None:
+    started = read_episode(forged(vlm="recorded:gpt-4.1-nano:1"))[0]
+    assert isinstance(started, Started)
+    for named in ("recorded:gpt-4.1-nano:1", "recorded:gpt-4.1-nano:1:fresh"):
+        assert config_of(started, {"vlm": named}).vlm.spec == "recorded:gpt-4.1-nano:1:fresh"
+
+
 def test_the_key_is_not_sent_where_the_log_says(
     forged: Forge, tpvqa: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

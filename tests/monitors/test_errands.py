@@ -8,11 +8,14 @@ import pytest
 from tests import ward
 from tests.ward import DOMAIN
 from tpvqa.assembly import Trial
+from tpvqa.belief.weighing.vantage import Vantage
 from tpvqa.config import TrialConfig
+from tpvqa.drivers import performing
 from tpvqa.episodes import MemoryWriter
 from tpvqa.events import Event
 from tpvqa.events.events import Acted, Answered, Asked, Decided, Ended, PlanMade
 from tpvqa.vlm import Reply
+from tpvqa.vlm.answer import CAMERA
 
 PROBLEM = """(define (problem lamps) (:domain ward)
  (:objects hall store theatre - room lamp pump - tool anna - patient)
@@ -149,3 +152,15 @@ def test_at_first_only_what_is_shown_here_is_asked_about(tmp_path: Path) -> None
         "(in pump hall)",
     }
     assert asked & {"(in lamp hall)", "(in pump hall)"}
+
+
+def test_a_dead_camera_tells_nothing_of_the_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken: list[Reply] = []
+    monkeypatch.setattr(Vantage, "take", lambda _, atoms, reply: taken.append(reply))
+    monkeypatch.setattr(performing, "seen_by", lambda vlm, seen, *faults: (seen, "it is black"))
+    _, events = run(tmp_path, 0)
+    answers = [answer for e in events if isinstance(e, Answered) for answer in e.answers]
+    assert {(each.reply, each.source) for each in answers} == {(Reply.CANNOT_SEE, CAMERA)}
+    assert not taken

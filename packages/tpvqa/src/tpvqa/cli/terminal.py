@@ -35,6 +35,7 @@ from tpvqa.events.events import (
 )
 from tpvqa.questions import FactWords, QuestionBook
 from tpvqa.vlm import Reply
+from tpvqa.vlm.answer import CAMERA
 from tpvqa.worlds import Report
 
 _AGREEMENT_STYLE = {True: "green", False: "red", None: "dim"}
@@ -373,7 +374,7 @@ def _answer_line(told: _Told) -> str:
 def _unseen(told: _Told) -> str:
     """Why nobody was asked, where the look shows nothing."""
     answer = told.exchange.answer
-    return f" [dim]{marked(answer.text)}[/]" if answer.source == "camera" else ""
+    return f" [dim]{marked(answer.text)}[/]" if answer.source == CAMERA else ""
 
 
 def _mark(told: _Told) -> str:

@@ -234,7 +234,7 @@ class TrialState:
                 change |= {"attempt": self.attempt + 1, "repeats": self.repeats + 1}
             case Decision.REPLAN if self.replans_left is not None and self.replans_left <= 0:
                 change["over"] = "limit of replans"
-            case Decision.REPLAN if self._idle >= STUCK:
+            case Decision.REPLAN if self.replans_left is None and self._idle >= STUCK:
                 change["over"] = "limit of replans"
             case Decision.REPLAN:
                 change |= {"replans": self.replans + 1, "_idle": self._idle + 1}

@@ -18,6 +18,7 @@ from tpvqa.observation import Observation, SensedFact
 from tpvqa.pddl import Action, Atom
 from tpvqa.questions import FactQuestion
 from tpvqa.vlm import Answer, Reply
+from tpvqa.vlm.answer import CAMERA
 
 SAME = 3
 """Looks in a row that may show a picture which the question was asked of already."""
@@ -170,7 +171,8 @@ class Asking:
             now.questions += 1
             now.heard[question.text, answer.reply] += 1
             self._evidence.take(question, answer, now.picture, now.view)
-            self._vantage.take(question.atoms, answer.reply)
+            if answer.source != CAMERA:  # else the picture shows nothing, wherever it is from
+                self._vantage.take(question.atoms, answer.reply)
         self.silence.asked(answered=answer.reply in (Reply.YES, Reply.NO))
         if answer.reply in (Reply.YES, Reply.NO):
             told = Replies(question.atoms, before)

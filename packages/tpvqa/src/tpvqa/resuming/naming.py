@@ -124,10 +124,11 @@ def _same_words(setting: Setting, value: str | None, chosen: str) -> None:
     """See that nobody names another than the log, where the log may be taken at its word."""
     if value is None or setting.key not in _KINDS or not is_plain(_KINDS[setting.key], value):
         return
-    said = {chosen}
+    same, said = {value}, {chosen}
     if setting.key == ("vlm", "spec"):
+        same |= {as_logged(value)}
         said |= {in_full(chosen), as_logged(chosen)}
-    if value not in said:
+    if not same & said:
         raise EpisodeError(
             f"{setting.option} {chosen}: the episode was begun with {value}, and is gone on with "
             f"that; leave {setting.option} out"

@@ -15,6 +15,10 @@ class Reply(StrEnum):
     CANNOT_SEE = "cannot see"
 
 
+CAMERA = "camera"
+"""The source of an answer about a picture that shows nothing at all."""
+
+
 @dataclass(frozen=True, slots=True)
 class Answer:
     """One answer.
@@ -24,7 +28,7 @@ class Answer:
         reply: The answer.
         p_yes: P(yes | yes or no), between 0 and 1; None where the VLM gives none.
         source: How `p_yes` or the reply was obtained: "network", "logprobs", "classes",
-            "likelihood", "word", "oracle".
+            "likelihood", "word", "oracle", or `CAMERA`.
         text: The VLM's raw words, or why there is no answer.
         p_cannot_see: Probability that the picture does not show it, where the VLM tells.
         leftover: Probability mass on neither yes nor no (logprobs), where known.

@@ -21,7 +21,7 @@ from tpvqa.errors import PictureError
 from tpvqa.observation import Frame, Observation
 from tpvqa.pictures import in_colour, picture_type
 from tpvqa.questions.question import Question
-from tpvqa.vlm.answer import Answer, Reply
+from tpvqa.vlm.answer import CAMERA, Answer, Reply
 from tpvqa.vlm.capabilities import is_noise_model, needs_pictures
 from tpvqa.vlm.checking import ask_checked
 from tpvqa.vlm.protocol import VLM
@@ -82,7 +82,7 @@ def seen_by(
 
 def cannot_see(questions: Sequence[Question], why: str) -> list[Answer]:
     """The answers where nothing is to be seen."""
-    return [Answer(each, Reply.CANNOT_SEE, source="camera", text=why) for each in questions]
+    return [Answer(each, Reply.CANNOT_SEE, source=CAMERA, text=why) for each in questions]
 
 
 def picture_fault(frame: Frame) -> str:

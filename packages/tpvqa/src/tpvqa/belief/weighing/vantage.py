@@ -29,8 +29,8 @@ class Vantage:
 
     def __init__(self, belief: Belief, rules: Sequence[Showing]):
         self._belief, self._rules = belief, tuple(rules)
-        self._needs: dict[Atom, frozenset[Atom]] = {}
-        self._places: list[frozenset[Atom]] = []
+        self._needs: dict[Atom, tuple[int, frozenset[Atom]]] = {}
+        self._places: dict[int, set[frozenset[Atom]]] = {}
         self._heard: set[tuple[frozenset[Atom], bool]] = set()
         self._shown, self._elsewhere = SHOWN, ELSEWHERE
         self._of: Mapping[int, float] | None = None  # the weights of what was found
@@ -43,14 +43,16 @@ class Vantage:
 
     def needed(self, atom: Atom) -> frozenset[Atom]:
         """What has to hold so that a fact is shown."""
+        return self._rule_of(atom)[1]
+
+    def _rule_of(self, atom: Atom) -> tuple[int, frozenset[Atom]]:
+        """The number of the rule that says from where a fact is shown, and that."""
         known = self._needs.get(atom)
         if known is None:
             task = self._belief.model.task
-            found = (rule.needed(atom, task) for rule in self._rules)
-            known = next((each for each in found if each is not None), frozenset())
-            self._needs[atom] = known
-            if known and known not in self._places:
-                self._places.append(known)
+            told = ((number, rule.needed(atom, task)) for number, rule in enumerate(self._rules))
+            found = ((number, each) for number, each in told if each is not None)
+            known = self._needs[atom] = next(found, (len(self._rules), frozenset()))
         return known
 
     def shows(self, atoms: Sequence[Atom], prior: Prior | None = None) -> bool:
@@ -61,15 +63,28 @@ class Vantage:
             atoms: The facts.
             prior: What is believed; by default the belief.
         """
-        places = [self.needed(atom) for atom in atoms]
-        if not all(places):
-            return True
+        return not self._rules or any(self._may_show(atom, prior) for atom in atoms)
 
-        def likely(needed: frozenset[Atom]) -> float:
-            return self._probability(needed) if prior is None else _in_prior(needed, prior)
+    def _may_show(self, atom: Atom, prior: Prior | None) -> bool:
+        rule, needed = self._rule_of(atom)
+        derived = self._belief.model.task.derived
+        if not needed or (prior is not None and any(each.predicate in derived for each in needed)):
+            return True  # of what follows from others initial states say nothing
 
-        most = max(map(likely, self._places))
-        return max(map(likely, places)) >= OUT_OF_SIGHT * most
+        def likely(place: frozenset[Atom]) -> float:
+            return self._probability(place) if prior is None else _in_prior(place, prior)
+
+        places = self._places_of(rule) | {needed}
+        return likely(needed) >= OUT_OF_SIGHT * max(map(likely, places))
+
+    def _places_of(self, rule: int) -> set[frozenset[Atom]]:
+        """The places from which a rule shows what the task is about."""
+        if not self._places:
+            self._places = {number: set() for number in range(len(self._rules) + 1)}
+            for atom in self._belief.model.task.atoms():
+                number, needed = self._rule_of(atom)
+                self._places[number].add(needed)
+        return self._places[rule]
 
     def _holds(self, needed: frozenset[Atom], number: int) -> bool:
         return all(self._belief.model.truth((atom,))[number] for atom in needed)
