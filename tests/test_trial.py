@@ -137,7 +137,7 @@ def test_a_resumed_trial_is_configured_as_it_began(tmp_path: Path, planner: Plan
         assert again.started() == started.model_copy(update={"number": -1, "time": 0.0})
 
 
-def test_a_wrong_done_says_what_of_the_goal_is_not_so(planner: Planner, tmp_path: Path) -> None:
+def test_a_wrong_done_says_what_of_the_goal_is_not_so(planner: Planner) -> None:
     told = []
     for episode in range(12):
         with Trial(symbolic(monitor="blind:1", episode=episode), planner=planner) as trial:

@@ -13,7 +13,6 @@ from tpvqa.bench.told_object import read_object
 from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, UnknownNameError
 from tpvqa.tasks import find_task
-from tpvqa.vlm.recorded.answers import models
 from tpvqa_experiments.belief import calibrations as learnt
 from tpvqa_experiments.belief.check import Check
 from tpvqa_experiments.belief.parts import Extent, Part, believes
@@ -80,9 +79,6 @@ class BeliefBench:
         """
         for task in self.extent.tasks:
             find_task(task)
-        for name in self.extent.models:
-            if name not in models():
-                raise UnknownNameError("recorded VLM", name, models())
         cells = [cell for part in self.parts for cell, _ in self.extent.cells(part)]
         for kind, names, known in (
             ("monitor of these parts", self.monitors, [cell.monitor for cell in cells]),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tpvqa.cli.bench_running import bench_bar, listed
+from tpvqa.cli.bench_running import bench_bar, listed, listed_of
 from tpvqa.config.model import MOST
 
 if TYPE_CHECKING:
@@ -71,21 +71,18 @@ def abroad(
 
     from tpvqa.bench.condition import normalised
     from tpvqa.config import TrialConfig
-    from tpvqa.errors import BenchError, UnknownNameError
+    from tpvqa.errors import BenchError
     from tpvqa_experiments.abroad import AbroadBench, run_abroad_bench
     from tpvqa_experiments.abroad.bench import blocks_in, sensed
     from tpvqa_experiments.abroad.parts import MONITORS, SHIPPED, Extent
     from tpvqa_experiments.abroad.tables import lines
 
-    chosen, noises = listed(tasks), listed(vlms)
+    noises = listed(vlms)
     if not noises:
         raise BenchError("--vlms names none: name noise models with commas, e.g. oracle:0.8")
     foreign, mine = _tasks(others), _ours(own)
     blocks = blocks_in(PROBLEMS) if PROBLEMS.is_dir() else {}
-    known = {*foreign, *mine, *blocks, *SHIPPED}
-    for name in chosen:
-        if name not in known:
-            raise UnknownNameError("task of this bench", name, known)
+    chosen = listed_of(tasks, {*foreign, *mine, *blocks, *SHIPPED}, "task of this bench")
     ours = _chosen(mine, chosen)
     bench = AbroadBench(
         parts=[_part(name) for name in listed(parts)],

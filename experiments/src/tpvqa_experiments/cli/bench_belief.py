@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tpvqa.cli.bench_running import bench_bar, listed
+from tpvqa.cli.bench_running import bench_bar, listed, listed_of
 from tpvqa.config.model import MOST
 
 if TYPE_CHECKING:
@@ -98,6 +98,7 @@ def belief(
     """Measure the belief monitor against votes over several looks and the paper's baselines."""
     import os
 
+    from tpvqa.vlm.recorded.answers import models as recorded_models
     from tpvqa_experiments.belief import BeliefBench, run_belief_bench
     from tpvqa_experiments.belief.lasting_tables import lasting_rows
     from tpvqa_experiments.belief.parts import Extent
@@ -111,7 +112,7 @@ def belief(
             accuracies=_numbers(accuracies, "--accuracies", most=1),
             rhos=_numbers(rhos, "--rhos", most=1),
             prices=_numbers(prices, "--prices"),
-            models=listed(models),
+            models=listed_of(models, recorded_models(), "recorded VLM"),
             episodes=episodes,
             rivals=rivals,
             curve=curve_episodes,

@@ -1,13 +1,12 @@
 """`tpvqa bench viplan`: the problems of the ViPlan benchmark under noise of recorded VLMs."""
 
 import json
-from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from tpvqa.cli.bench_running import bench_bar, listed
+from tpvqa.cli.bench_running import bench_bar, listed, listed_of
 from tpvqa.config.model import MOST
 
 
@@ -74,10 +73,10 @@ def viplan(
     from tpvqa_experiments.viplan.problems import SPLITS, Environment, problems_in
     from tpvqa_experiments.viplan.published import MODELS, published
 
-    wanted = [split for split in SPLITS if split in _known(splits, SPLITS, "split")]
+    wanted = [split for split in SPLITS if split in listed_of(splits, SPLITS, "split")]
     chosen = {
         name: problem
-        for where in _known(environments, [each.value for each in Environment], "environment")
+        for where in listed_of(environments, [each.value for each in Environment], "environment")
         for name, problem in problems_in(problems, Environment(where), wanted).items()
     }
     oracles = [name for name in listed(models) if name.partition(":")[0] == ORACLE]
@@ -87,11 +86,11 @@ def viplan(
     names = sorted(MODELS.values())
     bench = ViPlanBench(
         problems=chosen,
-        models=_known(models, [*names, *oracles, *tables], "recorded model") or names,
+        models=listed_of(models, [*names, *oracles, *tables], "recorded model") or names,
         monitors=listed(monitors),
-        settings=_known(settings, SETTINGS, "setting"),
-        limits=_known(limit, LIMITS, "limit"),
-        noise=_known(noise, NOISES, "noise")[0],
+        settings=listed_of(settings, SETTINGS, "setting"),
+        limits=listed_of(limit, LIMITS, "limit"),
+        noise=listed_of(noise, NOISES, "noise")[0],
         episodes=episodes,
         common=TrialConfig(seed=seed),
     )
@@ -112,12 +111,3 @@ def viplan(
         print(f"table: {out}/viplan.md, and as JSON beside it")
     if any(each.errors for each in lines):
         raise typer.Exit(1)
-
-
-def _known(text: str, known: Collection[str], what: str) -> tuple[str, ...]:
-    from tpvqa.errors import UnknownNameError
-
-    for name in listed(text):
-        if name not in known:
-            raise UnknownNameError(what, name, known)
-    return listed(text)

@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -72,3 +72,17 @@ def finish(results: "Results", out: Path, *, as_json: bool) -> None:
 def listed(text: str) -> tuple[str, ...]:
     """What a text with commas names, each once."""
     return tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
+
+
+def listed_of(text: str, known: Collection[str], what: str) -> tuple[str, ...]:
+    """The same of names that are known.
+
+    Raises:
+        UnknownNameError: One is not; `what` it would be is said.
+    """
+    from tpvqa.errors import UnknownNameError
+
+    for name in listed(text):
+        if name not in known:
+            raise UnknownNameError(what, name, known)
+    return listed(text)

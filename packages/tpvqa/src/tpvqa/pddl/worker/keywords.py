@@ -32,5 +32,4 @@ def mistyped(message: str, item: object) -> str | None:
 def _said(word: object, known: Iterable[str]) -> str | None:
     if not isinstance(word, str):
         return None
-    meant = suggestion(str(word), known)
-    return f"{shown(str(word))} is none of {', '.join(known)}{meant}".rstrip(".")
+    return f"{shown(word)} is none of {', '.join(known)}{suggestion(word, known)}".rstrip(".")
