@@ -74,8 +74,9 @@ class Vantage:
         def likely(place: frozenset[Atom]) -> float:
             return self._probability(place) if prior is None else _in_prior(place, prior)
 
-        places = self._places_of(rule) | {needed}
-        return likely(needed) >= OUT_OF_SIGHT * max(map(likely, places))
+        here = likely(needed)
+        most = max(map(likely, self._places_of(rule)), default=here)
+        return here >= OUT_OF_SIGHT * most
 
     def _places_of(self, rule: int) -> set[frozenset[Atom]]:
         """The places from which a rule shows what the task is about."""
