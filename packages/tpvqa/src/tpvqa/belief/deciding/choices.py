@@ -1,7 +1,6 @@
 """What can be done next, and what each is expected to cost."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 
 import numpy as np
 
@@ -11,11 +10,10 @@ from tpvqa.belief.deciding.annotated import AnnotatedPlan
 from tpvqa.belief.deciding.by_kind import Kinds
 from tpvqa.belief.deciding.commitment import Commitments
 from tpvqa.belief.deciding.doing import BARELY, IDLE, Doing, moved
-from tpvqa.belief.deciding.falls import fallen
-from tpvqa.belief.deciding.far_off import FarOff
-from tpvqa.belief.deciding.outlook import CHECKS, Outlook
+from tpvqa.belief.deciding.outlook import Outlook
 from tpvqa.belief.deciding.rounds import Rounds
 from tpvqa.belief.deciding.seeking import Seeking
+from tpvqa.belief.deciding.seen import Seen
 from tpvqa.belief.deciding.table import Choice, Table
 from tpvqa.belief.deciding.unseen import Unseen
 from tpvqa.belief.filtering.belief import Belief
@@ -30,17 +28,15 @@ SEVERAL = 40
 """Joint states of which it is worked out what they cost unseen; the rest is lost."""
 NEWS = 0.3
 """What is followed unseen is decided anew where so much of the belief has moved since."""
-DISTURBED = 0.02
-"""In joint states of at least this probability it is worked out what disturbances would cost."""
 
 
 class Chooser:
-    """Compares what can be done next (Q-MDP: Littman, Cassandra and Kaelbling 1995).
+    """Compares what can be done next.
 
-    The cost of an action is its own, plus that of the plan from where it leads, as if all that can
-    be seen were known from then on. What nothing shows stays as unsure as it is: joint states that
-    look alike are gone on from by one and the same way (`Commitments`). What it would cost to find
-    out the rest is not in it: what answers are worth is added by `information`.
+    An action costs what it costs where all that can be seen is seen after it (`Seen`), as far as
+    answers settle what is in doubt, and what it costs where nothing is (`Unseen`), as far as they
+    do not. What it costs to find out is not in it: what answers are worth is added by
+    `information`.
 
     Args:
         model: The action model.
@@ -72,14 +68,9 @@ class Chooser:
         self._unseen = Unseen(model, self.ahead, costs)
         self.settles, self.finding, self.blind = 1.0, 0.0, False
         self._decided: Mapping[int, float] | None = None
-        self._going: dict[tuple[int, bool], float] = {}
-        self._led: dict[Action, dict[tuple[int, bool], list[tuple[float, int, float]]]] = {}
-        self._near: dict[Action, dict[int, float]] = {}
-        checks = CHECKS * (costs.question + costs.look)
-        self._step = costs.action + min(checks, 0.1 * costs.action)
-        self._far = FarOff(model, self.ahead, self._step)
+        self._seen = Seen(model, self.ahead, self._sight, self._commitments, costs)
         self._worked_out_for: tuple[int, Rates] | None = None
-        self._doing = Doing(model, self.ahead, self._far, self._sight)
+        self._doing = Doing(model, self.ahead, self._seen.far, self._sight)
         self.seeking = Seeking(model, self.ahead, self._commitments)
         self.rounds = Rounds(costs.action)
         self.changes_left: int | None = None
@@ -109,8 +100,7 @@ class Chooser:
         self._commitments.renumbered(model)
         self.seeking.renumbered(model)
         self._unseen.renumbered(model)
-        self._near.clear()
-        self._far.renumbered(model)
+        self._seen.renumbered(model)
         self._doing.renumbered(model)
         self.rounds.renumbered(numbers)
 
@@ -136,9 +126,7 @@ class Chooser:
         self.ahead.may_be_blind(self.settles)
         if (self.ahead.version, rates) != self._worked_out_for:
             self._worked_out_for = self.ahead.version, rates
-            for known in (self._going, self._led, self._near):
-                known.clear()
-            self._far.forget()
+            self._seen.forget()
         ranked = belief.ranked()
         kinds = np.array([self._model.kind(number) for number, _ in ranked], np.intp)
         self._doing.predicted(belief.predicted)
@@ -147,6 +135,26 @@ class Chooser:
         if followed is not None:
             return followed
         self._commitments.unplanned.clear()
+        open_to = self._open(ranked, kinds, current, barred)
+        found = self._priced(open_to, ranked, kinds, current, barred, rates)
+        told, numbers = tuple(each[0] for each in found), tuple(number for number, _ in ranked)
+        costs = np.stack([each[1] for each in found], axis=1)
+        works = np.stack([each[2] for each in found], axis=2)
+        table = Table(told, numbers, np.array([weight for _, weight in ranked]), costs, works)
+        if self.blind and table.best.action is not None:
+            self._unseen.follow(table.best.action)
+            self._decided = dict(ranked)
+            return self._followed_now(ranked, kinds, current, barred) or table
+        return table
+
+    def _open(
+        self,
+        ranked: Sequence[tuple[int, float]],
+        kinds: Kinds,
+        current: Sequence[Action],
+        barred: Action | None,
+    ) -> dict[Choice, Floats]:
+        """What may be chosen, and where each has something to do and can be done."""
         choices = [
             each
             for each in self._choices(ranked)
@@ -161,39 +169,44 @@ class Chooser:
             for limits in work.values():
                 limits[1] = 1.0
         if self._stuck(ranked) or self.ahead.left == 0:
-            choices = [each for each in choices if each.action is None]
+            return {each: own for each, own in work.items() if each.action is None}
+        return work
+
+    def _priced(
+        self,
+        open_to: Mapping[Choice, Floats],
+        ranked: Sequence[tuple[int, float]],
+        kinds: Kinds,
+        current: Sequence[Action],
+        barred: Action | None,
+        rates: Rates,
+    ) -> list[tuple[Choice, Floats, Floats]]:
+        """Every choice with what it costs, once for each way to go on from it, and with where it
+        has something to do and can be done."""
         found: list[tuple[Choice, Floats, Floats]] = []
         undone = self.ahead.rates.undone
-        blind = self._blind(choices, ranked, rates) if self.settles < SETTLED else {}
-        for each in choices:
+        blind = self._blind([*open_to], ranked, rates) if self.settles < SETTLED else {}
+        for each, own in open_to.items():
             if each.action is None:
-                found += [(each, column, work[each]) for column in self._ends(ranked)]
+                found += [(each, column, own) for column in self._ends(ranked)]
                 continue
             more = 0.0 if self._in(each, current) else self._costs.replan
             more += self.rounds.dearer(each.action, ranked, self.ahead.progress, undone)
-            seen = self._column(each.action, ranked, kinds, rates) + more
+            seen = self._seen.column(each.action, ranked, kinds, rates) + more
             if self.settles >= SETTLED:
-                found.append((each, seen, work[each]))
+                found.append((each, seen, own))
                 continue
             for unseen in blind.pop(each.action):
                 found_out = self.settles * seen + (1 - self.settles) * (unseen + more)
                 columns = (found_out + self.finding, unseen + more)
-                found += [(each, column, work[each]) for column in columns]
+                found += [(each, column, own) for column in columns]
         for action, further in blind.items():
             each = Choice(action, self._model.state(ranked[0][0]))
             if self._allowed(each, current, barred) and self._worth_a_try(each):
                 more = 0.0 if self._in(each, current) else self._costs.replan
                 own = self._doing.of(each, ranked, kinds)
                 found += [(each, column + more, own) for column in further]
-        told, numbers = tuple(each[0] for each in found), tuple(number for number, _ in ranked)
-        costs = np.stack([each[1] for each in found], axis=1)
-        works = np.stack([each[2] for each in found], axis=2)
-        table = Table(told, numbers, weights, costs, works)
-        if self.blind and table.best.action is not None:
-            self._unseen.follow(table.best.action)
-            self._decided = dict(ranked)
-            return self._followed_now(ranked, kinds, current, barred) or table
-        return table
+        return found
 
     def _followed_now(
         self,
@@ -245,7 +258,7 @@ class Chooser:
         actions = [each.action for each in choices if each.action is not None]
         led = [
             [
-                (weight, self._successors(action, number, weight, rates))
+                (weight, self._seen.successors(action, number, weight, rates))
                 for number, weight in ranked[:SEVERAL]
             ]
             for action in actions
@@ -258,110 +271,6 @@ class Chooser:
         reached = np.array([self.ahead.is_goal(number) for number, _ in ranked])
         lost, wrong = np.where(reached, 0.0, self.ahead.failure), self._costs.misreport
         return lost + wrong * ~reached, lost + wrong * reached
-
-    def _column(
-        self, action: Action, ranked: Sequence[tuple[int, float]], kinds: Kinds, rates: Rates
-    ) -> Floats:
-        """The expected costs of an action in the joint states."""
-        together = self._together(action, ranked, rates)
-        if together:
-            return np.array([self._paid(action, *each, rates, together) for each in ranked])
-        near, column = self._near.setdefault(action, {}), np.empty(len(ranked))
-        many = sum(weight >= DISTURBED for _, weight in ranked)  # the first ones
-        for place, (number, _) in enumerate(ranked[:many]):
-            if number not in near:
-                near[number] = self._paid(action, number, 1.0, rates, {})
-            column[place] = near[number]
-        if many < len(ranked):
-            far, failure = ranked[many:], self.ahead.skill(action).failure
-            idle = partial(self._idling, rates=rates, near=False)
-            left = self._far.costs(action, far, kinds[many:], failure, rates, idle)
-            column[many:] = self._step + left
-        return column
-
-    def _together(
-        self, action: Action, ranked: Sequence[tuple[int, float]], rates: Rates
-    ) -> dict[int, float]:
-        """What is left to pay after an action where joint states look alike."""
-        if self._sight.complete:
-            return {}
-        return self._commitments.made(
-            action,
-            (
-                (other, weight * share)
-                for number, weight in ranked
-                for share, other, _ in self._successors(action, number, weight, rates)
-            ),
-        )
-
-    def _paid(
-        self,
-        action: Action,
-        number: int,
-        weight: float,
-        rates: Rates,
-        together: Mapping[int, float],
-    ) -> float:
-        """What an action costs in a joint state, with all that lies ahead."""
-        if self.ahead.no_way(number):
-            return self._step + self.ahead.failure
-        return self._step + sum(
-            share * ((together[other] if other in together else self.ahead.to_go(other)) + more)
-            for share, other, more in self._successors(action, number, weight, rates)
-        )
-
-    def _successors(
-        self, action: Action, number: int, weight: float, rates: Rates
-    ) -> list[tuple[float, int, float]]:
-        """What an action leads to from a joint state: shares, joint states, and what each costs
-        besides."""
-        near = weight >= DISTURBED
-        led = self._led.setdefault(action, {})
-        found = led.get((number, near))
-        if found is None:
-            found = led[number, near] = self._followed(action, number, rates, near=near)
-        return found
-
-    def _followed(
-        self, action: Action, number: int, rates: Rates, *, near: bool
-    ) -> list[tuple[float, int, float]]:
-        outcomes, undone = self._model.outcomes(action)[number], self._sight.undone
-        if outcomes.achieved:
-            more = self._idling(number, rates, near=near)
-            if near:
-                return fallen(1.0, number, undone(number), rates.redone, more)
-            return [(1.0, number, more + rates.redone * self._step)]
-        possible, failure = outcomes.intended is not None, self.ahead.skill(action).failure
-        failed = failure if possible else 1.0
-        more = 0.0 if possible else self._idling(number, rates, near=near)
-        found: list[tuple[float, int, float]] = []
-        if outcomes.intended is not None:
-            after = undone(outcomes.intended) if near else ()
-            found += fallen(1 - failure, outcomes.intended, after, rates.spontaneous)
-        if near:
-            found += fallen(failed, number, undone(number), rates.disturbance, more)
-        else:
-            found.append((failed, number, more + rates.disturbance * self._step))
-        return found
-
-    def _idling(self, number: int, rates: Rates, *, near: bool) -> float:
-        """What it costs besides to have done nothing: the risks of the next action remain.
-
-        The way ahead knows no disturbances. If it were taken here, an action that changes nothing
-        would look better than one that may go wrong.
-        """
-        known = self._going.get((number, near))
-        if known is None:
-            known, action = 0.0, self.ahead.next(number)
-            if action is not None:
-                outcomes = self._model.outcomes(action)[number]
-                if outcomes.intended is not None and not outcomes.achieved:
-                    scale = DISTURBED if near else 0.0  # only shares of it count
-                    together = self._together(action, [(number, scale)], rates)
-                    cost = self._paid(action, number, float(near), rates, together)
-                    known = max(0.0, cost - self.ahead.to_go(number))
-            self._going[number, near] = known
-        return known
 
     def _choices(self, ranked: Sequence[tuple[int, float]]) -> list[Choice]:
         found: dict[Action | None, Choice] = {}
