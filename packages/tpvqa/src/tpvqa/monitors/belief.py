@@ -339,6 +339,7 @@ class BeliefMonitor(Learning, PlainArguments):
             views=views,
             person=self._asking.person,
             dearer=self.evidence.dearer(self._chooser.ahead.dearer) * self._settlings.dearer,
+            stake=self._chooser.ahead.stake,
         )
         if found is None and self._telling >= TELLING and self._ways.closely(self._now):
             found = unknown(self._now, self.belief, step.book, budget, views)

@@ -153,3 +153,11 @@ class Wanted:
                 return index
             index = begun[bisect(begun, index) - 1] - 1
         return None
+
+
+class Standing(dict[int, int | None]):
+    """Where in a plan states stand, by the number of their facts; None where it is of no use."""
+
+    def __init__(self, wanted: Wanted):
+        super().__init__()
+        self.wanted = wanted

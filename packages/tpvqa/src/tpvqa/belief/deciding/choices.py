@@ -124,6 +124,7 @@ class Chooser:
             barred: An action that the trial does not allow now: it was repeated too often.
         """
         self.ahead.may_be_blind(self.settles)
+        self.ahead.stands_at(belief.ranked()[0][0])
         if (self.ahead.version, rates) != self._worked_out_for:
             self._worked_out_for = self.ahead.version, rates
             self._seen.forget()

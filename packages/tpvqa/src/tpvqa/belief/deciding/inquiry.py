@@ -25,7 +25,7 @@ from tpvqa.belief.weighing.evidence import PERSON, PERSONS_VIEW, Evidence
 from tpvqa.questions.question import FactQuestion
 
 DOUBT = 1e-3
-"""Facts that are surer than this are not asked about."""
+"""Facts that are surer than this are not asked about, where as much as usual is at stake."""
 TOGETHER = 4
 """Questions that are thought to be asked together, at most."""
 SAYING = 0.02
@@ -88,6 +88,7 @@ class Inquirer:
         views: Callable[[FactQuestion], Sequence[str | None]],
         person: bool = False,
         dearer: float = 1.0,
+        stake: float = 1.0,
     ) -> Inquiry | None:
         """What to ask next; None where no answer is worth its price.
 
@@ -99,6 +100,8 @@ class Inquirer:
             views: From where a question may find an answer, the next one first.
             person: Whether a person can be asked.
             dearer: How many times its price a question of the VLM has to be worth.
+            stake: How many times as much as usual a failed task costs; so much surer is a fact that
+                is not asked about, as a goal of thirty sure facts is in doubt.
         """
         if budget.questions <= 0 and not person:
             return None
@@ -107,10 +110,8 @@ class Inquirer:
         now = float(table.expected.min())
         # Q-MDP takes a mistake to be noticed at once; it is noticed so many answers later.
         late = self._evidence.late
-        asking, looking = (
-            dearer * self._costs.question / late,
-            dearer * self._costs.look / late,
-        )
+        asking, looking = dearer * self._costs.question / late, dearer * self._costs.look / late
+        doubt_from = DOUBT / stake
         truths = self._model.truths([each.atoms for each in questions], table.numbers)
         likely = (truths @ table.weights).tolist()
         if_true, work_if_true = truths @ weighted, truths @ work
@@ -123,7 +124,7 @@ class Inquirer:
         doubted: list[_Doubted] = []
         worth: list[_Doubted] = []
         for place, question in enumerate(questions):
-            if not DOUBT < likely[place] < 1 - DOUBT:
+            if not doubt_from < likely[place] < 1 - doubt_from:
                 continue
             unable = self._evidence.silent(question.text, PERSONS_VIEW)
             if person and self._costs.person is not None and not (unable or question.wording):

@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 
 from tpvqa.belief.costs import Costs
-from tpvqa.belief.deciding.annotated import AnnotatedPlan, Wanted
+from tpvqa.belief.deciding.annotated import AnnotatedPlan, Standing
 from tpvqa.belief.deciding.needed import Needed
 from tpvqa.belief.filtering.faults import FaultModel, Rates
 from tpvqa.belief.filtering.sight import Sight
@@ -17,12 +17,13 @@ from tpvqa.pddl import Action, State, Task
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
 UNSEEN = 80.0
-"""Actions for every step that a task is worth which has to be done unseen: it is done as thoroughly
-as blind repetition does it, five times a step, and once more where that helps."""
+"""Actions a step that a task is worth which is done unseen, as thoroughly as by blind repetition."""
 LEVELS = 4
 """How finely it is told apart how far a task may have to be done unseen."""
 PLANS = 16
 """Plans that are kept, the latest ones."""
+FURTHER = 14
+"""So many steps a state without a known way is farther away than the likeliest one, at most."""
 KNOWN = 64
 """Plans of which it is kept where in them states stand."""
 
@@ -53,6 +54,7 @@ class Outlook:
         self._task = task or model.task
         self.plans: list[AnnotatedPlan] = []
         self._most_steps = 0
+        self._near: int | None = None
         self.hopeless = Hopeless(self._task)
         self.left: int | None = None
         self._skill: SkillOf = lambda _: SkillState(0.25, 0.0, 1 / 0.75)
@@ -60,8 +62,8 @@ class Outlook:
         self._lost: float | None = None
         self._blind = 0.0
         self._most_repeated: float | None = None
-        self._standing: list[tuple[AnnotatedPlan, _Places]] | None = None
-        self._places: dict[AnnotatedPlan, _Places] = {}
+        self._standing: list[tuple[AnnotatedPlan, Standing]] | None = None
+        self._places: dict[AnnotatedPlan, Standing] = {}
         self.version = 0
         self._goals: dict[int, bool] = {}
         self._forget()
@@ -106,6 +108,14 @@ class Outlook:
             self._blind = blind
             self._forget()
 
+    def stands_at(self, number: int) -> None:
+        """Note which joint state is the likeliest one."""
+        found, before = self.best(number), self._unplanned()
+        self._near = None if found is None else len(found[1].actions) - found[0]
+        if self._unplanned() != before:
+            self._to_go.clear()
+            self.version += 1
+
     def give_up_on(self, state: State) -> None:
         """Note that no plan exists from a state."""
         self.hopeless.add(state)
@@ -138,11 +148,11 @@ class Outlook:
                 found, least = (place, plan), rest
         return found
 
-    def _known(self) -> "Sequence[tuple[AnnotatedPlan, _Places]]":
+    def _known(self) -> Sequence[tuple[AnnotatedPlan, Standing]]:
         if self._standing is None:
             for plan in self.plans:
                 if plan not in self._places:
-                    self._places[plan] = _Places(plan.wanted(self._model.bits))
+                    self._places[plan] = Standing(plan.wanted(self._model.bits))
             self._standing = [(plan, self._places[plan]) for plan in self.plans]
         return self._standing
 
@@ -175,9 +185,8 @@ class Outlook:
         known = self._blocks.get(id(plan))
         if known is None:
             dead = [self.given_up(action) for action in plan.actions]
-            known = self._blocks[id(plan)] = max(
-                (n + 1 for n, d in enumerate(dead) if d), default=0
-            )
+            known = max((n + 1 for n, d in enumerate(dead) if d), default=0)
+            self._blocks[id(plan)] = known
         return place < known
 
     def reached(self, state: State) -> bool:
@@ -272,7 +281,7 @@ class Outlook:
         if self.no_way(number):
             return self.failure
         if found is None:
-            steps = self._longest() + 2
+            steps = self._unplanned()
             works = 1 - self._rates.failure
             unchecked = steps * self._costs.action + (1 - works**steps) * self.failure
             cost = min(steps * self._usual_step() + self._repeated(), unchecked)
@@ -312,7 +321,7 @@ class Outlook:
         return self._lost
 
     def _lost_where(self, unseen: float) -> float:
-        steps, works = self._longest(), 1 - self._rates.failure
+        steps, works = self._most_steps, 1 - self._rates.failure
         twice = 2 * steps * self._costs.action / self.progress
         unchecked = steps * self._costs.action / max(works, 0.05) ** steps
         blind = UNSEEN * unseen * steps * self._costs.action
@@ -326,8 +335,7 @@ class Outlook:
 
     @property
     def _lost_seen(self) -> float:
-        """What a failed task costs where all can be seen. Tries that were seen to be in vain are
-        paid from it: what is worth more as it has to be done unseen is not worth them."""
+        """What a failed task costs where all can be seen, and tries are seen to be in vain."""
         return self._lost_where(0.0)
 
     @property
@@ -360,8 +368,15 @@ class Outlook:
         rates = self._rates
         return float(max(1 - rates.failure * (1 + rates.disturbance), 0.02))
 
-    def _longest(self) -> int:
-        return self._most_steps
+    @property
+    def stake(self) -> float:
+        """How many times as much as usual a failed task costs at least, by its length alone."""
+        return max(1.0, 2 * self._most_steps * self._costs.action / self._costs.failure)
+
+    def _unplanned(self) -> int:
+        """How many steps the goal is away where no way is known."""
+        most = self._most_steps + 2
+        return most if self._near is None else min(most, self._near + FURTHER)
 
     def _forget(self) -> None:
         """What was worked out holds for other plans or rates."""
@@ -376,14 +391,6 @@ class Outlook:
         self._to_go: dict[int, float] = {}
         self._lost = self._most_repeated = None
         self._standing = None
-
-
-class _Places(dict[int, int | None]):
-    """Where in a plan states stand, by the number of their facts; None where it is of no use."""
-
-    def __init__(self, wanted: Wanted):
-        super().__init__()
-        self.wanted = wanted
 
 
 class _Unknown:

@@ -20,6 +20,10 @@ WHOLE = 0.25
 """The variance of a fact of which nothing is known."""
 SETTLED = 0.97
 """Where answers settle so much, what follows an action is taken to be seen."""
+LONG = 14
+"""In tasks of more steps many doubts wait for the step that needs them, and are none in vain …"""
+MOSTLY = 0.8
+"""… so that what came of answers counts the less there the more they settle from here on."""
 
 Doubt = tuple[float, float]
 """The variance of a fact, and how far answers settle it."""
@@ -104,6 +108,8 @@ class Settlings:
             return found.share
         so_far = max(FIRST, PART * self._whole) + self._settled
         kept = self._nearer(ahead) * so_far / (so_far + self._left)
+        if self._whole > LONG:
+            kept += (1 - kept) * max(0.0, found.share - MOSTLY) / (SETTLED - MOSTLY)
         self.dearer = kept**-0.5
         return found.share * kept
 
