@@ -49,6 +49,14 @@ def test_to_act_and_come_no_nearer_says_that_less_is_settled() -> None:
     assert told[2] < 0.2
 
 
+def test_in_a_long_task_doubts_wait_and_answers_that_settle_them_are_not_in_vain() -> None:
+    waiting = [(Settling(share, 3.0, {"a": (0.25, 0.4)})) for share in (0.6, 0.9, 0.9699)]
+    short, long = ([after(60, each, ahead=(n, n)) for each in waiting] for n in (14, 15))
+    assert max(short) < 0.1
+    assert long[0] < 0.1 < 0.5 < long[1] < 0.9
+    assert long[2] == pytest.approx(0.97, abs=0.01)  # no leap at .97
+
+
 @given(
     st.lists(st.tuples(DOUBTS, st.sets(st.sampled_from("abcd")), st.integers(0, 30)), max_size=20)
 )

@@ -17,7 +17,7 @@ from tpvqa.pddl import Action, State, Task
 CHECKS = 2.0
 """Questions that a step of a plan is thought to take, for the cost of what lies ahead."""
 UNSEEN = 80.0
-"""Actions a step that a task is worth which is done unseen, as thoroughly as by blind repetition."""
+"""Actions a step that a task done unseen is worth: as thoroughly done as by blind repetition."""
 LEVELS = 4
 """How finely it is told apart how far a task may have to be done unseen."""
 PLANS = 16

@@ -139,18 +139,27 @@ class Seen:
             if near:
                 return fallen(1.0, number, undone(number), rates.redone, more)
             return [(1.0, number, more + rates.redone * self._step)]
-        possible, failure = outcomes.intended is not None, self._ahead.skill(action).failure
-        failed = failure if possible else 1.0
-        more = 0.0 if possible else self._idling(number, rates, near=near)
+        there, failure = outcomes.intended, self._ahead.skill(action).failure
+        idle = there is None or self._leads_away(action, number, there)
+        more = self._idling(number, rates, near=near) if idle else 0.0
+        failed = 1.0 if there is None else failure
         found: list[tuple[float, int, float]] = []
-        if outcomes.intended is not None:
-            after = undone(outcomes.intended) if near else ()
-            found += fallen(1 - failure, outcomes.intended, after, rates.spontaneous)
+        if there is not None:
+            after = undone(there) if near else ()
+            found += fallen(1 - failure, there, after, rates.spontaneous, more)
         if near:
             found += fallen(failed, number, undone(number), rates.disturbance, more)
         else:
             found.append((failed, number, more + rates.disturbance * self._step))
         return found
+
+    def _leads_away(self, action: Action, number: int, there: int) -> bool:
+        """Whether an action of a long task leads away from the goal: so the risks of the next step
+        are put off, too."""
+        ahead = self._ahead
+        if ahead.stake == 1.0 or action == ahead.next(number):
+            return False
+        return ahead.to_go(there) > ahead.to_go(number)
 
     def _idling(self, number: int, rates: Rates, *, near: bool) -> float:
         """What it costs besides to have done nothing: the risks of the next action remain.
