@@ -3,17 +3,25 @@
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from tpvqa.belief.answers.trust import Trust
+from tpvqa.belief.calibrating.calibration import Calibration
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.deciding.annotated import AnnotatedPlan
 from tpvqa.belief.deciding.commitment import Commitments
-from tpvqa.belief.deciding.outlook import FURTHER, Outlook
+from tpvqa.belief.deciding.inquiry import DOUBT, Budget, Inquirer
+from tpvqa.belief.deciding.outlook import FURTHER, LONG, Outlook
 from tpvqa.belief.deciding.seen import Seen
+from tpvqa.belief.deciding.table import Choice, Table
+from tpvqa.belief.filtering.belief import Belief
 from tpvqa.belief.filtering.faults import FaultModel, JointState, Rates
 from tpvqa.belief.filtering.sight import Sight
+from tpvqa.belief.weighing.evidence import Evidence
 from tpvqa.pddl import Action, Atom, Task, load_task
 from tpvqa.planning.regression import regress
+from tpvqa.questions import FactQuestion, Way
 
 DOMAIN = """
 (define (domain rooms)
@@ -88,3 +96,26 @@ def test_to_go_away_from_the_goal_costs_the_risks_that_it_puts_off(
     ]
     assert (dearer[0] > 0.1) is long
     assert dearer[1] == 0.0
+
+
+@pytest.mark.parametrize(("rooms", "asked"), [(9, False), (10 * LONG, True)])
+def test_the_longer_a_task_is_the_surer_facts_are_asked_about(
+    tmp_path: Path, rooms: int, asked: bool
+) -> None:
+    line = Line(tmp_path, rooms)
+    belief = Belief(line.model)
+    inquirer = Inquirer(line.model, Evidence(belief, Calibration.default(), Trust()), Costs())
+    question = FactQuestion("Is it there?", Way.EFFECT, Atom("at", ("r0",)))
+    doubt = DOUBT / 2  # what is done is right with all but that, and else costs the task
+    weights, costs = np.array([1 - doubt, doubt]), np.array([[0.0, 1.0], [5000.0, 1.0]])
+    choices = tuple(Choice(line.go(0, n), line.task.init) for n in (1, 1))
+    numbers = line.standing(0), line.standing(1)
+    found = inquirer.best(
+        [question],
+        Table(choices, numbers, weights, costs, np.ones((1, 2, 2))),
+        Budget(questions=100, looks=100),
+        picture=None,
+        views=lambda _: [None],
+        stake=line.ahead.stake,
+    )
+    assert (found is not None) is asked

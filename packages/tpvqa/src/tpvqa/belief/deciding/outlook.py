@@ -22,6 +22,8 @@ LEVELS = 4
 """How finely it is told apart how far a task may have to be done unseen."""
 PLANS = 16
 """Plans that are kept, the latest ones."""
+LONG = 25
+"""Steps of a plan from which on a task is long, and more than usual is at stake."""
 FURTHER = 14
 """So many steps a state without a known way is farther away than the likeliest one, at most."""
 KNOWN = 64
@@ -132,10 +134,9 @@ class Outlook:
     def best(self, number: int) -> tuple[int, AnnotatedPlan] | None:
         """The cheapest known way from a joint state: a place in a plan, and that plan."""
         kind = self._model.kind(number)
-        known = self._best.get(kind, _UNKNOWN)
-        if isinstance(known, _Unknown):
-            known = self._best[kind] = self._cheapest(kind, number)
-        return known
+        if kind not in self._best:
+            self._best[kind] = self._cheapest(kind, number)
+        return self._best[kind]
 
     def _cheapest(self, kind: int, number: int) -> tuple[int, AnnotatedPlan] | None:
         found, least, holding = None, inf, self._model.holding(number)
@@ -370,8 +371,8 @@ class Outlook:
 
     @property
     def stake(self) -> float:
-        """How many times as much as usual a failed task costs at least, by its length alone."""
-        return max(1.0, 2 * self._most_steps * self._costs.action / self._costs.failure)
+        """How many times as much as in a short task is at stake, by the longest plan alone."""
+        return max(1.0, self._most_steps / LONG)
 
     def _unplanned(self) -> int:
         """How many steps the goal is away where no way is known."""
@@ -391,10 +392,3 @@ class Outlook:
         self._to_go: dict[int, float] = {}
         self._lost = self._most_repeated = None
         self._standing = None
-
-
-class _Unknown:
-    """Stands for what was not worked out yet, as None is an answer."""
-
-
-_UNKNOWN = _Unknown()
