@@ -114,6 +114,7 @@ class Outlook:
         """Note which joint state is the likeliest one."""
         found, before = self.best(number), self._unplanned()
         self._near = None if found is None else len(found[1].actions) - found[0]
+        self.hopeless.near = None if found is None else self._model.state(number)
         if self._unplanned() != before:
             self._to_go.clear()
             self.version += 1

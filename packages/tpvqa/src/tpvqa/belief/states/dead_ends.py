@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from functools import cached_property, lru_cache
 
-from tpvqa.belief.states.relaxation import Needs, Relaxation, Way
+from tpvqa.belief.states.relaxation import Needs, Relaxation, Way, literals_of
 from tpvqa.pddl import Atom, Condition, Conjunction, Disjunction, State, Task, literals
 
 KEPT = 20_000
@@ -29,28 +29,68 @@ class DeadEnds:
         self._bits: dict[Atom | Disjunction, int] = {}
         self._unruled: list[Atom | Disjunction] = []
         self._known: dict[tuple[State, State], bool] = {}
+        self._trues: dict[State, int | None] = {}
         plain = not task.left_out and task.numeric is None and task.lasting is None
         self._fluents = task.fluents - task.derived
         self._goal = self._needs([task.goal]) if plain else None
 
-    def holds(self, state: State, before: State = frozenset()) -> bool:
+    def holds(
+        self, state: State, before: State = frozenset(), *, alive: State | None = None
+    ) -> bool:
         """Whether a state is one.
 
         Args:
             state: The state.
             before: From where something led there; of that it is not asked whether it is one. Where
                 all that went can come back at once, and all that came can go, nothing is worse.
+            alive: A state that surely is none, to be quick by: what can be brought about again of
+                what differs from it need not be gone through.
         """
-        if self._goal is None or not self._always <= state <= self._possible:
-            return False  # of what nothing brings about, or ends, the actions are not known
+        if self._goal is None:
+            return False
         found = self._known.get((state, before))
         if found is None:
             if len(self._known) >= KEPT:
                 self._known.clear()
-            true = self._numbered(atom for atom in state if atom.predicate in self._fluents)
-            mended = bool(before) and self._mended(state, before, self._with_what_follows(true))
-            found = not (mended or self._relaxation.reaches(true, self._goal))
-            self._known[state, before] = found
+            found = self._known[state, before] = self._found(self._goal, state, before, alive)
+        return found
+
+    def _found(self, goal: Needs, state: State, before: State, alive: State | None) -> bool:
+        was = self._true(before) if before else None
+        true = self._true(state, before)
+        if true is None:
+            return False  # of what nothing brings about, or ends, the actions are not known
+        if before:
+            missing = self._numbered(before - state), self._numbered(state - before)
+            if self._mended(missing, self._with_what_follows(true)):
+                return False
+            if was is not None and not self.holds(before):
+                alive = before
+        there = None if alive is None else self._true(alive)
+        if there is not None and self._relaxation.proves(true, (there & ~true, true & ~there)):
+            return False
+        return not self._relaxation.reaches(true, goal)
+
+    def _true(self, state: State, before: State = frozenset()) -> int | None:
+        """The fluents of a state, as bits; None where not all actions are known that may matter.
+
+        Args:
+            state: The state.
+            before: One that is known, and much like it.
+        """
+        if state in self._trues:
+            return self._trues[state]
+        if len(self._trues) >= KEPT:
+            self._trues.clear()
+        was, found = self._trues.get(before), None
+        if was is None:
+            if self._always <= state <= self._possible:
+                found = self._numbered(each for each in state if each.predicate in self._fluents)
+        else:
+            came, went = state - before, before - state
+            if came <= self._possible and went.isdisjoint(self._always):
+                found = was & ~self._numbered(went) | self._numbered(came)
+        self._trues[state] = found
         return found
 
     @cached_property
@@ -66,13 +106,8 @@ class DeadEnds:
     def _relaxation(self) -> Relaxation:
         return Relaxation([*self._rules, *self._changes])
 
-    def _mended(self, state: State, before: State, true: int) -> bool:
-        missing = [(self._numbered([atom]), 0) for atom in before - state]
-        missing += [(0, self._numbered([atom])) for atom in state - before]
-        return all(
-            any(not (need & ~true or bar & true) for need, bar in self._relaxation.leading(each))
-            for each in missing
-        )
+    def _mended(self, missing: Needs, true: int) -> bool:
+        return all(self._relaxation.at_once(true, each) for each in literals_of(missing))
 
     @cached_property
     def _changes(self) -> list[Way]:

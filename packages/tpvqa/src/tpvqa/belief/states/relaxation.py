@@ -27,14 +27,27 @@ class Relaxation:
         self._ways = list(ways)
         self._leading: dict[Needs, list[Needs]] = {}
         for needs, add, delete in self._ways:
-            for literal in _literals((add, delete)):
+            for literal in literals_of((add, delete)):
                 self._leading.setdefault(literal, []).append(needs)
+        self._last: dict[Needs, Needs] = {}
         self._enough: dict[Needs, list[Needs]] = {}
         self._reached: list[Needs] = []
 
-    def leading(self, literal: Needs) -> list[Needs]:
-        """What the ways need that make a literal true."""
-        return self._leading.get(literal, [])
+    def at_once(self, true: int, literal: Needs) -> bool:
+        """Whether one way makes a literal true.
+
+        Args:
+            true: What holds, as bits.
+            literal: It.
+        """
+        need, bar = self._last.get(literal, literal)
+        if not (need & ~true or bar & true):  # the one of the last time
+            return True
+        for needs in self._leading.get(literal, ()):
+            if not (needs[0] & ~true or needs[1] & true):
+                self._last[literal] = needs
+                return True
+        return False
 
     def reaches(self, true: int, goal: Needs) -> bool:
         """Whether a goal is reached.
@@ -45,10 +58,17 @@ class Relaxation:
         """
         if any(not (true & ~most or ~true & ~least) for most, least in self._reached):
             return False
+        return self.proves(true, goal) or self._spread(true, goal)
+
+    def proves(self, true: int, parts: Needs) -> bool:
+        """Whether proofs of some literals are found; they may be reached where none is.
+
+        Args:
+            true: What holds at first, as bits.
+            parts: The literals.
+        """
         proof = _Proof(self._leading, true)
-        return all(self._proved(true, part, proof) for part in _literals(goal)) or (
-            self._spread(true, goal)
-        )
+        return all(self._proved(true, part, proof) for part in literals_of(parts))
 
     def _proved(self, true: int, part: Needs, proof: "_Proof") -> bool:
         """Whether there is a proof for a literal; it is kept, those used last first."""
@@ -131,7 +151,7 @@ class _Proof:
 
     def _all(self, needs: Needs) -> Needs | None:
         need, bar = needs[0] & self._true, needs[1] & ~self._true
-        for part in _literals((needs[0] & ~self._true, needs[1] & self._true)):
+        for part in literals_of((needs[0] & ~self._true, needs[1] & self._true)):
             found = self.of(part)
             if found is None:
                 return None
@@ -139,7 +159,7 @@ class _Proof:
         return need, bar
 
 
-def _literals(needs: Needs) -> Iterator[Needs]:
+def literals_of(needs: Needs) -> Iterator[Needs]:
     """What is needed, one by one."""
     for positive, bits in zip((True, False), needs, strict=True):
         while bits:
