@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 from tpvqa.belief.states.relaxation import Needs, Relaxation, Way, literals_of
 from tpvqa.pddl import Atom, Condition, Conjunction, Disjunction, State, Task, literals
 
-KEPT = 20_000
+KEPT = 4_000
 """States of which it is kept."""
 
 
