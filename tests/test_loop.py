@@ -127,6 +127,23 @@ def test_an_always_no_to_preconditions_ends_at_the_limit_of_replans(planner: Pla
     assert (ended.because, ended.replans, ended.completed) == ("limit of replans", 10, False)
 
 
+def test_a_long_plan_may_be_changed_as_often_as_it_has_steps(planner: Planner) -> None:
+    folder = Path("examples/store").resolve()
+    files = {"domain": "domain.pddl", "problem": "problem.pddl", "questions": "questions.yaml"}
+    config = TrialConfig().but(
+        task={name: str(folder / file) for name, file in files.items()},
+        world={"spec": "symbolic"},
+        vlm={"spec": "oracle:0.8"},
+        monitor={"spec": "tpvqa:5"},
+        limits={"repeats": "none"},
+        seed=71,
+    )
+    ended, events = run(config, planner)
+    steps = next(len(each.plan) for each in events if isinstance(each, PlanMade))
+    assert steps > 20
+    assert (ended.because, ended.replans) == ("limit of replans", steps)
+
+
 def test_a_trial_that_never_acts_ends_where_its_changes_of_plan_have_no_limit(
     planner: Planner,
 ) -> None:

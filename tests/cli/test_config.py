@@ -135,6 +135,8 @@ def test_paths_in_a_file_are_relative_to_it(tmp_path: Path) -> None:
     [
         (("--action-deadline", 0), "--action-deadline must be more than 0, got 0"),
         (("--max-actions", "xx"), "--max-actions does not fit: write a whole number, or 50x for"),
+        (("--max-replans", "xx"), "--max-replans does not fit: write a whole number, auto or none"),
+        (("--max-replans", -1), "--max-replans must be at least 0, got -1"),
         (("--max-actions", 0), "--max-actions must be at least 1, got 0"),
         (("--max-repeats", "xx"), "--max-repeats does not fit: write a whole number, or none"),
         (("--monitor", ""), "--monitor must not be empty\n"),

@@ -18,6 +18,8 @@ MOST = 2**63 - 1
 
 LEAST_ACTIONS = 60
 """The limit of actions where none is given, unless `PLANS` times the first plan is more."""
+LEAST_REPLANS = 10
+"""The limit of replans where none is given, unless the first plan has more steps."""
 PLANS = 6
 
 
@@ -168,6 +170,12 @@ def _none(value: Any) -> Any:
     return _number_or(value, "write a whole number, or none")
 
 
+def _none_or_auto(value: Any) -> Any:
+    if value == "none":
+        return None
+    return value if value == "auto" else _number_or(value, "write a whole number, auto or none")
+
+
 def _times(value: Any) -> Any:
     if isinstance(value, str) and re.fullmatch(TIMES, value):
         return value
@@ -186,6 +194,7 @@ Limit = Annotated[int | None, BeforeValidator(_none)]
 Times = Annotated[str, Field(pattern=TIMES)]
 """So many times the length of the first plan: `50x`."""
 _Actions = Annotated[int, Field(ge=1)] | Times | None
+_Replans = Annotated[int, Field(ge=0)] | Literal["auto"] | None
 
 
 class Limits(Part):
@@ -194,12 +203,12 @@ class Limits(Part):
     repeats: Limit = setting(
         "--max-repeats", "Repeats of an action in a row, or none.", 10, text=True, ge=0
     )
-    replans: Limit = setting(
+    replans: Annotated[_Replans, BeforeValidator(_none_or_auto)] = setting(
         "--max-replans",
-        "Replans in the trial, or none (then 300 without an action end it).",
-        10,
+        "Replans in the trial, or none (then 300 without an action end it). auto: the larger of "
+        f"{LEAST_REPLANS} and the steps of the first plan.",
+        "auto",
         text=True,
-        ge=0,
     )
     actions: Annotated[_Actions, BeforeValidator(_times)] = setting(
         "--max-actions",
@@ -218,6 +227,10 @@ class Limits(Part):
     cost: float | None = setting(
         "--max-cost", "openai: money, by --price-prompt and --price-completion.", gt=0
     )
+
+    def replans_of(self, first_plan: int) -> int | None:
+        """The limit of replans in a trial whose first plan has so many steps; None for none."""
+        return max(LEAST_REPLANS, first_plan) if self.replans == "auto" else self.replans
 
     def actions_of(self, first_plan: int) -> int:
         """The limit of actions in a trial whose first plan has so many."""

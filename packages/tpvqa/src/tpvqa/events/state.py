@@ -144,7 +144,8 @@ class TrialState:
     @property
     def replans_left(self) -> int | None:
         """Replans that the limit still allows; None for any number."""
-        most = None if self.started is None else self.started.limits.replans
+        limits = None if self.started is None else self.started.limits
+        most = None if limits is None else limits.replans_of(self.first_plan or 0)
         return None if most is None else most - self.replans
 
     @property
