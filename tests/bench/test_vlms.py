@@ -209,7 +209,11 @@ def test_vlms_are_compared_on_pictures(tpvqa: Run, lamps: tuple[object, ...]) ->
     code, out, _ = tpvqa(*words)
     assert code == 0
     assert "oracle:0.6 less bright" in out
-    found = json.loads(tpvqa(*words, "--json")[1])
+    before = Path("vlm-compare/answers.csv").read_bytes()
+    code, _, err = tpvqa(*words, "--seed", 3)
+    assert (code, "answers.csv is there already" in err, "--force" in err) == (2, True, True)
+    assert Path("vlm-compare/answers.csv").read_bytes() == before
+    found = json.loads(tpvqa(*words, "--json", "--force")[1])
     bright, oracle = found["vlms"]
     assert bright["score"]["when_answered"]["value"] == 1
     assert bright["price"] == 0.5
@@ -244,11 +248,11 @@ def test_what_was_interrupted_goes_on_and_nothing_is_asked_twice(
     assert not Path("new").exists()
     asked, bright.left, bright.asked = bright.asked, None, 0
     assert 0 < stats(Path("a.db")).answers < asked
-    code, out, _ = tpvqa(*words)
+    code, out, _ = tpvqa(*words, "--force")
     assert code == 0
     assert bright.asked < json.loads(out)["vlms"][0]["score"]["answers"]
     bright.asked = 0
-    assert tpvqa(*words[:-3], "--replay", "a.db", "--json")[1] == out
+    assert tpvqa(*words[:-3], "--replay", "a.db", "--json", "--force")[1] == out
     assert bright.asked == 0
 
 

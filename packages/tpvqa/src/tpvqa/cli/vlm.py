@@ -86,6 +86,9 @@ def compare(
     out: Annotated[
         Path, typer.Option(help="Folder for answers.csv, figures.csv, compare.png and .svg.")
     ] = OUT,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over what was found before.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the figures as JSON.")] = False,
 ) -> None:
     """Ask several VLMs the same about one labelled set, and compare them.
@@ -117,7 +120,7 @@ def compare(
     read = (*(episodes or ()), *own[:2], *own[2], *map(named_by, vlms))
     for name in _WRITTEN:
         see_unread(out / name, "--out", read)
-    made = _check_out(out)
+    made = _check_out(out, force=force)
     with CountBar("looks") as bar:
         try:
             rows = ask_all(vlms, looks, config=config, task=task, repeats=repeats, progress=bar)
@@ -243,11 +246,16 @@ def _tell_doubled(vlms: Sequence[str]) -> None:
         tell(f"note: {spec} is named {specs.count(spec)} times, and asked once", error=True)
 
 
-def _check_out(out: Path) -> bool:
+def _check_out(out: Path, *, force: bool) -> bool:
     """What would end the work at its end is told before it; gives whether the folder is new."""
     from tpvqa.errors import TpvqaError, WriteError
 
     for name in _WRITTEN:
+        if not force and (out / name).is_file():
+            raise TpvqaError(
+                f"{out / name} is there already. Name another folder with --out, or write over "
+                "what was found before: --force"
+            )
         if (out / name).is_symlink():
             raise TpvqaError(
                 f"{out / name} is a link, and would be lost; name another folder with --out"
