@@ -24,7 +24,7 @@ from tpvqa_experiments.balanced import Judged, balanced
 from tpvqa_experiments.paper_table import PAPER_TABLE
 
 TASKS = ("clean_dishes", "serve_breakfast", "eat_apple")
-PAPER = TrialConfig(limits=Limits(actions=60))
+PAPER = TrialConfig(limits=Limits(actions=60, replans=10))
 """What all trials share, where nothing else is said."""
 MONITORS = ("tpvqa", "effectvqa", "tp", "palmevqa", "successvqa")
 STRICT = ("tpvqa:strict", "effectvqa:strict")

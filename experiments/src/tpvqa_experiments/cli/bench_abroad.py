@@ -70,7 +70,7 @@ def abroad(
     import os
 
     from tpvqa.bench.condition import normalised
-    from tpvqa.config import TrialConfig
+    from tpvqa.config import Limits, TrialConfig
     from tpvqa.errors import BenchError
     from tpvqa_experiments.abroad import AbroadBench, run_abroad_bench
     from tpvqa_experiments.abroad.bench import blocks_in, sensed
@@ -100,7 +100,7 @@ def abroad(
         ),
         calibration_episodes=calibration_episodes,
         limit=limit,
-        common=TrialConfig(seed=seed),
+        common=TrialConfig(seed=seed, limits=Limits(replans=10)),
     )
     with bench_bar(out, "calibrations") as bar:
 

@@ -65,7 +65,7 @@ def viplan(
     """Measure monitors on ViPlan's problems, beside what its own grounder reached on them."""
     import os
 
-    from tpvqa.config import TrialConfig
+    from tpvqa.config import Limits, TrialConfig
     from tpvqa.errors import BenchError
     from tpvqa.vlm.recorded.spec import RecordedSpec
     from tpvqa_experiments.viplan.bench import NOISES, ORACLE, ViPlanBench, run_viplan_bench
@@ -92,7 +92,7 @@ def viplan(
         limits=listed_of(limit, LIMITS, "limit"),
         noise=listed_of(noise, NOISES, "noise")[0],
         episodes=episodes,
-        common=TrialConfig(seed=seed),
+        common=TrialConfig(seed=seed, limits=Limits(replans=10)),
     )
     recorded = published(problems)
     with bench_bar(out) as progress:
