@@ -211,7 +211,7 @@ def test_vlms_are_compared_on_pictures(tpvqa: Run, lamps: tuple[object, ...]) ->
     assert "oracle:0.6 less bright" in out
     before = Path("vlm-compare/answers.csv").read_bytes()
     code, _, err = tpvqa(*words, "--seed", 3)
-    assert (code, "answers.csv is there already" in err, "--force" in err) == (2, True, True)
+    assert (code, "answers.csv is there" in err, "--force" in err) == (2, True, True)
     assert Path("vlm-compare/answers.csv").read_bytes() == before
     found = json.loads(tpvqa(*words, "--json", "--force")[1])
     bright, oracle = found["vlms"]
@@ -265,6 +265,17 @@ def test_a_comparison_takes_the_place_of_no_link(
     code, _, err = tpvqa("vlm", "compare", "oracle", *lamps, "--out", "new")
     assert (code, "answers.csv is a link" in err) == (2, True), err
     assert Path("new/answers.csv").is_symlink()
+
+
+def test_what_cannot_be_written_over_is_told_before_anything_is_asked(
+    tpvqa: Run,  # noqa: F811
+    lamps: tuple[object, ...],
+) -> None:
+    Path("new/figures.csv").mkdir(parents=True)
+    words = ("vlm", "compare", "oracle", *lamps, "--out", "new", "--cache", "a.db", "--force")
+    code, _, err = tpvqa(*words)
+    assert (code, "figures.csv is no file" in err) == (2, True), err
+    assert not Path("a.db").exists()
 
 
 def test_wordings_are_compared_in_pairs(

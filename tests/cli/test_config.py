@@ -104,6 +104,7 @@ def test_a_file_is_run(tpvqa: Run, tmp_path: Path) -> None:
         ),
         ("seed: many\n", r"trial\.yaml:1: seed: "),
         ("schema: 9\n", r"trial\.yaml:1: schema: "),
+        ("limits:\n  replans: true\n", r"trial\.yaml:2: limits\.replans: .*auto or none, not true"),
         ("limits: [1]\n", r"trial\.yaml:1: limits: expected 'name: value' entries"),
         ("seed: 1\nseed: 2\n", r"trial\.yaml:2: .*given twice"),
         (": :\n", r"trial\.yaml"),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from tpvqa.cli.options import ANSWERING, trial_options
-from tpvqa.cli.outputs import named_by, see_unread
+from tpvqa.cli.outputs import named_by, see_free, see_unread
 from tpvqa.cli.saying import plain_row, tell
 from tpvqa.config.layers import Layer, combined, settings
 
@@ -251,15 +251,11 @@ def _check_out(out: Path, *, force: bool) -> bool:
     from tpvqa.errors import TpvqaError, WriteError
 
     for name in _WRITTEN:
-        if not force and (out / name).is_file():
-            raise TpvqaError(
-                f"{out / name} is there already. Name another folder with --out, or write over "
-                "what was found before: --force"
-            )
-        if (out / name).is_symlink():
-            raise TpvqaError(
-                f"{out / name} is a link, and would be lost; name another folder with --out"
-            )
+        path = out / name
+        if path.is_symlink() or (path.exists() and not path.is_file()):
+            what = "a link, and would be lost" if path.is_symlink() else "no file"
+            raise TpvqaError(f"{path} is {what}; name another folder with --out")
+        see_free(path, "--out", force=force)
     there = out.exists()
     try:
         out.mkdir(parents=True, exist_ok=True)

@@ -183,7 +183,9 @@ def _times(value: Any) -> Any:
 
 
 def _number_or(value: Any, wanted: str) -> Any:
-    """A value that is no other text than a number."""
+    """A value that is no other text than a number, and no truth value."""
+    if isinstance(value, bool):
+        raise ValueError(f"{wanted}, not {str(value).lower()}")
     if isinstance(value, str) and not re.fullmatch(r"\s*[+-]?[0-9]{1,18}\s*", value):
         raise ValueError(f"{wanted}, not {shown(value)}")
     return value
