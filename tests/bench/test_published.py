@@ -1,11 +1,14 @@
 """Rows for others: the same after reading, of the same bench only, and taken for finished."""
 
+import json
 import os
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pyarrow import parquet
 
 from tests.bench.test_statistics import row
 from tpvqa.bench.cell import Cell
@@ -120,6 +123,22 @@ def test_what_it_says_of_itself_is_read_before_anything_is_made(
         with pytest.raises(BenchError, match=r"a\.parquet: damaged"):
             read(path)
     assert not (tmp_path / "bench").exists()
+
+
+def test_a_few_bytes_do_not_fill_the_memory(tmp_path: Path) -> None:
+    """One long text, once for every row: unpacked some 20 GB."""
+    long = pa.DictionaryArray.from_arrays(
+        pa.array([0] * 100_000, pa.int32()), pa.array(["a" * 200_000])
+    )
+    told = {b"tpvqa.bench": json.dumps(SETTINGS)}
+    parquet.write_table(
+        pa.table({"task": long}).replace_schema_metadata(told),
+        tmp_path / "part.parquet",
+        compression="zstd",
+    )
+    assert (tmp_path / "part.parquet").stat().st_size < 10_000
+    with pytest.raises(BenchError, match=r"part\.parquet: cannot be read \(it has a text of more"):
+        list(read_published(tmp_path, SETTINGS))
 
 
 def test_rows_that_contradict_each_other_are_named_before_anything_is_made(tmp_path: Path) -> None:

@@ -15,10 +15,12 @@ from rich.console import Console
 from tests.cli.conftest import Run
 from tests.episodes.believing import believing
 from tests.episodes.test_log import file_size
-from tpvqa.cli.saying import LONGEST, cell, marked, plain, rendered
+from tpvqa.cli.saying import cell, marked, plain, plain_row, rendered
 from tpvqa.cli.terminal import EpisodeView
 from tpvqa.episodes.log import LOG
+from tpvqa.episodes.report import render_report
 from tpvqa.events import EVENT
+from tpvqa.spelling import LONGEST
 
 HOSTILE = "\x1b]0;title\x07\x9b2J\x7f\r\u202eabc\u2066\u2028\u2029[red]:smile:[/]\\[bold]\\"
 """A title, C1, DEL, a carriage return, bidirectional overrides, separators, markup, an emoji."""
@@ -72,6 +74,24 @@ def test_an_episode_is_shown_without_obeying_it(terminal: bool) -> None:
     console.print(view._plan_panel())
     assert obeyed(file.getvalue()) == set()
     assert "[red]:smile:[/]" in file.getvalue()
+
+
+def test_a_report_shows_what_would_turn_its_letters_round() -> None:
+    events = [
+        EVENT.validate_python(hostile(event.model_dump(mode="json", by_alias=True)))
+        for event in believing()
+    ]
+    page = render_report(events, Path("nowhere"))
+    assert obeyed(page) == set()
+    assert "\\u202eabc" in page
+
+
+@given(texts, st.sampled_from(["=", "+", "-", "@", " =", ""]))
+def test_no_cell_of_a_table_is_a_formula(text: str, start: str) -> None:
+    (shown,) = plain_row({"said": f"{start}{text}"}).values()
+    assert obeyed(str(shown)) == set()
+    assert str(shown).lstrip()[:1] not in set("=+-@")
+    assert str(shown).removeprefix("'") == plain(f"{start}{text}").removeprefix("'")
 
 
 def test_errors_and_questions_show_what_they_quote(tpvqa: Run, tmp_path: Path) -> None:

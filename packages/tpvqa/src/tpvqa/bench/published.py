@@ -23,6 +23,8 @@ LEFT_OUT = ("seconds", "answers", "decisions")
 _SETTINGS, _TASKS = b"tpvqa.bench", b"tpvqa.tasks"
 _LARGEST = 256 * 2**20
 """Bytes of a file; half a million rows have five million."""
+_UNPACKED, _MOST_ROWS, _LONGEST = 2 * 2**30, 10_000_000, 100_000
+"""Bytes and rows that a file may say it has unpacked, characters of one text."""
 
 
 def write_published(
@@ -154,7 +156,7 @@ class _Opened:
         self._pa, parquet = _pyarrow()
         try:
             data = self._pa.BufferReader(read_plain(file, most=_LARGEST))
-            self._table = parquet.ParquetFile(data)
+            self._table = self._within_bounds(parquet, data)
             told = self._table.schema_arrow.metadata or {}
         except (OSError, self._pa.ArrowException) as error:
             raise self._unread(error) from error
@@ -166,11 +168,26 @@ class _Opened:
                 f"{file}: damaged ({error}). Name another file of published rows"
             ) from None
 
+    def _within_bounds(self, parquet: ModuleType, data: Any) -> Any:
+        """The file, its texts as numbers into the list of those that there are: a few bytes of it
+        could be as many copies of a long one as there are rows."""
+        found = parquet.ParquetFile(data).metadata
+        groups = (found.row_group(each) for each in range(found.num_row_groups))
+        if found.num_rows > _MOST_ROWS or sum(e.total_byte_size for e in groups) > _UNPACKED:
+            raise OSError(f"it has more than {_MOST_ROWS:,} rows, or {_UNPACKED >> 30} GiB of them")
+        columns = (found.schema.column(each) for each in range(found.num_columns))
+        texts = [each.path for each in columns if each.physical_type == "BYTE_ARRAY"]
+        data.seek(0)
+        return parquet.ParquetFile(data, read_dictionary=texts)
+
     def rows(self) -> Iterator[Placed]:
         """The rows, as they stand in it."""
         try:
             table = self._table.read()
             table.validate(full=True)  # texts are UTF-8
+            for column in table.columns:
+                if self._pa.types.is_dictionary(column.type):
+                    self._see_short(column)
         except (OSError, self._pa.ArrowException) as error:
             raise self._unread(error) from error
         values = (each for batch in table.to_batches(10_000) for each in batch.to_pylist())
@@ -183,6 +200,14 @@ class _Opened:
                     f"{place}: not a row of this version ({row_fault(error)}). "
                     "Name another file of published rows"
                 ) from None
+
+    def _see_short(self, column: Any) -> None:
+        from pyarrow import compute
+
+        for chunk in column.chunks:
+            longest = compute.max(compute.binary_length(chunk.dictionary)).as_py()
+            if (longest or 0) > _LONGEST:
+                raise OSError(f"it has a text of more than {_LONGEST:,} characters")
 
     def _unread(self, error: Exception) -> BenchError:
         said = getattr(error, "strerror", None) or str(error) or type(error).__name__

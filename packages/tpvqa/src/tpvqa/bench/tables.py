@@ -11,6 +11,7 @@ from tpvqa.bench.limits import sensitivity
 from tpvqa.bench.report import Group, Results
 from tpvqa.errors import MissingExtraError
 from tpvqa.files import write_whole
+from tpvqa.spelling import plain_row
 
 
 def write_tables(folder: Path, results: Results) -> list[Path]:
@@ -87,7 +88,7 @@ def _limits(results: Results) -> Iterator[dict[str, Any]]:
 
 
 def write_table(folder: Path, name: str, values: Sequence[Mapping[str, Any]]) -> list[Path]:
-    """Write one table as CSV and Parquet.
+    """Write one table as CSV and Parquet; texts of the CSV as `plain_row` has them.
 
     Raises:
         MissingExtraError: PyArrow is not installed.
@@ -98,10 +99,15 @@ def write_table(folder: Path, name: str, values: Sequence[Mapping[str, Any]]) ->
         from pyarrow import csv, parquet
     except ImportError as error:
         raise MissingExtraError("pyarrow", "bench", "Tables of a bench") from error
-    table = pa.Table.from_pylist(list(values))
-    paths = [folder / f"{name}.csv", folder / f"{name}.parquet"]
-    for path, write in zip(paths, (csv.write_csv, parquet.write_table), strict=True):
+    forms = (
+        (csv.write_csv, "csv", [plain_row(row) for row in values]),
+        (parquet.write_table, "parquet", list(values)),
+    )
+    paths = []
+    for write, ending, rows in forms:
         data = pa.BufferOutputStream()
-        write(table, data)
+        write(pa.Table.from_pylist(rows), data)
+        path = folder / f"{name}.{ending}"
+        paths.append(path)
         write_whole(path, data.getvalue().to_pybytes(), remedy=REMEDY)
     return paths

@@ -5,45 +5,20 @@ that others wrote is shown as it is spelled instead, and in bounds.
 """
 
 import sys
-import unicodedata
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from tpvqa.spelling import LONGEST, plain, plain_row
 
+if TYPE_CHECKING:
     from rich.text import Text
 
-LONGEST = 2_000
-"""Characters of one text that are shown."""
+__all__ = ["cell", "marked", "plain", "plain_row", "rendered", "tell"]
+
 LONGEST_ERROR = 20_000
-_INVISIBLE = frozenset({"Cc", "Cf", "Cs", "Co", "Zl", "Zp"})
-"""Control and format characters (bidirectional ones among them), line and paragraph separators."""
 _STANDING_IN = {ord("["): "\ue000", ord("\\"): "\ue001"}
 """Of a private use, which `plain` lets nobody else use."""
 _STOOD_FOR = {ord(there): chr(here) for here, there in _STANDING_IN.items()}
-_JOINERS = frozenset("\u200c\u200d")
-"""Which words of some languages need."""
-
-
-def plain(text: object, *, longest: int = LONGEST, lines: bool = False) -> str:
-    """Text without anything that a terminal would obey.
-
-    Args:
-        text: What somebody else wrote.
-        longest: Characters at most.
-        lines: Whether line ends stay; lines after the first are indented then, so that none can
-            pass for one of tpvqa's own.
-
-    >>> plain("Is it \\x1b[31mred?")
-    'Is it \\\\x1b[31mred?'
-    """
-    said = str(text)
-    cut = len(said) > longest
-    said = said[:longest]
-    if not said.isprintable():
-        said = "".join(map(_visible, said)) if not lines else _lines(said)
-    return f"{said}…" if cut else said
 
 
 def marked(text: object, *, longest: int = LONGEST) -> str:
@@ -67,14 +42,6 @@ def cell(text: object) -> "Text":
     return Text(plain(text))
 
 
-def plain_row(row: "Mapping[str, object]") -> dict[str, object]:
-    """A row of a table that is written as text: its texts as `plain`, none cut."""
-    return {
-        name: plain(value, longest=len(value)) if isinstance(value, str) else value
-        for name, value in row.items()
-    }
-
-
 def tell(text: object, *, error: bool = False) -> None:
     """Print a line that holds what somebody else wrote.
 
@@ -88,13 +55,3 @@ def tell(text: object, *, error: bool = False) -> None:
     elif sys.stderr is not None:  # of None, `print` would make standard output
         with suppress(OSError):  # a note that nobody takes stops nothing
             print(said, file=sys.stderr)
-
-
-def _lines(text: str) -> str:
-    return "\n  ".join("".join(map(_visible, line)) for line in text.split("\n"))
-
-
-def _visible(character: str) -> str:
-    if unicodedata.category(character) not in _INVISIBLE or character in _JOINERS:
-        return character
-    return character.encode("unicode_escape").decode()

@@ -17,6 +17,7 @@ from tpvqa.bench.row import EpisodeRow
 from tpvqa.bench.summary import REFERENCE, Summary, summaries
 from tpvqa.errors import WriteError
 from tpvqa.files import write_whole
+from tpvqa.pages import template
 from tpvqa.questions import Way
 from tpvqa.vlm.metrics import Metrics
 
@@ -179,15 +180,6 @@ def write_bench_report(folder: Path, results: Results) -> Path:
         MissingExtraError: Matplotlib is not installed.
         WriteError: The folder cannot be written to.
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("tpvqa.bench.report", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     pictures = {}
     beside = folder_within(folder, "figures")
     try:
@@ -199,9 +191,7 @@ def write_bench_report(folder: Path, results: Results) -> Path:
                     encoded = base64.b64encode(data).decode()
                     pictures[name] = f"data:image/svg+xml;base64,{encoded}"
             figures.close(figure)
-        page = environment.get_template("report.html.j2").render(
-            results=results, pictures=pictures, rate=_rate
-        )
+        page = template("tpvqa.bench.report").render(results=results, pictures=pictures, rate=_rate)
         path = folder / "report.html"
         write_whole(path, page.encode(), remedy=REMEDY)
     except OSError as error:

@@ -17,11 +17,12 @@ from tpvqa.episodes.true_start import true_start_said
 from tpvqa.errors import EpisodeError, PictureError
 from tpvqa.events.events import Event, Started
 from tpvqa.files import opened_plain, write_whole
+from tpvqa.pages import template
 from tpvqa.pictures import picture_type, read_picture
 from tpvqa.questions import FactWords
 
 if TYPE_CHECKING:
-    from jinja2 import Environment
+    from jinja2 import Template
 
 __all__ = ["Story", "render_report", "tell", "write_report"]
 
@@ -116,32 +117,19 @@ def render_report(events: list[Event], folder: Path) -> str:
     story, worth = tell(events, words), AnswersWorth()
     for event in events:
         worth.take(event)
-    return (
-        _environment()
-        .get_template("report.html.j2")
-        .render(
-            story=story,
-            picture=picture,
-            chart=chart(story, words.say),
-            say=words.say,
-            probability=probability,
-            calibration=calibration_used(story.started),
-            begun=true_start_said(story.started, words.say),
-            saves=worth.more_would_save(),
-            unmet="; ".join(map(words.say, story.ended.unmet or ())) if story.ended else "",
-        )
+    return _page().render(
+        story=story,
+        picture=picture,
+        chart=chart(story, words.say),
+        say=words.say,
+        probability=probability,
+        calibration=calibration_used(story.started),
+        begun=true_start_said(story.started, words.say),
+        saves=worth.more_would_save(),
+        unmet="; ".join(map(words.say, story.ended.unmet or ())) if story.ended else "",
     )
 
 
 @cache
-def _environment() -> "Environment":
-    """The templates, compiled once."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    return Environment(
-        loader=PackageLoader("tpvqa.episodes.report", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+def _page() -> "Template":
+    return template("tpvqa.episodes.report")
