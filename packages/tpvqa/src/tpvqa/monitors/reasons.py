@@ -126,7 +126,7 @@ def _why_on(grounds: Grounds, action: Action, missing: Sequence[Literal]) -> lis
         parts = _most_telling(grounds)
     if not doubted and needs:
         together = grounds.belief.where(lambda state: all(n.holds(state) for n in needs))
-        parts.append(f"all that {said} needs holds with {_figure(together)}")
+        parts.append(f"all that the plan needs now holds with {_figure(together)}")
     for need in missing[:1]:
         parts.append(f"{grounds.say(need)} {_figure(grounds.probability(need))} is for later")
     able = grounds.belief.where(lambda state: task.applicable(state, action))
