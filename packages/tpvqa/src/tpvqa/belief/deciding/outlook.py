@@ -24,6 +24,9 @@ PLANS = 16
 """Plans that are kept, the latest ones."""
 LONG = 25
 """Steps of a plan from which on a task is long, and more than usual is at stake."""
+IN_VAIN = 14, 22
+"""Steps of a plan up to which a failed task costs what is said, and from which on twice as much: so
+much more was done in vain."""
 FURTHER = 14
 """So many steps a state without a known way is farther away than the likeliest one, at most."""
 KNOWN = 64
@@ -328,7 +331,8 @@ class Outlook:
         unchecked = steps * self._costs.action / max(works, 0.05) ** steps
         blind = UNSEEN * unseen * steps * self._costs.action
         checked = 1.5 * min(steps * self._usual_step(), unchecked)
-        return max(self._costs.failure, blind, twice, checked)
+        said = float(np.interp(steps, IN_VAIN, (1, 2))) * self._costs.failure
+        return max(said, blind, twice, checked)
 
     @property
     def dearer(self) -> float:
