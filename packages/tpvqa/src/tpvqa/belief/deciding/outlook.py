@@ -24,7 +24,7 @@ PLANS = 16
 """Plans that are kept, the latest ones."""
 LONG = 25
 """Steps of a plan from which on a task is long, and more than usual is at stake."""
-IN_VAIN = 14, 22
+TWICE = 14, 22
 """Steps of a plan up to which a failed task costs what is said, and from which on twice as much: so
 much more was done in vain."""
 FURTHER = 14
@@ -331,7 +331,7 @@ class Outlook:
         unchecked = steps * self._costs.action / max(works, 0.05) ** steps
         blind = UNSEEN * unseen * steps * self._costs.action
         checked = 1.5 * min(steps * self._usual_step(), unchecked)
-        said = float(np.interp(steps, IN_VAIN, (1, 2))) * self._costs.failure
+        said = float(np.interp(steps, TWICE, (1, 2))) * self._costs.failure
         return max(said, blind, twice, checked)
 
     @property
