@@ -141,6 +141,17 @@ def test_a_few_bytes_do_not_fill_the_memory(tmp_path: Path) -> None:
         list(read_published(tmp_path, SETTINGS))
 
 
+@pytest.mark.parametrize(
+    "column", [pa.array([["a"], ["b"]]), pa.array([b"ab", b"cd"], pa.binary(2))], ids=str
+)
+def test_columns_that_unpack_without_bound_are_refused(tmp_path: Path, column: pa.Array) -> None:
+    table = pa.table({"task": column})
+    told = {b"tpvqa.bench": json.dumps(SETTINGS)}
+    parquet.write_table(table.replace_schema_metadata(told), tmp_path / "part.parquet")
+    with pytest.raises(BenchError, match=r"part\.parquet: cannot be read \(its column task"):
+        list(read_published(tmp_path, SETTINGS))
+
+
 def test_rows_that_contradict_each_other_are_named_before_anything_is_made(tmp_path: Path) -> None:
     data, cell = tmp_path / "data", Cell("t", "m", "v", "w")
     rows = [row(episode=k, actions=5) for k in range(3)]

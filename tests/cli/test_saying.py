@@ -15,12 +15,12 @@ from rich.console import Console
 from tests.cli.conftest import Run
 from tests.episodes.believing import believing
 from tests.episodes.test_log import file_size
-from tpvqa.cli.saying import cell, marked, plain, plain_row, rendered
+from tpvqa.cli.saying import cell, marked, rendered
 from tpvqa.cli.terminal import EpisodeView
 from tpvqa.episodes.log import LOG
 from tpvqa.episodes.report import render_report
 from tpvqa.events import EVENT
-from tpvqa.spelling import LONGEST
+from tpvqa.spelling import LONGEST, plain, plain_row
 
 HOSTILE = "\x1b]0;title\x07\x9b2J\x7f\r\u202eabc\u2066\u2028\u2029[red]:smile:[/]\\[bold]\\"
 """A title, C1, DEL, a carriage return, bidirectional overrides, separators, markup, an emoji."""

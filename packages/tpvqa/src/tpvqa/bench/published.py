@@ -23,8 +23,10 @@ LEFT_OUT = ("seconds", "answers", "decisions")
 _SETTINGS, _TASKS = b"tpvqa.bench", b"tpvqa.tasks"
 _LARGEST = 256 * 2**20
 """Bytes of a file; half a million rows have five million."""
-_UNPACKED, _MOST_ROWS, _LONGEST = 2 * 2**30, 10_000_000, 100_000
-"""Bytes and rows that a file may say it has unpacked, characters of one text."""
+_UNPACKED, _MOST_ROWS, _LONGEST = 2 * 2**30, 5_000_000, 10_000
+"""Bytes and rows that a file may say it has unpacked, bytes of one text."""
+_PLAIN = {"BOOLEAN", "INT32", "INT64", "FLOAT", "DOUBLE", "BYTE_ARRAY"}
+"""What the columns of rows are, as Parquet calls it."""
 
 
 def write_published(
@@ -175,7 +177,12 @@ class _Opened:
         groups = (found.row_group(each) for each in range(found.num_row_groups))
         if found.num_rows > _MOST_ROWS or sum(e.total_byte_size for e in groups) > _UNPACKED:
             raise OSError(f"it has more than {_MOST_ROWS:,} rows, or {_UNPACKED >> 30} GiB of them")
-        columns = (found.schema.column(each) for each in range(found.num_columns))
+        columns = [found.schema.column(each) for each in range(found.num_columns)]
+        for each in columns:
+            if each.max_repetition_level or each.physical_type not in _PLAIN:
+                raise OSError(f"its column {cut(each.path)} holds no plain values")
+        if len(columns) > len(EpisodeRow.model_fields):
+            raise OSError(f"it has {len(columns):,} columns, more than rows have")
         texts = [each.path for each in columns if each.physical_type == "BYTE_ARRAY"]
         data.seek(0)
         return parquet.ParquetFile(data, read_dictionary=texts)
@@ -207,7 +214,7 @@ class _Opened:
         for chunk in column.chunks:
             longest = compute.max(compute.binary_length(chunk.dictionary)).as_py()
             if (longest or 0) > _LONGEST:
-                raise OSError(f"it has a text of more than {_LONGEST:,} characters")
+                raise OSError(f"it has a text of more than {_LONGEST:,} bytes")
 
     def _unread(self, error: Exception) -> BenchError:
         said = getattr(error, "strerror", None) or str(error) or type(error).__name__

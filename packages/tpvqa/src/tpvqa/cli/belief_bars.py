@@ -2,8 +2,9 @@
 
 from collections.abc import Callable, Mapping
 
-from tpvqa.cli.saying import marked, plain
+from tpvqa.cli.saying import marked
 from tpvqa.episodes.notable_facts import FactNow, notable, probability
+from tpvqa.spelling import plain
 
 _CELLS = 8
 _EIGHTHS = " ▏▎▍▌▋▊▉█"

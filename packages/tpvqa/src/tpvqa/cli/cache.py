@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, TextIO
 import typer
 
 from tpvqa.cli.outputs import see_unread
-from tpvqa.cli.saying import cell, plain_row, tell
+from tpvqa.cli.saying import cell, tell
+from tpvqa.spelling import plain_row
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

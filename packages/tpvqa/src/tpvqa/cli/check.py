@@ -11,7 +11,8 @@ import typer
 
 from tpvqa.cli.options import task_config
 from tpvqa.cli.plan import Domain, OwnProblem, Problem, Task
-from tpvqa.cli.saying import plain, tell
+from tpvqa.cli.saying import tell
+from tpvqa.spelling import plain
 
 if TYPE_CHECKING:
     from tpvqa.checking import Finding

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Self
 from tpvqa.cli.label_words import press, progress_line, when
 from tpvqa.errors import PictureError, TpvqaError
 from tpvqa.pictures import picture_type, read_picture
+from tpvqa.spelling import spelled
 
 if TYPE_CHECKING:
     from tpvqa.labelling import Session
@@ -110,12 +111,12 @@ class LabelPage:
         session, progress = self._session, self._session.progress
         asking = session.now
         return {
-            "vlm": session.vlm,
+            "vlm": spelled(session.vlm),
             "labels": progress.labels,
             "left": progress.standing.left,
             "enough": progress.standing.enough,
             "progress": progress_line(progress),
-            "question": None if asking is None else asking.text,
+            "question": None if asking is None else spelled(asking.text),
             "when": None if asking is None else when(asking),
             "pictures": 0 if asking is None else len(asking.pictures),
             "number": secrets.token_hex(4),  # so that no browser shows an earlier picture

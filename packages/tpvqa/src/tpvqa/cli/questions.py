@@ -19,8 +19,9 @@ from tpvqa.cli.plan import (
     Problem,
     Task,
 )
-from tpvqa.cli.saying import cell, plain, tell
+from tpvqa.cli.saying import cell, tell
 from tpvqa.config.layers import Layer, settings
+from tpvqa.spelling import plain
 
 if TYPE_CHECKING:
     from tpvqa.config import TaskConfig

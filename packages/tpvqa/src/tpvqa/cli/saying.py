@@ -8,12 +8,10 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from tpvqa.spelling import LONGEST, plain, plain_row
+from tpvqa.spelling import LONGEST, plain
 
 if TYPE_CHECKING:
     from rich.text import Text
-
-__all__ = ["cell", "marked", "plain", "plain_row", "rendered", "tell"]
 
 LONGEST_ERROR = 20_000
 _STANDING_IN = {ord("["): "\ue000", ord("\\"): "\ue001"}

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from tpvqa.cli.belief_bars import BeliefBars
 from tpvqa.cli.brief import brief
-from tpvqa.cli.saying import marked, plain, rendered
+from tpvqa.cli.saying import marked, rendered
 from tpvqa.episodes.agreement import Agreement
 from tpvqa.episodes.answers_worth import AnswersWorth, calibration_used
 from tpvqa.episodes.fact_words import words_of
@@ -34,6 +34,7 @@ from tpvqa.events.events import (
     Waited,
 )
 from tpvqa.questions import FactWords, QuestionBook
+from tpvqa.spelling import plain
 from tpvqa.vlm import Reply
 from tpvqa.vlm.answer import CAMERA
 from tpvqa.worlds import Report

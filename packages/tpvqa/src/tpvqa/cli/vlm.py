@@ -11,8 +11,9 @@ import typer
 
 from tpvqa.cli.options import ANSWERING, trial_options
 from tpvqa.cli.outputs import named_by, see_free, see_unread
-from tpvqa.cli.saying import plain_row, tell
+from tpvqa.cli.saying import tell
 from tpvqa.config.layers import Layer, combined, settings
+from tpvqa.spelling import plain_row
 
 if TYPE_CHECKING:
     from tpvqa.bench.vlms.asking import Row
