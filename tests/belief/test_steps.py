@@ -57,6 +57,38 @@ def test_what_is_paid_backward_is_what_is_lost_forward(
     assert isclose(told, len(actions) + lost, rel_tol=0.01)
 
 
+@settings(max_examples=25, deadline=None)
+@given(
+    data=st.data(),
+    failure=st.floats(0.0, 1.0),
+    disturbance=st.floats(0.0, 1.0),
+    spontaneous=st.sampled_from([0.0, 0.05]),
+    redone=st.sampled_from([0.0, 0.1]),
+)
+def test_forth_and_back_are_the_same_step(
+    model: FaultModel,
+    data: st.DataObject,
+    failure: float,
+    disturbance: float,
+    spontaneous: float,
+    redone: float,
+) -> None:
+    """What is expected after an action: of where it leads to, or of what it leads back to."""
+    rates, plan = Rates(failure, disturbance, spontaneous, redone), plan_of(model.task)
+    (begun,) = Belief(model).weights
+    steps = Steps(model)
+    steps.cover({begun: 1.0}, [tuple(plan)], rates)
+    amounts = st.lists(
+        st.floats(0, 10), min_size=len(steps.numbers) + 1, max_size=len(steps.numbers) + 1
+    )
+    masses, after = np.array(data.draw(amounts)), np.array(data.draw(amounts))
+    action = data.draw(st.sampled_from(plan))
+    led = steps.forth(action, masses, failure, rates)
+    back = steps.back(action, after[:, None], failure, rates)[:, 0]
+    assert isclose(float(led @ after), float(masses @ back), rel_tol=1e-9, abs_tol=1e-9)
+    assert isclose(float(led.sum()), float(masses.sum()), rel_tol=1e-9, abs_tol=1e-9)
+
+
 def test_what_is_not_told_apart_is_lost(model: FaultModel) -> None:
     steps, plan = Steps(model), plan_of(model.task)
     begun = next(iter(Belief(model).weights))

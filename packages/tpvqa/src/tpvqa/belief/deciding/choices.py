@@ -144,6 +144,7 @@ class Chooser:
         table = Table(told, numbers, np.array([weight for _, weight in ranked]), costs, works)
         if self.blind and table.best.action is not None:
             self._unseen.follow(table.best.action)
+            self._unseen.improve(ranked)
             self._decided = dict(ranked)
             return self._followed_now(ranked, kinds, current, barred) or table
         return table

@@ -176,6 +176,35 @@ class Steps:
         np.copyto(found, kept, where=leads.achieved)
         return found
 
+    def forth(self, action: Action, masses: Floats, failure: float, rates: Rates) -> Floats:
+        """How probable the joint states are after an action; `back` the other way round.
+
+        Args:
+            action: It.
+            masses: How probable each is before it, and last all others.
+            failure: How often it fails.
+            rates: How often something is undone.
+        """
+        leads = self._leads.get(action) or self._led(action)
+        achieved = leads.achieved[:, 0]
+        kept, tried = np.where(achieved, masses, 0.0), np.where(achieved, 0.0, masses)
+        failed = np.where(leads.impossible[:, 0], tried, failure * tried)
+        worked = _gathered(leads.there, tried - failed, len(masses))
+        parts = (kept, rates.redone), (failed, rates.disturbance), (worked, rates.spontaneous)
+        return sum((self._fell(each, often) for each, often in parts), np.zeros(len(masses)))
+
+    def _fell(self, masses: Floats, often: float) -> Floats:
+        """How probable the joint states are after something may have been undone."""
+        if not often:
+            return masses
+        falls = self._falls_known()
+        if not len(falls.rows):
+            return masses
+        stays, falling = masses.copy(), masses[falls.rows] * falls.shares[:, 0]
+        stays[falls.rows[falls.starts]] = 0.0
+        fallen = stays + _gathered(falls.columns, falling, len(masses))
+        return _mixed(masses, fallen, often)
+
     def _led(self, action: Action) -> _Leads:
         outcomes, last = self._model.outcomes(action), len(self.numbers)
         each = [outcomes[number] for number in self.numbers]
@@ -189,8 +218,7 @@ class Steps:
         )
         return found
 
-    def _fallen(self, after: Floats) -> Floats:
-        """What is left to pay where something was undone."""
+    def _falls_known(self) -> _Falls:
         if self._falls is None:
             last = len(self.numbers)
             falls = [
@@ -202,7 +230,11 @@ class Steps:
             columns = np.array([each[1] for each in falls], np.intp)
             shares = np.array([each[2] for each in falls])[:, None]
             self._falls = _Falls(rows, columns, shares, np.flatnonzero(np.diff(rows, prepend=-1)))
-        found, (rows, columns, shares, starts) = after.copy(), self._falls
+        return self._falls
+
+    def _fallen(self, after: Floats) -> Floats:
+        """What is left to pay where something was undone."""
+        found, (rows, columns, shares, starts) = after.copy(), self._falls_known()
         if len(rows):
             parts = after.take(columns, axis=0)
             parts *= shares
@@ -215,3 +247,8 @@ def _mixed(first: Floats, second: Floats, share: float) -> Floats:
     found: Floats = (1 - share) * first
     found += share * second
     return found
+
+
+def _gathered(places: Places, masses: Floats, number: int) -> Floats:
+    """What comes together at each of so many places."""
+    return np.bincount(places, weights=masses, minlength=number).astype(np.float64)

@@ -15,6 +15,7 @@ import numpy as np
 from tpvqa.belief.answers.information import Floats
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.deciding.annotated import AnnotatedPlan
+from tpvqa.belief.deciding.improving import Improving
 from tpvqa.belief.deciding.long_rests import HORIZON, TIMES, LongRests
 from tpvqa.belief.deciding.one_thread import one_thread
 from tpvqa.belief.deciding.outlook import Outlook
@@ -58,6 +59,20 @@ class _Sequence(NamedTuple):
     then: "_Sequence | None" = None
 
 
+class _Onward(NamedTuple):
+    """What comes after an action.
+
+    Attributes:
+        actions: What is followed.
+        rest: What is meant to come after that, where it is too long to be followed.
+        paid: What is left to pay after `actions`, in every joint state that is told apart.
+    """
+
+    actions: tuple[Action, ...]
+    rest: tuple[Action, ...]
+    paid: Floats
+
+
 class Unseen:
     """What ways cost that are followed without a look.
 
@@ -80,7 +95,8 @@ class Unseen:
         self.following: tuple[Action, ...] = ()
         self.onward: tuple[Action, ...] = ()
         self._stake = 0.0
-        self._after: dict[Action, tuple[tuple[Action, ...], tuple[Action, ...]]] = {}
+        self._ways_told: list[tuple[Action, ...]] = []
+        self._after: dict[Action, _Onward] = {}
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
@@ -95,9 +111,30 @@ class Unseen:
 
     def follow(self, action: Action) -> None:
         """Decide for an action, with what is best to come after it."""
-        after, self.onward = self._after.get(action, ((), ()))
-        self.following = (action, *after)
+        after = self._after.get(action)
+        self.following, self.onward = (action,), ()
+        if after is not None:
+            self.following, self.onward = (action, *after.actions), after.rest
         self._stake = self._ahead.failure
+
+    def improve(self, ranked: Sequence[tuple[int, float]]) -> None:
+        """Follow something better than was decided for, where there is such: no answer will tell
+        how it goes.
+
+        Args:
+            ranked: All joint states with their probabilities.
+        """
+        after = self._after.get(self.following[0])
+        if after is None:
+            return
+        masses = np.zeros(len(self._steps.numbers) + 1)
+        for number, mass in ranked:
+            masses[self._steps.place.get(number, -1)] += mass
+        left = None if self._ahead.left is None else self._ahead.left - len(self.onward)
+        better = Improving(self._steps, self._ahead, self._costs.action).improved(
+            self.following, self._ways_told, masses, after.paid, left
+        )
+        self.following = better or self.following
 
     def drop(self) -> None:
         """Follow nothing any more."""
@@ -160,7 +197,7 @@ class Unseen:
             kept = kept - KEEPING * self._costs.action
             first, *rest = self.following
             found.setdefault(first, []).append(self._whole(np.maximum(kept, 0.0), ranked))
-            self._after[first] = tuple(rest), ()
+            self._after[first] = _Onward(tuple(rest), (), self._ended())
         return found
 
     def _prepared(
@@ -180,6 +217,7 @@ class Unseen:
         for place, plan in ways:
             long = len(plan.actions) - place > HORIZON
             (cut if long else told).append(tuple(plan.actions[place : place + HORIZON]))
+        self._ways_told = told
         once = tuple(action for action, _ in groupby(self.following))
         self._steps.cover(masses, told, self._ahead.rates, cut=cut, followed=once)
         version = self._ahead.version, self._steps.version
@@ -309,20 +347,18 @@ class Unseen:
         place, plan = ways[each.way]
         return plan.actions[place]
 
-    def _parted(
-        self, ways: Sequence[Way], each: _Sequence, done: Action
-    ) -> tuple[tuple[Action, ...], tuple[Action, ...]]:
-        """The actions of something that can be done, after the first, where that is one of them:
-        what is followed, and what comes where a plan is too long for that."""
+    def _parted(self, ways: Sequence[Way], each: _Sequence, done: Action) -> _Onward:
+        """The actions of something that can be done, after the first, where that is one of them."""
         found: list[Action] = []
         part: _Sequence | None = each
-        cut: int | None = None
+        cut, paid = None, self._ended()
         while part is not None and part.way is not None:
             place, plan = ways[part.way]
             if cut is None and len(plan.actions) - place > HORIZON:
                 cut = len(found) + HORIZON * part.times
+                paid = self._rests.of(plan, place + HORIZON, self._steps.numbers)
             found += [action for action in plan.actions[place:] for _ in range(part.times)]
             part = part.then
         begun = found[:1] == [done]
         cut = len(found) if cut is None else cut
-        return tuple(found[begun:cut]), tuple(found[cut:])
+        return _Onward(tuple(found[begun:cut]), tuple(found[cut:]), paid)
