@@ -14,13 +14,14 @@ from typer.testing import CliRunner
 from tests.doubles import made
 from tpvqa.bench.statistics import Interval
 from tpvqa.cli.app import app
+from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError, PluginError, UnknownNameError
 from tpvqa.observation import Observation
 from tpvqa.pddl import Atom, Literal, State, Task, load_task
 from tpvqa.questions import QuestionBook
 from tpvqa.vlm import Reply
 from tpvqa_experiments.viplan.bench import KNOWING, ViPlanBench, run_viplan_bench
-from tpvqa_experiments.viplan.calibrations import calibration, exact
+from tpvqa_experiments.viplan.calibrations import calibration, counted, exact
 from tpvqa_experiments.viplan.noise import LASTING, as_seen
 from tpvqa_experiments.viplan.problems import Environment, problems_in
 from tpvqa_experiments.viplan.published import Published, published
@@ -273,6 +274,20 @@ def test_a_calibration_is_learnt_from_every_other_problem(task: Task) -> None:
     assert 12 * 19 <= told.rows <= 13 * 19 * 4
     assert told.repeat_same_view + told.lasting_share > 0.9
     assert calibration("oracle:0.8", task) is None
+
+
+def test_how_often_skills_fail_is_counted_in_trials_of_other_seeds(folder: Path) -> None:
+    problems = problems_in(folder, Environment.BLOCKSWORLD)
+    own = {name: problem.task for name, problem in problems.items()}
+    never, sometimes = (
+        counted(f"failure={rate},disturbance=0", TrialConfig(), own) for rate in (0, 0.1)
+    )
+    assert never is not None
+    assert sometimes is not None
+    assert never.skills["moveblock"].failed == 0
+    assert never.skills["moveblock"].worked >= 120
+    few = sometimes.skills["moveblock"]
+    assert 0.03 < few.failed / few.tries < 0.2
 
 
 def test_rates_agree_where_one_lies_in_the_interval_of_the_other() -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.counted import CountedFaults
 from tpvqa.bench.cell import Cell
 from tpvqa.bench.engine import Bench, Progress, run_bench
 from tpvqa.bench.ledger import REMEDY
@@ -84,25 +85,37 @@ class ViPlanBench:
     def declared(self) -> Bench:
         """What the engine is given."""
         own = {name: problem.task for name, problem in self.problems.items()}
-        knowing = {cell for group, cell in self.cells() if group.monitor == KNOWING}
-
-        def told(missing: Sequence[Cell]) -> Mapping[Cell, Calibration]:
-            found = {}
-            for cell in missing:
-                if cell.monitor.partition(":")[0] == BELIEF:
-                    task = stage(cell.task, own[cell.task]).task
-                    learnt = calibrations.exact if cell in knowing else calibrations.calibration
-                    known = learnt(cell.vlm, task)
-                    if known is not None:
-                        found[cell] = known
-            return found
-
         return Bench(
             wanted=dict.fromkeys((cell for _, cell in self.cells()), self.episodes),
             common=self.common,
             own=own,
-            calibrations=told,
+            calibrations=self._told,
         )
+
+    def _told(self, missing: Sequence[Cell]) -> Mapping[Cell, Calibration]:
+        """What the belief monitor is told in some cells."""
+        groups = {cell: group for group, cell in self.cells()}
+        counted = dict[tuple[Environment, str, str], CountedFaults | None]()
+        found = {}
+        for cell in missing:
+            group, problem = groups[cell], self.problems[cell.task]
+            if cell.monitor.partition(":")[0] != BELIEF:
+                continue
+            task = stage(cell.task, problem.task).task
+            if group.monitor == KNOWING:
+                found[cell] = calibrations.exact(cell.vlm, task)
+            elif known := calibrations.calibration(cell.vlm, task):
+                key = group.environment, group.split, group.setting
+                if key not in counted:
+                    alike = {
+                        name: each.task
+                        for name, each in self.problems.items()
+                        if (each.environment, each.split) == (problem.environment, problem.split)
+                    }
+                    setting = SETTINGS[group.setting]
+                    counted[key] = calibrations.counted(setting, self.common, alike)
+                found[cell] = known.model_copy(update={"faults": counted[key]})
+        return found
 
 
 def run_viplan_bench(

@@ -1,13 +1,20 @@
 """What a monitor is told of the answers on ViPlan's problems: learnt from other problems."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
+from math import ceil
 
 from tpvqa.belief import LabelledAnswer
 from tpvqa.belief.answers.kinds import FRESH, KINDS, Kind
 from tpvqa.belief.calibrating.calibration import Calibration
+from tpvqa.belief.calibrating.counted import CountedFaults, count_faults
 from tpvqa.belief.calibrating.fitting import fit
+from tpvqa.belief.calibrating.own_words import OwnWords
+from tpvqa.bench.cell import Cell
+from tpvqa.bench.labelled import gather
 from tpvqa.bench.labelled_recordings import label_recordings
+from tpvqa.bench.own_task import OwnTask
+from tpvqa.config import TrialConfig
 from tpvqa.errors import BenchError
 from tpvqa.pddl import Task
 from tpvqa.questions.question import Way
@@ -19,6 +26,10 @@ from tpvqa_experiments.viplan.noise import PREDICATES
 from tpvqa_experiments.viplan.scenes import Scene, scenes, true_facts
 
 SCENES, RECORDED = "recorded-scenes", "recorded"
+TWICE, TRIALS = "blind:2", 120
+"""Who does the trials that faults are counted in, and how many there are at least."""
+OTHER_SEEDS = 10_000
+"""How far their seed lies from that of the bench."""
 WAYS = (Way.PRECONDITION, Way.EFFECT)
 
 
@@ -36,6 +47,28 @@ def calibration(vlm: str, task: Task) -> Calibration | None:
     if name == RECORDED:
         return _of_answers(vlm, task)
     return None
+
+
+def counted(
+    setting: str, common: TrialConfig, problems: Mapping[str, OwnTask]
+) -> CountedFaults | None:
+    """What a monitor is told of faults: counted in trials of other seeds, whose initial state is
+    known and that do every step of a plan twice.
+
+    Args:
+        setting: How often actions fail, as a condition.
+        common: Seed of the bench.
+        problems: Those of a split, by name; each is run as often.
+
+    Raises:
+        TpvqaError: A trial cannot be run.
+    """
+    heard, seed = OwnWords(), common.seed + OTHER_SEEDS
+    for name, own in problems.items():
+        cell = Cell(name, TWICE, "oracle", "symbolic", setting)
+        times = range(ceil(TRIALS / len(problems)))
+        gather(cell, common.but(seed=seed), times, own=own, heard=heard)
+    return count_faults(heard.acts)
 
 
 def exact(vlm: str, task: Task) -> Calibration:
