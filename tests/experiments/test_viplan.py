@@ -277,7 +277,7 @@ def test_a_calibration_is_learnt_from_every_other_problem(task: Task) -> None:
 
 
 def test_how_often_skills_fail_is_counted_in_trials_of_other_seeds(folder: Path) -> None:
-    problems = problems_in(folder, Environment.BLOCKSWORLD)
+    problems = problems_in(folder, Environment.BLOCKSWORLD, ("simple",))
     own = {name: problem.task for name, problem in problems.items()}
     never, sometimes = (
         counted(f"failure={rate},disturbance=0", TrialConfig(), own) for rate in (0, 0.1)
