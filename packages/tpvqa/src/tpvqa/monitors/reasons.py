@@ -62,6 +62,8 @@ def _reason(
     planned = action if place is None else grounds.step.plan.actions[place]
     said = grounds.step.book.say(planned)  # as its step says it: what is rebound is the same skill
     number = "" if place is None else f" (step {place + 1})"
+    if grounds.followed:
+        return f"{_decided(grounds)}; {_next(grounds, decision, said, number, place)}"
     if decision is Decision.GO_ON and place == grounds.next:
         return "; ".join((*_why_on(grounds, action, missing), f"{said}{number}"))
     if decision is Decision.REPEAT:
@@ -70,9 +72,7 @@ def _reason(
     facts = [_fact(grounds, each) for each in missing[:SAID]]
     there = _instead(grounds, missing[:SAID], state) or _news(grounds, state)
     if decision is Decision.REPEAT:
-        if not facts and not there and grounds.followed:
-            facts = [_decided(grounds)]
-        elif not facts and grounds.plan is not None:
+        if not facts and grounds.plan is not None:
             facts = [f"{_listed(grounds, there)} would be mended by it"]
         facts = facts or _brought(grounds, action, state)
         return "; ".join((*facts, f"{said} again"))
@@ -83,6 +83,15 @@ def _reason(
         return "; ".join((*facts, f"on to {said}{number}, {since}"))
     undone = _undone(grounds, planned, state) or there
     return "; ".join((*facts, f"back to {said}{number}{_since(grounds, undone)}"))
+
+
+def _next(grounds: Grounds, decision: Decision, said: str, number: str, place: int | None) -> str:
+    """What is done next of what is followed unseen."""
+    if decision is Decision.REPEAT:
+        return f"{said} again"
+    if place is None or place == grounds.next:
+        return f"{said}{number}"
+    return f"{'on' if place > grounds.next else 'back'} to {said}{number}"
 
 
 def _already(grounds: Grounds, place: int, told: Sequence[Literal]) -> str:
@@ -318,8 +327,7 @@ def _listed(grounds: Grounds, told: Sequence[Literal]) -> str:
     figures = (
         f"{grounds.say(each)} ({_figure(grounds.probability(each))})" for each in told[:SAID]
     )
-    other = _decided(grounds) if grounds.followed else "what was believed"
-    return " and ".join(figures) or other
+    return " and ".join(figures) or "what was believed"
 
 
 def _decided(grounds: Grounds) -> str:
