@@ -22,14 +22,13 @@ from tpvqa.vlm.answer import Reply
 from tpvqa.vlm.recorded.lasting import Lasting
 from tpvqa.vlm.recorded.spec import RecordedSpec
 from tpvqa.vlm.recorded.vlm import told_by
+from tpvqa_experiments.belief.calibrations import OTHER_SEEDS
 from tpvqa_experiments.viplan.noise import PREDICATES
 from tpvqa_experiments.viplan.scenes import Scene, scenes, true_facts
 
 SCENES, RECORDED = "recorded-scenes", "recorded"
 TWICE, TRIALS = "blind:2", 120
 """Who does the trials that faults are counted in, and how many there are at least."""
-OTHER_SEEDS = 10_000
-"""How far their seed lies from that of the bench."""
 WAYS = (Way.PRECONDITION, Way.EFFECT)
 
 

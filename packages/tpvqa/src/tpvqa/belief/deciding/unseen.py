@@ -65,12 +65,12 @@ class _Onward(NamedTuple):
     Attributes:
         actions: What is followed.
         rest: What is meant to come after that, where it is too long to be followed.
-        paid: What is left to pay after `actions`, in every joint state that is told apart.
+        begins: Where in a plan that rest begins; None where there is none.
     """
 
     actions: tuple[Action, ...]
     rest: tuple[Action, ...]
-    paid: Floats
+    begins: Way | None = None
 
 
 class Unseen:
@@ -124,15 +124,19 @@ class Unseen:
         Args:
             ranked: All joint states with their probabilities.
         """
-        after = self._after.get(self.following[0])
-        if after is None:
+        onward = self._after.get(self.following[0])
+        if onward is None:
             return
+        after = self._ended()
+        if onward.begins is not None:
+            place, plan = onward.begins
+            after = self._rests.of(plan, place, self._steps.numbers)
         masses = np.zeros(len(self._steps.numbers) + 1)
         for number, mass in ranked:
             masses[self._steps.place.get(number, -1)] += mass
         left = None if self._ahead.left is None else self._ahead.left - len(self.onward)
         better = Improving(self._steps, self._ahead, self._costs.action).improved(
-            self.following, self._ways_told, masses, after.paid, left
+            self.following, self._ways_told, masses, after, left
         )
         self.following = better or self.following
 
@@ -197,7 +201,7 @@ class Unseen:
             kept = kept - KEEPING * self._costs.action
             first, *rest = self.following
             found.setdefault(first, []).append(self._whole(np.maximum(kept, 0.0), ranked))
-            self._after[first] = _Onward(tuple(rest), (), self._ended())
+            self._after[first] = _Onward(tuple(rest), ())
         return found
 
     def _prepared(
@@ -351,14 +355,15 @@ class Unseen:
         """The actions of something that can be done, after the first, where that is one of them."""
         found: list[Action] = []
         part: _Sequence | None = each
-        cut, paid = None, self._ended()
+        cut: int | None = None
+        begins: Way | None = None
         while part is not None and part.way is not None:
             place, plan = ways[part.way]
             if cut is None and len(plan.actions) - place > HORIZON:
                 cut = len(found) + HORIZON * part.times
-                paid = self._rests.of(plan, place + HORIZON, self._steps.numbers)
+                begins = place + HORIZON, plan
             found += [action for action in plan.actions[place:] for _ in range(part.times)]
             part = part.then
         begun = found[:1] == [done]
         cut = len(found) if cut is None else cut
-        return _Onward(tuple(found[begun:cut]), tuple(found[cut:]), paid)
+        return _Onward(tuple(found[begun:cut]), tuple(found[cut:]), begins)
