@@ -76,3 +76,8 @@ def test_where_the_goal_was_farther_than_thought_to_come_nearer_counts() -> None
         settlings.taken(found, ahead)
     assert settlings.taken(found, 1) > 0.75
     assert 1.0 <= settlings.dearer < 1.1
+
+
+def test_what_will_be_seen_later_is_reckoned_with_where_it_settles_a_fresh_doubt() -> None:
+    assert Settling(0.3, new=0.9).foresees  # what is in doubt now has been asked about in vain
+    assert not Settling(0.9, new=0.5).foresees
