@@ -208,19 +208,30 @@ class Chooser:
                 found_out = self.settles * seen + (1 - self.settles) * (unseen + more)
                 columns = (found_out + self.finding, unseen + more)
                 found += [(each, column, own) for column in columns]
-        for action, further in blind.items():
-            each = Choice(action, self._model.state(ranked[0][0]))
-            if self._allowed(each, current, barred) and self._worth_a_try(each):
-                more = 0.0 if self._in(each, current) else self._costs.replan
-                own = self._doing.of(each, ranked, kinds)
-                found += [(each, column + more, own) for column in further]
-        self._in_order = set(blind)
+        return found + self._of_nobody(blind, ranked, kinds, current, barred)
+
+    def _of_nobody(
+        self,
+        blind: Mapping[Action, list[Floats]],
+        ranked: Sequence[tuple[int, float]],
+        kinds: Kinds,
+        current: Sequence[Action],
+        barred: Action | None,
+    ) -> list[tuple[Choice, Floats, Floats]]:
+        """The same of what is nobody's next step, and yet best done unseen; and, where nothing is
+        taken to be seen later, of the best of it in a better order."""
+        state = self._model.state(ranked[0][0])
+        told = [(Choice(action, state), columns, False) for action, columns in blind.items()]
         if blind and not self.foresees:
             action, column = self._unseen.better(blind, ranked)
-            self._in_order.add(action)
-            each = Choice(action, self._model.state(ranked[0][0]))
+            told.append((Choice(action, state), [column], True))
+        self._in_order = {each.action for each, _, _ in told if each.action is not None}
+        found: list[tuple[Choice, Floats, Floats]] = []
+        for each, columns, better in told:
             if self._allowed(each, current, barred) and self._worth_a_try(each):
-                found.append((each, column, self._doing.of(each, ranked, kinds, unseen=True)))
+                more = 0.0 if better or self._in(each, current) else self._costs.replan
+                own = self._doing.of(each, ranked, kinds, unseen=better)
+                found += [(each, column + more, own) for column in columns]
         return found
 
     def _followed_now(
