@@ -78,6 +78,13 @@ def test_where_the_goal_was_farther_than_thought_to_come_nearer_counts() -> None
     assert 1.0 <= settlings.dearer < 1.1
 
 
-def test_what_will_be_seen_later_is_reckoned_with_where_it_settles_a_fresh_doubt() -> None:
-    assert Settling(0.3, new=0.9).foresees  # what is in doubt now has been asked about in vain
-    assert not Settling(0.9, new=0.5).foresees
+@pytest.mark.parametrize(
+    ("new", "steps", "foresees"), [(0.9, 6, True), (0.5, 6, False), (0.5, 22, True)]
+)
+def test_what_will_be_seen_later_counts_where_it_settles_a_fresh_doubt_or_all_looks_hopeless(
+    new: float, steps: int, foresees: bool
+) -> None:
+    settlings = Settlings()
+    found = Settling(0.6, new=new)  # what is in doubt now may have been asked about in vain
+    settlings.taken(found, steps)
+    assert settlings.foresees(found) is foresees

@@ -310,7 +310,7 @@ class BeliefMonitor(Learning, PlainArguments):
         found = self.evidence.settling(questions) if sees else unseen
         self._telling = found.share
         self._chooser.settles = self._settlings.taken(found, self._task_ways.ahead(self.belief))
-        self._chooser.foresees = found.foresees
+        self._chooser.foresees = self._settlings.foresees(found)
         self._chooser.blind = self.evidence.worthless(found)
         self._chooser.finding = found.answers * self.costs.question + self.costs.look
 
