@@ -76,15 +76,3 @@ def test_where_the_goal_was_farther_than_thought_to_come_nearer_counts() -> None
         settlings.taken(found, ahead)
     assert settlings.taken(found, 1) > 0.75
     assert 1.0 <= settlings.dearer < 1.1
-
-
-@pytest.mark.parametrize(
-    ("new", "steps", "foresees"), [(0.9, 6, True), (0.5, 6, False), (0.5, 22, True)]
-)
-def test_what_will_be_seen_later_counts_where_it_settles_a_fresh_doubt_or_all_looks_hopeless(
-    new: float, steps: int, foresees: bool
-) -> None:
-    settlings = Settlings()
-    found = Settling(0.6, new=new)  # what is in doubt now may have been asked about in vain
-    settlings.taken(found, steps)
-    assert settlings.foresees(found) is foresees

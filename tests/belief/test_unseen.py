@@ -250,29 +250,3 @@ def test_a_thing_at_one_of_many_places_is_looked_for_at_each_of_them() -> None:
     else:
         raise AssertionError("it goes round and round")
     assert belief.where(task.goal_holds) > 0.8
-
-
-@pytest.mark.parametrize("settles", [0.0, 0.2, 0.5, 0.7, 0.9])
-@pytest.mark.parametrize("name", ["clean_dishes", "serve_breakfast"])
-def test_where_nothing_comes_of_looks_it_is_best_not_to_have_reckoned_with_them(
-    name: str, settles: float
-) -> None:
-    """Serve breakfast was put off, look after look, and given up with the goal at 0."""
-    task, reached = load_task(name), dict[bool, float]()
-    for foresees in (True, False):
-        chooser, belief = unseen(task)
-        chooser.settles, chooser.blind, chooser.foresees = settles, False, foresees
-        followed(chooser, belief, task)
-        reached[foresees] = belief.where(task.goal_holds)
-    assert reached[False] > reached[True] - 0.01
-    assert reached[False] > 0.75
-
-
-def test_what_nobody_would_do_next_is_put_in_a_better_order() -> None:
-    task, reached = load_task("serve_breakfast"), dict[bool, float]()
-    for foresees in (True, False):
-        chooser, belief = unseen(task)
-        chooser.blind, chooser.foresees = False, foresees
-        followed(chooser, belief, task)
-        reached[foresees] = belief.where(task.goal_holds)
-    assert reached[False] > reached[True] + 0.01

@@ -122,7 +122,7 @@ def test_a_place_is_not_gone_back_to_for_what_it_would_say_again(tmp_path: Path)
     # Two goals, each shown in a place of its own: the robot went to and fro between them.
     both = PROBLEM.replace("(in lamp store)", "(in lamp store) (in pump theatre)")
     vlm = "oracle:0.8:0:0.74"
-    for episode in (13, 17, 19, 24):
+    for episode in (8, 13, 17, 19):
         ended, events = run(tmp_path, episode, problem=both, vlm=vlm, failure=0.3, disturbance=0.5)
         assert ended.completed
         assert any(e.towards == ("(at store)",) for e in events if isinstance(e, PlanMade))

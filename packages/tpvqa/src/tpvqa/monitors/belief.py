@@ -310,7 +310,6 @@ class BeliefMonitor(Learning, PlainArguments):
         found = self.evidence.settling(questions) if sees else unseen
         self._telling = found.share
         self._chooser.settles = self._settlings.taken(found, self._task_ways.ahead(self.belief))
-        self._chooser.foresees = self._settlings.foresees(found)
         self._chooser.blind = self.evidence.worthless(found)
         self._chooser.finding = found.answers * self.costs.question + self.costs.look
 
@@ -383,7 +382,7 @@ class BeliefMonitor(Learning, PlainArguments):
             actions_left=step.actions_left,
             failing=self._ways.failing(step),
             settles=self._chooser.settles,
-            followed=action is not None and self._chooser.in_order(action),
+            followed=self._chooser.blind,
             risk=self._risk,
         )
         errand = "" if self._errand is None else f"{self._errand.why}; "

@@ -28,8 +28,7 @@ class Grounds:
         actions_left: Actions that the trial still allows; None for any number.
         failing: That the step's skill seems never to work, in words; empty where it does.
         settles: How far answers are expected to settle what is in doubt.
-        followed: Whether they say so little that this is done for the order in which all is best
-            done unseen.
+        followed: Whether they say nothing, so that what was decided is followed to its end.
         risk: Where "done" may be reported; None for where the goal is likely.
     """
 

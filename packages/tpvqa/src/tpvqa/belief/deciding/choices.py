@@ -9,7 +9,7 @@ from tpvqa.belief.costs import Costs
 from tpvqa.belief.deciding.annotated import AnnotatedPlan
 from tpvqa.belief.deciding.by_kind import Kinds
 from tpvqa.belief.deciding.commitment import Commitments
-from tpvqa.belief.deciding.doing import IDLE, Doing, moved
+from tpvqa.belief.deciding.doing import BARELY, IDLE, Doing, moved
 from tpvqa.belief.deciding.outlook import Outlook
 from tpvqa.belief.deciding.rounds import Rounds
 from tpvqa.belief.deciding.seeking import Seeking
@@ -35,8 +35,7 @@ class Chooser:
 
     An action costs what it costs where all that can be seen is seen after it (`Seen`), as far as
     answers settle what is in doubt, and what it costs where nothing is (`Unseen`), as far as they
-    do not; or, where they settle too little, the latter alone (open-loop feedback control;
-    Bertsekas 2005). What it costs to find out is not in it: what answers are worth is added by
+    do not. What it costs to find out is not in it: what answers are worth is added by
     `information`.
 
     Args:
@@ -52,7 +51,6 @@ class Chooser:
         seeking: From where plans are wanted.
         settles: How far answers settle what is in doubt.
         finding: What it costs to ask so much.
-        foresees: Whether it is reckoned with what will be seen later.
         blind: Whether answers say nothing, so that what was decided is followed to its end.
     """
 
@@ -68,9 +66,8 @@ class Chooser:
         self.ahead = Outlook(model, costs, self._sight, task)
         self._commitments = Commitments(model, self.ahead, self._sight)
         self._unseen = Unseen(model, self.ahead, costs)
-        self.settles, self.finding, self.foresees, self.blind = 1.0, 0.0, True, False
+        self.settles, self.finding, self.blind = 1.0, 0.0, False
         self._decided: Mapping[int, float] | None = None
-        self._in_order = set[Action]()
         self._seen = Seen(model, self.ahead, self._sight, self._commitments, costs)
         self._worked_out_for: tuple[int, Rates] | None = None
         self._doing = Doing(model, self.ahead, self._seen.far, self._sight)
@@ -197,9 +194,6 @@ class Chooser:
                 continue
             more = 0.0 if self._in(each, current) else self._costs.replan
             more += self.rounds.dearer(each.action, ranked, self.ahead.progress, undone)
-            if self.settles < SETTLED and not self.foresees:
-                found += [(each, unseen + more, own) for unseen in blind.pop(each.action)]
-                continue
             seen = self._seen.column(each.action, ranked, kinds, rates) + more
             if self.settles >= SETTLED:
                 found.append((each, seen, own))
@@ -208,30 +202,12 @@ class Chooser:
                 found_out = self.settles * seen + (1 - self.settles) * (unseen + more)
                 columns = (found_out + self.finding, unseen + more)
                 found += [(each, column, own) for column in columns]
-        return found + self._of_nobody(blind, ranked, kinds, current, barred)
-
-    def _of_nobody(
-        self,
-        blind: Mapping[Action, list[Floats]],
-        ranked: Sequence[tuple[int, float]],
-        kinds: Kinds,
-        current: Sequence[Action],
-        barred: Action | None,
-    ) -> list[tuple[Choice, Floats, Floats]]:
-        """The same of what is nobody's next step, and yet best done unseen; and, where nothing is
-        taken to be seen later, of the best of it in a better order."""
-        state = self._model.state(ranked[0][0])
-        told = [(Choice(action, state), columns, False) for action, columns in blind.items()]
-        if blind and not self.foresees:
-            action, column = self._unseen.better(blind, ranked)
-            told.append((Choice(action, state), [column], True))
-        self._in_order = {each.action for each, _, _ in told if each.action is not None}
-        found: list[tuple[Choice, Floats, Floats]] = []
-        for each, columns, better in told:
+        for action, further in blind.items():
+            each = Choice(action, self._model.state(ranked[0][0]))
             if self._allowed(each, current, barred) and self._worth_a_try(each):
-                more = 0.0 if better or self._in(each, current) else self._costs.replan
-                own = self._doing.of(each, ranked, kinds, unseen=better)
-                found += [(each, column + more, own) for column in columns]
+                more = 0.0 if self._in(each, current) else self._costs.replan
+                own = self._doing.of(each, ranked, kinds)
+                found += [(each, column + more, own) for column in further]
         return found
 
     def _followed_now(
@@ -254,7 +230,7 @@ class Chooser:
             allowed = self.ahead.left != 0 and self._allowed(choice, current, barred)
             if not allowed or not self._worth_a_try(choice):
                 self._unseen.drop()
-            elif self._doing.of(choice, ranked, kinds, unseen=True)[1] @ weights >= 0:
+            elif self._doing.of(choice, ranked, kinds, floor=BARELY)[1] @ weights >= 0:
                 break
             else:
                 self._unseen.skip()
@@ -271,11 +247,6 @@ class Chooser:
     def follows(self, action: Action, state: State) -> bool:
         """Whether an action is the next one of what is being followed."""
         return any(self.same_skill(e, action, state) for e in self._unseen.following[:1])
-
-    def in_order(self, action: Action) -> bool:
-        """Whether an action is chosen for the order in which all is best done unseen, and is not
-        what any likely joint state wants next."""
-        return self.blind or (not self.foresees and action in self._in_order)
 
     def same_skill(self, action: Action, other: Action, state: State) -> bool:
         """Whether the robot does the same in two actions."""

@@ -62,18 +62,14 @@ class Doing:
         """Note where that is expected to have led, before anything was seen of it."""
         self._in_vain = bool(self._before) and moved(list(after.items()), self._before) < STILL
 
-    def of(self, choice: Choice, ranked: Ranked, kinds: Kinds, *, unseen: bool = False) -> Floats:
+    def of(self, choice: Choice, ranked: Ranked, kinds: Kinds, *, floor: float = FLOOR) -> Floats:
         """What a choice has to do in the joint states: what it would change, and what it can, each
         less how probable that has to be; shape (2, states).
 
-        Q-MDP, which takes everything to be known after the next action, would wait for ever. Where
-        nothing is taken to be seen (`unseen`), what changes nothing is dear enough by itself.
+        Q-MDP, which takes everything to be known after the next action, would wait for ever.
         """
         found = np.ones((2, len(ranked)))
-        if choice.action is not None and unseen:
-            undone, possible = self._far.does(choice.action, ranked, kinds).T[:2]
-            found[1] = undone * (possible - BARELY)
-        elif choice.action is not None:
+        if choice.action is not None:
             # Who does in vain what nothing shows never learns that it is in vain.
             hidden = self._sight.hidden(choice.action)
             works = 1 - self._ahead.skill(choice.action).failure if hidden else 1.0
@@ -85,7 +81,7 @@ class Doing:
                 least = min(least, COME_FOR * self._come_for.get(choice.action, 1.0))
             undone, possible = self._far.does(choice.action, ranked, kinds).T[:2]
             found[0] = works * undone * possible - least
-            found[1] = undone * (possible - FLOOR)
+            found[1] = undone * (possible - floor)
         return found
 
     def _purposes(self, action: Action, ranked: Ranked) -> dict[Action, float]:

@@ -8,20 +8,23 @@ backward from the end, in every joint state, in the belief's own model.
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
 from tpvqa.belief.answers.information import Floats
 from tpvqa.belief.costs import Costs
+from tpvqa.belief.deciding.annotated import AnnotatedPlan
 from tpvqa.belief.deciding.improving import Improving
 from tpvqa.belief.deciding.long_rests import HORIZON, TIMES, LongRests
 from tpvqa.belief.deciding.one_thread import one_thread
 from tpvqa.belief.deciding.outlook import Outlook
-from tpvqa.belief.deciding.sequences import Followed, Onward, Way
 from tpvqa.belief.deciding.steps import Steps
 from tpvqa.belief.filtering.faults import FaultModel
 from tpvqa.pddl import Action, State
 
+Way = tuple[int, AnnotatedPlan]
+"""A place in a plan, and that plan."""
 Led = tuple[float, Sequence[tuple[float, int, float]]]
 """The probability of a joint state, and what an action leads to from it: shares, joint states, and
 what each costs besides."""
@@ -40,6 +43,34 @@ KEEPING = 1.0
 """By how many actions something else has to be better than what is being followed."""
 STAKES = 1.25
 """What is followed is decided anew where a failed task costs so many times as much as then."""
+
+
+class _Sequence(NamedTuple):
+    """To end, where there is no way; or a way with each step repeated, and what follows it.
+
+    Attributes:
+        way: Its number among those compared; None to end.
+        times: How often each step is done.
+        then: What follows; None for the end.
+    """
+
+    way: int | None
+    times: int = 0
+    then: "_Sequence | None" = None
+
+
+class _Onward(NamedTuple):
+    """What comes after an action.
+
+    Attributes:
+        actions: What is followed.
+        rest: What is meant to come after that, where it is too long to be followed.
+        begins: Where in a plan that rest begins; None where there is none.
+    """
+
+    actions: tuple[Action, ...]
+    rest: tuple[Action, ...]
+    begins: Way | None = None
 
 
 class Unseen:
@@ -63,9 +94,9 @@ class Unseen:
         self._worked_out_for: tuple[int, int] = (-1, -1)
         self.following: tuple[Action, ...] = ()
         self.onward: tuple[Action, ...] = ()
-        self._stake, self._several = 0.0, 0
+        self._stake = 0.0
         self._ways_told: list[tuple[Action, ...]] = []
-        self._after: dict[Action, Onward] = {}
+        self._after: dict[Action, _Onward] = {}
 
     def renumbered(self, model: FaultModel) -> None:
         """Go on with a model that gives joint states other numbers."""
@@ -94,8 +125,20 @@ class Unseen:
             ranked: All joint states with their probabilities.
         """
         onward = self._after.get(self.following[0])
-        if onward is not None:
-            self.following = self._better(self.following, onward, ranked)
+        if onward is None:
+            return
+        after = self._ended()
+        if onward.begins is not None:
+            place, plan = onward.begins
+            after = self._rests.of(plan, place, self._steps.numbers)
+        masses = np.zeros(len(self._steps.numbers) + 1)
+        for number, mass in ranked:
+            masses[self._steps.place.get(number, -1)] += mass
+        left = None if self._ahead.left is None else self._ahead.left - len(self.onward)
+        better = Improving(self._steps, self._ahead, self._costs.action).improved(
+            self.following, self._ways_told, masses, after, left
+        )
+        self.following = better or self.following
 
     def drop(self) -> None:
         """Follow nothing any more."""
@@ -140,8 +183,7 @@ class Unseen:
             best = np.argsort(np.round(weights @ paid, 9), kind="stable")[:BEST].tolist()
             found[action] = [self._whole(paid[:, n], ranked) for n in dict.fromkeys([0, *best])]
             self._after[action] = self._parted(ways, told[best[0]], action)
-        self._several = len(actions[0][1])
-        led_states = ranked[: self._several]
+        led_states = ranked[: len(actions[0][1])]
         here = begun[self._steps.places([number for number, _ in led_states])]
         expected = np.array([weight for _, weight in led_states]) @ here
         for column in np.argsort(np.round(expected, 9), kind="stable")[:BEST].tolist():
@@ -152,61 +194,15 @@ class Unseen:
                 found[first] = [self._whole(here[:, column], ranked)]
                 self._after[first] = self._parted(ways, told[column], first)
         if self.following and not self.onward:
+            left = self._ended()[:, None]
+            for action in reversed(self.following):
+                left = self._costs.action + self._back(action, left)
+            kept = left[self._steps.places([number for number, _ in led_states]), 0]
+            kept = kept - KEEPING * self._costs.action
             first, *rest = self.following
-            self._after[first] = Onward(tuple(rest), ())
-            kept = self._unseen(self.following, self._after[first], ranked)
-            kept = np.maximum(kept - KEEPING * self._costs.action, 0.0)
-            found.setdefault(first, []).append(kept)
+            found.setdefault(first, []).append(self._whole(np.maximum(kept, 0.0), ranked))
+            self._after[first] = _Onward(tuple(rest), ())
         return found
-
-    def better(
-        self, found: Mapping[Action, Sequence[Floats]], ranked: Sequence[tuple[int, float]]
-    ) -> tuple[Action, Floats]:
-        """The best of some columns put in a better order: its first action, and what it costs.
-
-        Args:
-            found: The columns.
-            ranked: All joint states with their probabilities, as for those.
-        """
-        weights = np.array([weight for _, weight in ranked])
-        costs = {each: (weights @ np.stack(found[each], axis=1)).min() for each in found}
-        first = min(costs, key=lambda each: round(costs[each], 9))
-        onward = self._after[first]
-        actions = self._better((first, *onward.actions), onward, ranked)
-        self._after[actions[0]] = onward._replace(actions=actions[1:])
-        return actions[0], self._unseen(actions, onward, ranked)
-
-    def _better(
-        self, actions: tuple[Action, ...], onward: Onward, ranked: Sequence[tuple[int, float]]
-    ) -> tuple[Action, ...]:
-        """What is better than some actions, where there is such."""
-        masses = np.zeros(len(self._steps.numbers) + 1)
-        for number, mass in ranked:
-            masses[self._steps.place.get(number, -1)] += mass
-        left = None if self._ahead.left is None else self._ahead.left - len(onward.rest)
-        improving = Improving(self._steps, self._ahead, self._costs.action)
-        after = self._after_all(onward)
-        return improving.improved(actions, self._ways_told, masses, after, left) or actions
-
-    def _unseen(
-        self,
-        actions: tuple[Action, ...],
-        onward: Onward,
-        ranked: Sequence[tuple[int, float]],
-    ) -> Floats:
-        """The costs of some actions in the joint states, the first of which alone count."""
-        left = self._after_all(onward)[:, None]
-        for action in reversed(actions):
-            left = self._costs.action + self._back(action, left)
-        places = self._steps.places([number for number, _ in ranked[: self._several]])
-        return self._whole(left[places, 0], ranked)
-
-    def _after_all(self, onward: Onward) -> Floats:
-        """What is left to pay after all that is followed."""
-        if onward.begins is None:
-            return self._ended()
-        place, plan = onward.begins
-        return self._rests.of(plan, place, self._steps.numbers)
 
     def _prepared(
         self,
@@ -250,13 +246,13 @@ class Unseen:
 
     def _worked_out(
         self, ways: Sequence[Way], masses: Mapping[int, float]
-    ) -> tuple[list[Followed], Floats, Floats]:
+    ) -> tuple[list[_Sequence], Floats, Floats]:
         """What can be done, and what each costs from every joint state (rows); and the same with
         its first step once less."""
         places, whole = self._steps.places(masses), np.array(list(masses.values()))
         ended = self._ended()[:, None]
         numbered = [(number, times) for number in range(len(ways)) for times in TIMES]
-        told = [Followed(None), *(Followed(*each) for each in numbered)]
+        told = [_Sequence(None), *(_Sequence(*each) for each in numbered)]
         tails: Tails = {}
         once = [each for way in ways for each in self._followed(way, ended, None, tails)]
         costs = [float(whole @ begun[places, 0]) for begun, _ in once]
@@ -269,14 +265,14 @@ class Unseen:
             for way in ways:
                 parts += self._followed(way, seconds, which, tails)
             for number, times in numbered:
-                told += [Followed(number, times, each) for each in then]
+                told += [_Sequence(number, times, each) for each in then]
         begun, less = (np.concatenate([each[side] for each in parts], axis=1) for side in (0, 1))
         if self._ahead.left is not None:
             over = np.array([self._takes(ways, each) for each in told]) > self._ahead.left
             begun[:, over] = less[:, over] = self._ahead.failure + self._costs.action
         return told, begun, less
 
-    def _takes(self, ways: Sequence[Way], each: Followed) -> int:
+    def _takes(self, ways: Sequence[Way], each: _Sequence) -> int:
         """How many actions are done in all."""
         if each.way is None:
             return 0
@@ -350,15 +346,15 @@ class Unseen:
         found[: len(first)] = first
         return found
 
-    def _first(self, ways: Sequence[Way], each: Followed) -> Action:
+    def _first(self, ways: Sequence[Way], each: _Sequence) -> Action:
         assert each.way is not None
         place, plan = ways[each.way]
         return plan.actions[place]
 
-    def _parted(self, ways: Sequence[Way], each: Followed, done: Action) -> Onward:
+    def _parted(self, ways: Sequence[Way], each: _Sequence, done: Action) -> _Onward:
         """The actions of something that can be done, after the first, where that is one of them."""
         found: list[Action] = []
-        part: Followed | None = each
+        part: _Sequence | None = each
         cut: int | None = None
         begins: Way | None = None
         while part is not None and part.way is not None:
@@ -370,4 +366,4 @@ class Unseen:
             part = part.then
         begun = found[:1] == [done]
         cut = len(found) if cut is None else cut
-        return Onward(tuple(found[begun:cut]), tuple(found[cut:]), begins)
+        return _Onward(tuple(found[begun:cut]), tuple(found[cut:]), begins)

@@ -20,9 +20,6 @@ WHOLE = 0.25
 """The variance of a fact of which nothing is known."""
 SETTLED = 0.97
 """Where answers settle so much, what follows an action is taken to be seen."""
-FORESEEN = 0.7
-"""Where answers settle less of a fresh doubt, nothing is taken to be seen later. Those of
-seven recorded models settle .2 to .7 of one in a household, of the eighth .8."""
 LONG = 14
 """In tasks of more steps many doubts wait for the step that needs them, and are none in vain …"""
 MOSTLY = 0.8
@@ -115,16 +112,6 @@ class Settlings:
             kept += (1 - kept) * max(0.0, found.share - MOSTLY) / (SETTLED - MOSTLY)
         self.dearer = kept**-0.5
         return found.share * kept
-
-    def foresees(self, found: Settling) -> bool:
-        """Whether it is reckoned with what will be seen later.
-
-        A long task looks hopeless where it is not, and would be given up at once.
-
-        Args:
-            found: What looking may come to.
-        """
-        return found.new >= FORESEEN or self._whole > LONG
 
     def _nearer(self, ahead: int) -> float:
         """How far what was done has brought the goal nearer."""
