@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -312,3 +313,40 @@ def test_no_picture_of_the_set_that_teaches_is_written_over(tpvqa: Run, tmp_path
     code, _, err = tpvqa(*words, "--curves", "c.png", "--force")
     assert (code, f"set/{MANIFEST} is read by this command" in err) == (2, True)
     assert Path("set", MANIFEST).read_bytes() == (shipped.folder / MANIFEST).read_bytes()
+
+
+def test_a_noise_model_is_surveyed_so_that_a_weak_one_teaches_of_late_steps_too(tpvqa: Run) -> None:
+    """`tpvqa` stops early where answers are worth little, and then nothing is known of the rest."""
+    hospital = Path(__file__).parents[2] / "examples" / "hospital"
+    own = ("--domain", hospital / "domain.pddl", "--problem", hospital / "problem.pddl")
+    shown = {}
+    for name, who in (("survey", ()), ("tpvqa", ("--monitor", "tpvqa"))):
+        words = ("calibrate", *own, "--trials", 10, "--vlm", "oracle:0.55", *who)
+        code, _, err = tpvqa(*words, "--out", f"{name}.json")
+        assert code == 0, err
+        faults = Calibration.load(Path(f"{name}.json")).faults
+        assert faults is not None
+        shown[name] = set(faults.skills)
+    assert shown["tpvqa"] < shown["survey"] > {"hand_over", "throw_away"}
+
+
+def test_a_survey_of_a_long_plan_comes_to_its_end(tpvqa: Run) -> None:
+    """Of forty steps, done twice, other trials that teach come to the thirtieth."""
+    places = [f"p{number}" for number in range(41)]
+    Path("domain.pddl").write_text(
+        "(define (domain walk) (:requirements :strips) (:predicates (at ?p) (next ?p ?q))\n"
+        "(:action step :parameters (?p ?q) :precondition (and (at ?p) (next ?p ?q))\n"
+        ":effect (and (at ?q) (not (at ?p)))))"
+    )
+    roads = " ".join(f"(next {one} {other})" for one, other in pairwise(places))
+    Path("problem.pddl").write_text(
+        f"(define (problem far) (:domain walk) (:objects {' '.join(places)})\n"
+        f"(:init (at p0) {roads}) (:goal (at p40)))"
+    )
+    Path("questions.yaml").write_text("predicates: {at: 'Is the robot at {p}?'}\n")
+    own = ("--domain", "domain.pddl", "--problem", "problem.pddl")
+    code, _, err = tpvqa("calibrate", *own, "--trials", 1, "--vlm", "oracle", "--failure", 0)
+    assert code == 0, err
+    faults = Calibration.load(Path("calibration.json")).faults
+    assert faults is not None
+    assert faults.skills["step"].worked == 40

@@ -18,7 +18,7 @@ from tpvqa.bench.labelled_recordings import label_recordings
 from tpvqa.bench.own_task import OwnTask
 from tpvqa.bench.stage import stage
 from tpvqa.config import TrialConfig
-from tpvqa.defaults import looks
+from tpvqa.defaults import SURVEY, looks
 from tpvqa.errors import BenchError, TpvqaError
 from tpvqa.vlm.flawed import SAME
 from tpvqa.vlm.recorded.spec import RecordedSpec
@@ -28,8 +28,6 @@ from tpvqa_experiments.belief.lasting import KNOWS
 RECORDED = "recorded:"
 MISREAD = "flawed:misread:"
 
-SURVEY = "survey:8:twice"
-"""Who asks noise models: it asks regardless of the answers, so that all of them count."""
 LOOKING = "tpvqa:3"
 """Who asks VLMs that look: it also goes where things lie elsewhere. Its first answers count."""
 CALIBRATIONS = "calibrations"

@@ -10,6 +10,9 @@ SYMBOLIC = "symbolic"
 ORACLE = "oracle"
 EMBEDDED = "embedded"
 """The network that the household brings."""
+SURVEY = "survey:8:twice"
+"""Who asks noise models that a calibration is learnt of: it asks regardless of the answers, so that
+all of them count, and gets on where answers are worth little."""
 
 
 def default_world(files: TaskFiles | None, vlm: str | None = None) -> str:
@@ -50,3 +53,9 @@ def default_vlm(files: TaskFiles | None = None, *, pictures: bool = True) -> str
             f"install the embedded network: {how_to_install(HOUSEHOLD)}."
         )
     return EMBEDDED
+
+
+def labelling_monitor(vlm: str) -> str:
+    """Specification of the monitor of trials that a calibration is learnt from: a survey of noise
+    models; of VLMs that look, whose every answer costs, `tpvqa`."""
+    return "tpvqa" if looks(vlm) else SURVEY

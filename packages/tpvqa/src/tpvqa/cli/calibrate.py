@@ -43,7 +43,9 @@ _ELSEWHERE: tuple[Key, ...] = (
 )
 """Settings of a trial for which there are options of another meaning here, or none."""
 _SHORT = Layer({("limits", "actions"): 60}, {("limits", "actions"): "default"})
-"""Trials that teach need not be long."""
+"""Trials that teach need not be long …"""
+_WHOLE = Layer({("limits", "actions"): "4x"}, {("limits", "actions"): "default"})
+"""… but a survey, which does every action of the plan twice at most, comes to its end."""
 
 
 def register(app: typer.Typer) -> None:
@@ -115,8 +117,12 @@ def calibrate(
         ),
     ] = None,
     monitor: Annotated[
-        str, typer.Option(help="With --trials: who asks; tpvqa:K looks K times.")
-    ] = "tpvqa",
+        str | None,
+        typer.Option(
+            help="With --trials: who asks; tpvqa:K looks K times. Default: survey:8:twice for "
+            "noise models, which goes on whatever is answered, else tpvqa."
+        ),
+    ] = None,
     experience: Annotated[
         Path | None,
         typer.Option(
@@ -144,7 +150,7 @@ def calibrate(
     from tpvqa.bench.own_task import own_tasks
     from tpvqa.bench.recorded_faults import experience_from
     from tpvqa.bench.reliability import doubts, lines, one_sided
-    from tpvqa.defaults import default_vlm
+    from tpvqa.defaults import default_vlm, labelling_monitor
     from tpvqa.errors import TpvqaError
     from tpvqa.vlm.making import in_full
 
@@ -168,8 +174,7 @@ def calibrate(
     own_files = (file for each in problems for file in (each, *each.glob("*.pddl")))
     read = (*(episodes or ()), domain, *own_files, questions, world_file, named_by(vlm))
     _check(written, read, force=force)
-    surveyed = trials is not None and monitor.partition(":")[0] == "survey"
-    chosen_looks = pictures is None and not surveyed
+    surveyed = False
     found: Labelled | None = None
     learned: Experience | None = None
     heard = OwnWords()
@@ -187,6 +192,10 @@ def calibrate(
     else:
         assert trials is not None
         name = in_full(vlm or default_vlm(pictures=not problems))
+        monitor = monitor or labelling_monitor(name)
+        surveyed = monitor.partition(":")[0] == "survey"
+        if surveyed:
+            layers = [_WHOLE if layer is _SHORT else layer for layer in layers]
         tasks_of_own = own_tasks(
             problems, domain=domain, questions=questions, world_file=world_file
         )
@@ -205,6 +214,7 @@ def calibrate(
                 heard=heard,
                 progress=bar,
             )
+    chosen_looks = pictures is None and not surveyed
     if found:
         calibration = found.fit()
     else:
