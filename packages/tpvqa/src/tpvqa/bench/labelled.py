@@ -32,7 +32,6 @@ _CAME = {
     Failure.PRECONDITION: Came.IMPOSSIBLE,
     Failure.CHANCE: Came.FAILURE,
     Failure.SCRIPT: Came.FAILURE,
-    Failure.DEAD: Came.NEVER,
 }
 
 
@@ -123,11 +122,13 @@ class Labeller:
         acting = self._acting
         if truth is None or acting is None or truth.failure is Failure.REFUSED:
             return
-        came = Came.ACHIEVED if self._idle else _CAME[truth.failure]
-        could = self._could_come_undone() if came is Came.SUCCESS else self._undoable
-        lost = truth.undone is not None and not truth.undoing.startswith(BY_SOMEBODY)
-        undone = lost if self._tells_undone and (could or lost) else None
-        self.own.acts.append(LabelledAct(self._trial, acting.name, came, undone, acting.arguments))
+        if truth.failure is not Failure.DEAD:
+            came = Came.ACHIEVED if self._idle else _CAME[truth.failure]
+            could = self._could_come_undone() if came is Came.SUCCESS else self._undoable
+            lost = truth.undone is not None and not truth.undoing.startswith(BY_SOMEBODY)
+            undone = lost if self._tells_undone and (could or lost) else None
+            act = LabelledAct(self._trial, acting.name, came, undone, acting.arguments)
+            self.own.acts.append(act)
         if not self._idle and event.report in (Report.DONE, Report.FAILED):
             reported = event.report is Report.FAILED
             report = LabelledReport(acting.name, reported, failed=not truth.succeeded)

@@ -21,11 +21,6 @@ TIMES = (1, 3, 8, 20, 60)
 LATE = 1.5
 """A mistake is noticed so many times as late as a calibration says, at most: else the less were
 known of a VLM, the more it would be asked."""
-SETTLED = 0.97
-"""What answers settle so far, however many it takes, is taken to be seen."""
-EACH = 0.005
-"""What they do not is settled as far as by answers of which each settles so much more of it in the
-mean: as many as are worth their price where a doubt may cost some twenty actions."""
 CLOSED = 1e-12
 """A sum that is less negative than this is nought."""
 
@@ -92,17 +87,10 @@ def answers_to_know(likely: float, doubt: float, each: Reliability) -> float:
 
 @lru_cache(maxsize=4096)
 def settled(each: Reliability) -> float:
-    """How far answers tell a fact from its contrary, both as probable before: 1 less twice the
-    probability that the likelier one is not true in the end.
-
-    Of answers that never settle it no more are counted than are worth their price: to be told
-    little by sixty answers is not to be told much by one.
-    """
-    true, false = (_mixed(mixture, TIMES) for mixture in each.mixtures)
-    told = 1 - np.add.reduceat(np.minimum(true, false), _begins(TIMES))
-    if told[-1] >= SETTLED:
-        return float(told[-1])
-    return float(told[np.argmax(told - EACH * np.array(TIMES))])
+    """How far many answers tell a fact from its contrary, both as probable before: 1 less twice the
+    probability that the likelier one is not true in the end."""
+    true, false = (_mixed(mixture, TIMES[-1:]) for mixture in each.mixtures)
+    return 1 - float(np.minimum(true, false).sum())
 
 
 def _drift(right: float) -> float:

@@ -18,7 +18,6 @@ class Came(StrEnum):
     FAILURE = "failure"
     IMPOSSIBLE = "impossible"  # a precondition did not hold
     ACHIEVED = "achieved"  # it had nothing left to do
-    NEVER = "never"  # the skill could not have worked, with these objects
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +50,7 @@ class SkillCount(_Told):
         failed: How often.
         worked: How often it did not.
         together: In how many trials so many tries with the same objects failed, and so many
-            worked: (failed, worked, trials), those that could never have worked among them.
-            Nothing in older files.
+            worked: (failed, worked, trials). Nothing in older files.
     """
 
     failed: Counted = 0
@@ -128,9 +126,6 @@ def count_faults(acts: Iterable[LabelledAct]) -> CountedFaults | None:
 def _together(acts: Iterable[LabelledAct]) -> tuple[tuple[int, int, int], ...]:
     """In how many trials so many tries with the same objects failed, and so many worked."""
     came = Counter((act.trial, act.objects, act.came) for act in acts)
-    tried = {each[:2] for each in came if each[2] in (Came.FAILURE, Came.SUCCESS, Came.NEVER)}
-    trials = Counter(
-        (came[*each, Came.FAILURE] + came[*each, Came.NEVER], came[*each, Came.SUCCESS])
-        for each in tried
-    )
+    tried = {each[:2] for each in came if each[2] in (Came.FAILURE, Came.SUCCESS)}
+    trials = Counter((came[*each, Came.FAILURE], came[*each, Came.SUCCESS]) for each in tried)
     return tuple((*tries, often) for tries, often in sorted(trials.items()))

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from tpvqa.belief.answers.information import SETTLED, Floats
+from tpvqa.belief.answers.information import Floats
 from tpvqa.belief.costs import Costs
 from tpvqa.belief.deciding.annotated import AnnotatedPlan
 from tpvqa.belief.deciding.by_kind import Kinds
@@ -19,6 +19,7 @@ from tpvqa.belief.deciding.unseen import Unseen
 from tpvqa.belief.filtering.belief import Belief
 from tpvqa.belief.filtering.faults import FaultModel, JointState, Rates
 from tpvqa.belief.filtering.sight import Sight
+from tpvqa.belief.weighing.settling import SETTLED
 from tpvqa.pddl import Action, State, Task
 
 CHOICES = 6

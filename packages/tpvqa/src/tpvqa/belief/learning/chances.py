@@ -6,8 +6,8 @@ from tpvqa.belief.answers.bounds import MOST
 from tpvqa.belief.calibrating.beta import Beta
 from tpvqa.belief.calibrating.counted import CountedFaults
 from tpvqa.belief.filtering.faults import Rates
-from tpvqa.belief.learning.skills import ALIKE, Beforehand, Skills, SkillState
-from tpvqa.belief.learning.spread import SURE, alike, seldom
+from tpvqa.belief.learning.skills import ALIKE, Skills, SkillState
+from tpvqa.belief.learning.spread import SURE, alike
 from tpvqa.pddl import Action
 
 LEAST = 0.5
@@ -65,18 +65,18 @@ class Chances:
         # Its own tries count by themselves, not by what the common rate has learned of them, too.
         yes, no = self._learned.get(action.name, (0.0, 0.0))
         yes, no = max(self.failure.yes - yes, LEAST), max(self.failure.no - no, LEAST)
-        return self.skills.of(action, self._beforehand(action.name, yes / (yes + no), yes + no))
+        return self.skills.of(action, *self._beforehand(action.name, yes / (yes + no), yes + no))
 
-    def _beforehand(self, skill: str, mean: float, strength: float) -> Beforehand:
-        """What is expected of a skill, where others fail so often, known from so many cases."""
+    def _beforehand(self, skill: str, mean: float, strength: float) -> tuple[float, float, float]:
+        """The rate of a skill before its tries in this trial, how many cases that is known from,
+        and of how many tries of an action it tells."""
         count = self._counted.get(skill)
         if count is None:
-            return Beforehand(mean, strength)
+            return mean, strength, ALIKE
         mean, told = (count.failed + ALIKE * mean) / (count.tries + ALIKE), alike(count)
         mostly = count.failed > MOSTLY * count.tries
         most = MOST if mostly else strength if told is None else SURE
-        strength = min(strength + count.tries, max(most, strength))
-        return Beforehand(mean, strength, told or ALIKE, told is not None, seldom(count))
+        return mean, min(strength + count.tries, max(most, strength)), told or ALIKE
 
     def rates_of(self, action: Action) -> Rates:
         """The expected rates where an action is executed."""

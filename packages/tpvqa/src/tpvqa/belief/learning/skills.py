@@ -47,26 +47,6 @@ DOUBTED = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Beforehand:
-    """What is expected of a skill before its tries in a trial.
-
-    Attributes:
-        mean: Its rate of failure.
-        strength: How many cases that is known from.
-        alike: How many tries of one action that is worth.
-        counted: Whether that was counted in other trials, so that how far skills differ from each
-            other is in it.
-        seldom: How many times as often as an unknown skill it never works.
-    """
-
-    mean: float
-    strength: float
-    alike: float = ALIKE
-    counted: bool = False
-    seldom: float = 1.0
-
-
-@dataclass(frozen=True, slots=True)
 class SkillState:
     """What is known of one skill with its objects.
 
@@ -107,29 +87,32 @@ class Skills:
         self.learned = 0
         self._tried: dict[str, dict[Action, Tried]] = {}
         self._known: dict[tuple[Action | str, float, float], SkillState] = {}
-        self._shared: dict[tuple[str, Beforehand], _Shared] = {}
+        self._shared: dict[tuple[str, float, float], _Shared] = {}
         self._run: Run | None = None
         self._latest: list[Run | None] = []
 
-    def of(self, action: Action, before: Beforehand) -> SkillState:
+    def of(self, action: Action, mean: float, strength: float, alike: float = ALIKE) -> SkillState:
         """What is known of an action.
 
         Args:
             action: The skill with its objects.
-            before: What is expected of the skill, the same kind whenever it is asked about.
+            mean: The rate of failure that is expected of the skill.
+            strength: How many cases that is known from.
+            alike: How many of its own tries that is worth, the same whenever it is asked about.
         """
         own = self._tried.get(action.name, {})
-        key = (action if own else action.name, round(before.mean, 3), round(before.strength, 1))
+        key = (action if own else action.name, round(mean, 3), round(strength, 1))
         found = self._known.get(key)
         if found is None:
-            shared = self._shared.get((action.name, before))
+            shared = self._shared.get((action.name, mean, strength))
             if shared is None:
-                shared = self._shared[action.name, before] = _Shared(own, before)
+                shared = _Shared(own, mean, strength, alike)
+                self._shared[action.name, mean, strength] = shared
             found = shared.of(action)
             if self._run is not None and self._run.action == action:
                 # Where there still is something to do, all tries of the run have failed.
                 own = {**own, action: own[action].as_if_failed()}
-                worst = _Shared(own, before).of(action)
+                worst = _Shared(own, mean, strength, alike).of(action)
                 found = replace(found, failure=worst.failure, at_worst=worst.dead)
             self._known[key] = found
         return found
@@ -211,41 +194,41 @@ class _Shared:
 
     Args:
         own: Those tries.
-        before: What is expected of it.
+        mean: The rate of failure that is expected of it.
+        strength: How many cases that is known from.
+        alike: How many tries of one action that is worth.
     """
 
-    def __init__(self, own: "Mapping[Action, Tried]", before: Beforehand):
-        self._own, self._before = own, before
-        self._prior = _prior(before.mean, before.strength, before.alike)
-        self._causes = _causes(own, self._prior, before.seldom) if own else {}
-        self._times = sum(tried.times for tried in own.values())
+    def __init__(self, own: "Mapping[Action, Tried]", mean: float, strength: float, alike: float):
+        self._own, self._prior, self._alike = own, _prior(mean, strength, alike), alike
+        self._causes = _causes(own, self._prior) if own else {}
+        self._strength, self._times = strength, sum(tried.times for tried in own.values())
         self._vain: dict[Cause, float] = {}
         for action, tried in own.items():
             for cause in _covering(action):
                 vain = -inf if tried.works else tried.failed
                 self._vain[cause] = self._vain.get(cause, 0.0) + vain
         told = [tried.likelihood[:-1] for tried in own.values()]
-        first, last = [self._prior], [np.ones_like(self._prior)]
-        for each, other in zip(told, reversed(told), strict=True):
-            first.append(first[-1] * each)
-            last.append(last[-1] * other)
-        self._all = first[-1]
-        others = (a * b for a, b in zip(first, last[-2::-1], strict=False))
+        before, after = [self._prior], [np.ones_like(self._prior)]
+        for each, last in zip(told, reversed(told), strict=True):
+            before.append(before[-1] * each)
+            after.append(after[-1] * last)
+        self._all = before[-1]
+        others = (a * b for a, b in zip(before, after[-2::-1], strict=False))
         self._others: dict[Action, Floats] = dict(zip(own, others, strict=True))
 
     def of(self, action: Action) -> SkillState:
         """What is known of the skill with its objects."""
-        own, before = self._own, self._before
-        dead = DEAD * before.seldom
+        dead, own = DEAD, self._own
         if own:
             dead = min(sum(self._causes.get(each, 0.0) for each in _covering(action)), 1.0)
         weights = self._others.get(action, self._all)
         weights = weights / max(weights.sum(), EDGE)
         if action in own:
-            known = before.strength + self._times - own[action].times
-            if not before.counted:  # alike as skills are, with other objects it may be easier
-                known = 1 / (1 / before.alike + 1 / known)
-            common = _prior(float(weights @ RATES[:-1]), known, before.alike)
+            # Alike as skills are, with other objects it may be easier or harder.
+            others = self._times - own[action].times
+            known = 1 / (1 / self._alike + 1 / (self._strength + others))
+            common = _prior(float(weights @ RATES[:-1]), known, self._alike)
             weights = common * own[action].likelihood[:-1]
             weights /= max(weights.sum(), EDGE)
         failure, tries = float(weights @ RATES[:-1]), float((weights / (1 - RATES[:-1])).sum())
@@ -265,7 +248,7 @@ def _chance(cause: Cause, action: Action) -> float:
     return DEAD_WITH / (len(_covering(action)) - 1) if cause else DEAD
 
 
-def _causes(own: "Mapping[Action, Tried]", prior: Floats, seldom: float) -> dict[Cause, float]:
+def _causes(own: "Mapping[Action, Tried]", prior: Floats) -> dict[Cause, float]:
     """How probable each cause is, one at most of a skill, by what its tries came to."""
     logs = np.log(np.maximum([tried.likelihood for tried in own.values()], 1e-300))
     total, prior = logs.sum(axis=0), np.log(np.maximum(prior, 1e-300))
@@ -274,7 +257,7 @@ def _causes(own: "Mapping[Action, Tried]", prior: Floats, seldom: float) -> dict
     for place, action in enumerate(own):
         for cause in _covering(action):
             of.setdefault(cause, []).append(place)
-            chances.setdefault(cause, seldom * _chance(cause, action))
+            chances.setdefault(cause, _chance(cause, action))
     covered = np.zeros((len(of), len(own)))
     for row, places in enumerate(of.values()):
         covered[row, places] = 1.0

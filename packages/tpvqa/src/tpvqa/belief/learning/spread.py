@@ -15,11 +15,6 @@ TRIES = (ALIKE, 25.0, 50.0)
 """How many tries of an action in a trial the mean of its skill may be worth."""
 SURE = 40.0
 """Cases that the mean is known from at most: a robot is not for ever what it was."""
-TRIALS = 25.0
-"""Trials that count for how seldom a skill never works, at most: half of what is thought of an
-unknown one is left."""
-ROUNDS = 30
-"""Rounds of expectation maximization, from what is thought beforehand."""
 
 
 @lru_cache(maxsize=256)
@@ -43,44 +38,13 @@ def _likelihood(count: SkillCount, tries: float) -> float:
     """The logarithm of how probable what came of it is: a mixture of what never works and of rates
     from a Beta distribution."""
     never, mean = DEAD + DEAD_WITH, (count.failed + 0.5) / (count.tries + 1)
-    found = 0.0
-    for failed, worked, trials in count.together:
-        works = log1p(-never) + _came(mean, never, tries, failed, worked)
-        found += trials * (works if worked else log(never + exp(works)))
-    return found
-
-
-@lru_cache(maxsize=256)
-def seldom(count: SkillCount) -> float:
-    """How many times as often as an unknown skill it never works with what it is tried with: 1
-    where tries were not told apart, less the oftener it has worked.
-
-    What never worked may have failed by chance as well: expectation maximization, with what is
-    thought of an unknown skill as one such trial in so many.
-
-    Args:
-        count: How often it failed and worked, with what in which trial.
-    """
-    trials = float(sum(often for *_, often in count.together))
-    mean = (count.failed + 0.5) / (count.tries + 1)
-    before = never = DEAD + DEAD_WITH
-    for _ in range(ROUNDS if trials else 0):
-        dead = 0.0
-        for failed, worked, often in count.together:
-            if not worked:
-                chance = (1 - never) * exp(_came(mean, never, ALIKE, failed, worked))
-                dead += often * never / (never + chance)
-        counts = min(trials, TRIALS)
-        never = (1 + counts * dead / trials) / (1 / before + counts)
-    return min(never / before, 1.0)
-
-
-def _came(mean: float, never: float, tries: float, failed: int, worked: int) -> float:
-    """The logarithm of how probable so many failures and successes in one order are for what
-    works, by a Beta distribution worth so many tries."""
     rate = min(max((mean - never) / (1 - never), 0.005), 0.995)
     a, b = tries * rate, tries * (1 - rate)
-    return _beta(a + failed, b + worked) - _beta(a, b)
+    found = 0.0
+    for failed, worked, trials in count.together:
+        works = log1p(-never) + _beta(a + failed, b + worked) - _beta(a, b)
+        found += trials * (works if worked else log(never + exp(works)))
+    return found
 
 
 def _beta(a: float, b: float) -> float:

@@ -3,7 +3,7 @@
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 
-from tpvqa.belief.answers.information import SETTLED, Reliability, answers_to_know, settled
+from tpvqa.belief.answers.information import Reliability, answers_to_know, settled
 
 DOUBTED = 0.01
 """A fact whose probability times its contrary's is less is in no doubt."""
@@ -18,6 +18,8 @@ IN_VAIN = 2.0
 """How many times the steps of a task may be done in vain."""
 WHOLE = 0.25
 """The variance of a fact of which nothing is known."""
+SETTLED = 0.97
+"""Where answers settle so much, what follows an action is taken to be seen."""
 LONG = 14
 """In tasks of more steps many doubts wait for the step that needs them, and are none in vain …"""
 MOSTLY = 0.8
