@@ -330,6 +330,18 @@ def test_a_noise_model_is_surveyed_so_that_a_weak_one_teaches_of_late_steps_too(
     assert shown["tpvqa"] < shown["survey"] > {"hand_over", "throw_away"}
 
 
+@pytest.mark.parametrize(("who", "surveys"), [((), False), (("--monitor", "tpvqa"), True)])
+def test_what_trials_did_not_show_takes_more_of_them(
+    tpvqa: Run, who: tuple[str, ...], surveys: bool
+) -> None:
+    words = ("calibrate", "--trials", 1, "--tasks", "serve_breakfast", "--vlm", "oracle", *who)
+    code, out, err = tpvqa(*words)
+    assert code == 0, err
+    told = " ".join(out.split())
+    assert "right is not known. Run more trials" in told
+    assert ("or --monitor survey:3, which goes on" in told) == surveys
+
+
 def test_a_survey_of_a_long_plan_comes_to_its_end(tpvqa: Run) -> None:
     """Of forty steps, done twice, other trials that teach come to the thirtieth."""
     places = [f"p{number}" for number in range(41)]

@@ -70,11 +70,12 @@ def lines(
     return [_line(*kind, every, judged) for kind in kinds] + [_line(None, None, every, judged)]
 
 
-def one_sided(table: Sequence[Line]) -> list[str]:
-    """Of which predicates labels say yes alone, or no alone, in sentences, and what to label.
+def one_sided(table: Sequence[Line], remedy: str = "") -> list[str]:
+    """Of which predicates labels say yes alone, or no alone, in sentences, and what to do.
 
     Args:
         table: As `lines` gives it.
+        remedy: What to do; by default, what to label.
     """
     said = []
     for lacking, rate in (("no", "yes_if_false"), ("yes", "yes_if_true")):
@@ -84,10 +85,13 @@ def one_sided(table: Sequence[Line]) -> list[str]:
         names = ["all questions"] if None in untold else [each for each in untold if each]
         if names:
             more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+            label = (
+                f"Next, label looks at which {lacking} is right, as before and after the action "
+                "that changes it."
+            )
             said.append(
                 f"no label says {lacking} of {', '.join(names[:_NAMED])}{more}: what the VLM "
-                f"answers where {lacking} is right is not known. Next, label looks at which "
-                f"{lacking} is right, as before and after the action that changes it."
+                f"answers where {lacking} is right is not known. {remedy or label}"
             )
     return said
 

@@ -46,6 +46,11 @@ _SHORT = Layer({("limits", "actions"): 60}, {("limits", "actions"): "default"})
 """Trials that teach need not be long …"""
 _WHOLE = Layer({("limits", "actions"): "4x"}, {("limits", "actions"): "default"})
 """… but a survey, which does every action of the plan twice at most, comes to its end."""
+_MORE = "Run more trials."
+_SURVEYS = (
+    "Run more trials, or --monitor survey:3, which goes on whatever is answered and so comes to "
+    "the last steps."
+)
 
 
 def register(app: typer.Typer) -> None:
@@ -222,7 +227,8 @@ def calibrate(
     judged = held_out(rows, name, chosen_looks=chosen_looks)
     table = lines(rows, judged, chosen_looks=chosen_looks)
     besides = bool(calibration.faults or calibration.sensors or calibration.skills)
-    doubted = (*one_sided(table), *doubts(table[-1], besides=besides))
+    remedy = "" if trials is None else _MORE if surveyed else _SURVEYS
+    doubted = (*one_sided(table, remedy), *doubts(table[-1], besides=besides))
     told = (*calibration.notices, *doubted)
     calibration = calibration.model_copy(update={"notices": told})
     with all_or_none(path for _, path in written):
