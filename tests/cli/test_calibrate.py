@@ -158,6 +158,7 @@ def test_from_a_folder_of_pictures(tpvqa: Run, tmp_path: Path) -> None:
         (["--trials", "1", "--tasks", "eat_aple"], ["eat_aple", "Did you mean"]),
         (["--trials", "1", "--tasks", ","], ["--tasks names no task"]),
         (["--trials", "1", "--monitor", "tp"], ["no yes or no"]),
+        (["--trials", "1", "--vlm", "oracle", "--monitor", ""], ["monitor"]),
         (["--trials", "0"], ["--trials"]),
     ],
 )

@@ -197,7 +197,7 @@ def calibrate(
     else:
         assert trials is not None
         name = in_full(vlm or default_vlm(pictures=not problems))
-        monitor = monitor or labelling_monitor(name)
+        monitor = labelling_monitor(name) if monitor is None else monitor
         surveyed = monitor.partition(":")[0] == "survey"
         if surveyed:
             layers = [_WHOLE if layer is _SHORT else layer for layer in layers]
